@@ -1,0 +1,65 @@
+"""Find a C compiler and make a shared library with it: the system's, else PyPI's ziglang."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..errors import BuildError
+
+# Contracting a·b + c to one rounding would give other digits on other machines.
+FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-sanitize=all")
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+
+
+@cache
+def command() -> tuple[str, ...]:
+    """The compiler as a command: $CC, cc, gcc, clang, or ziglang.
+
+    Raises BuildError where there is none.
+    """
+    if os.environ.get("CC"):
+        return tuple(shlex.split(os.environ["CC"]))
+    for name in ("cc", "gcc", "clang"):
+        if path := shutil.which(name):
+            return (path,)
+    if find_spec("ziglang"):
+        return (sys.executable, "-m", "ziglang", "cc")
+    raise BuildError("no C compiler found; install gcc or clang, or `pip install ziglang`")
+
+
+@cache
+def version() -> str:
+    """What the compiler says of itself, for the cache's key."""
+    return _run([*command(), "--version"]).splitlines()[0]
+
+
+def compile_shared(sources: Sequence[Path], target: Path, extra: Sequence[str] = ()) -> Path:
+    """Compile `sources` into the shared library `target`, which appears whole or not at all.
+
+    Raises BuildError with the compiler's own words.
+    """
+    beside = target.with_name(f".{os.getpid()}-{target.name}")
+    try:
+        _run([*command(), *FLAGS, *extra, *map(str, sources), "-o", str(beside), "-lm"])
+        beside.replace(target)
+    finally:
+        beside.unlink(missing_ok=True)
+    return target
+
+
+def _run(words: list[str]) -> str:
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise BuildError(f"cannot run the C compiler {words[0]!r}: {error.strerror}; set CC to one that runs") from error
+    if done.returncode:
+        raise BuildError(f"the C compiler failed: {shlex.join(words)}\n{done.stderr.strip()}")
+    return done.stdout

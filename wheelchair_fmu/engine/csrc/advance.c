@@ -1,0 +1,211 @@
+#include "advance.h"
+
+#include <math.h>
+#include <string.h>
+
+#define WC_SHORTEST 1e-11 /* s; a step shorter than this means the model cannot go on */
+#define WC_SNAP 1e-6      /* of the grid: communication points this near a grid point are on it */
+#define WC_NEWTON 25
+
+/* A stretch of time with linear inputs, and the rows to fill on the way. */
+typedef struct {
+    double t0, length;
+    const double *w0, *w1;
+    const double *at; /* times of rows wanted inside, ascending */
+    long wanted;
+    double *rows;
+} stretch;
+
+static double shape_of(double s, double a, double b) { return (1 - s) * a + s * b; }
+
+static double error_norm(const wc_kernel *k, double tolerance, const double *x, const double *x1, const double *e) {
+    double worst = 0;
+    for (int i = 0; i < k->states; i++) {
+        double size = fabs(x[i]) > fabs(x1[i]) ? fabs(x[i]) : fabs(x1[i]);
+        double here = fabs(e[i]) / (tolerance * (k->nominal[i] + size));
+        if (!(here <= worst)) worst = here; /* lets NaN through */
+    }
+    return worst;
+}
+
+/* Rows inside the step [done, done + h], by the method's own interpolation. */
+static void fill_rows(const wc_kernel *k, stretch *s, double done, double h, const double *x, const double *x1,
+                      const double *d2, const double *d3) {
+    while (s->wanted > 0 && *s->at - s->t0 <= done + h) {
+        double f = (*s->at - s->t0 - done) / h;
+        for (int i = 0; i < k->states; i++) {
+            s->rows[i] = shape_of(f, x[i], x1[i] + (1 - f) * (d2[i] + f * d3[i]));
+        }
+        s->rows += k->states;
+        s->at++;
+        s->wanted--;
+    }
+}
+
+/* Goes the whole stretch in steps of the size the error allows; *h is the first to try and the next. */
+static wc_status go(const wc_kernel *k, const double *p, double tolerance, stretch *s, double *x, double *h,
+                    long *steps) {
+    double wa[WC_MAX_INPUTS], wb[WC_MAX_INPUTS];
+    double x1[WC_MAX_STATES], e[WC_MAX_STATES], d2[WC_MAX_STATES], d3[WC_MAX_STATES];
+    double done = 0;
+    while (done < s->length) {
+        double left = s->length - done;
+        double now = *h < left * (1 - 1e-9) ? *h : left;
+        double fa = done / s->length, fb = now == left ? 1 : (done + now) / s->length;
+        for (int i = 0; i < k->inputs; i++) {
+            wa[i] = shape_of(fa, s->w0[i], s->w1[i]);
+            wb[i] = shape_of(fb, s->w0[i], s->w1[i]);
+        }
+        const double *arg[] = {x, wa, wb, &now, p};
+        double *res[] = {x1, e, d2, d3};
+        k->step(arg, res, 0, 0, 0);
+        double error = error_norm(k, tolerance, x, x1, e);
+        double factor = error > 0 ? 0.9 / sqrt(sqrt(error)) : 6;
+        if (error <= 1) {
+            fill_rows(k, s, done, now, x, x1, d2, d3);
+            memcpy(x, x1, sizeof(double) * (size_t)k->states);
+            done = now == left ? s->length : done + now;
+            if (steps) ++*steps;
+            factor = factor > 6 ? 6 : factor < 0.2 ? 0.2 : factor;
+            if (now == *h || factor < 1) *h = now * factor;
+        } else {
+            factor = factor > 0.1 ? factor : 0.1; /* also where error is NaN */
+            *h = now * factor;
+            if (*h < WC_SHORTEST) return isfinite(error) ? WC_STEP_TOO_SMALL : WC_NOT_FINITE;
+        }
+    }
+    return WC_OK;
+}
+
+wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x) {
+    const double *arg[] = {p, w};
+    double *res[] = {x};
+    k->start(arg, res, 0, 0, 0);
+    return wc_project(k, p, w, x);
+}
+
+wc_status wc_project(const wc_kernel *k, const double *p, const double *w, double *x) {
+    double next[WC_MAX_STATES];
+    for (int round = 0; round < WC_NEWTON; round++) {
+        double change = 0;
+        const double *arg[] = {x, w, p};
+        double *res[] = {next};
+        k->project(arg, res, 0, 0, 0);
+        for (int i = 0; i < k->states; i++) {
+            double here = fabs(next[i] - x[i]) / (k->nominal[i] + fabs(next[i]));
+            if (!(here <= change)) change = here;
+        }
+        if (!isfinite(change)) return WC_NOT_FINITE;
+        memcpy(x, next, sizeof(double) * (size_t)k->states);
+        if (change < 1e-14) return WC_OK;
+        if (round > 4 && change < 1e-10) return WC_OK; /* rounding goes on for ever in the last digits */
+    }
+    return WC_NOT_CONSISTENT;
+}
+
+static wc_status advance_on_grid(const wc_kernel *k, const double *p, wc_accuracy accuracy, double t0, double t1,
+                                 const double *w0, const double *w1, double *x, long *steps) {
+    double grid = accuracy.grid, wa[WC_MAX_INPUTS], wb[WC_MAX_INPUTS];
+    double cell = floor(t0 / grid + WC_SNAP);
+    double from = fabs(t0 / grid - cell) < WC_SNAP ? 0 : t0 - cell * grid; /* into the cell */
+    double last = t1 / grid;
+    for (;; cell++, from = 0) {
+        int whole = cell + 1 <= last + WC_SNAP;
+        double to = whole ? grid : t1 - cell * grid;
+        int final = cell + 1 >= last - WC_SNAP;
+        double fa = (cell * grid + from - t0) / (t1 - t0), fb = final ? 1 : (cell * grid + to - t0) / (t1 - t0);
+        for (int i = 0; i < k->inputs; i++) {
+            wa[i] = shape_of(fa, w0[i], w1[i]);
+            wb[i] = shape_of(fb, w0[i], w1[i]);
+        }
+        stretch s = {0, to - from, wa, wb, 0, 0, 0};
+        double h = s.length;
+        wc_status status = go(k, p, accuracy.tolerance, &s, x, &h, steps);
+        if (status != WC_OK || final) return status;
+    }
+}
+
+wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, double t0, double t1,
+                     const double *w0, const double *w1, double *x, long *steps) {
+    double kept[WC_MAX_STATES];
+    memcpy(kept, x, sizeof(double) * (size_t)k->states);
+    wc_status status;
+    if (accuracy.grid > 0) {
+        status = advance_on_grid(k, p, accuracy, t0, t1, w0, w1, x, steps);
+    } else {
+        stretch s = {t0, t1 - t0, w0, w1, 0, 0, 0};
+        double h = s.length;
+        status = go(k, p, accuracy.tolerance, &s, x, &h, steps);
+    }
+    if (status != WC_OK) memcpy(x, kept, sizeof(double) * (size_t)k->states);
+    return status;
+}
+
+void wc_output(const wc_kernel *k, const double *p, const double *w, const double *x, double *y) {
+    const double *arg[] = {x, w, p};
+    double *res[] = {y};
+    k->output(arg, res, 0, 0, 0);
+}
+
+/* The last row up to which the inputs go on in the straight line on which they leave row i. */
+static long straight_until(const wc_kernel *k, long n, long i, const double *t, const double *w) {
+    int m = k->inputs;
+    long j = i + 1;
+    for (; j + 1 < n; j++) {
+        double f = (t[j + 1] - t[i]) / (t[i + 1] - t[i]);
+        for (int c = 0; c < m; c++) {
+            double first = w[i * m + c], there = w[(j + 1) * m + c];
+            if (fabs(shape_of(f, first, w[(i + 1) * m + c]) - there) > 1e-13 * (fabs(first) + fabs(there))) return j;
+        }
+    }
+    return j;
+}
+
+static wc_status run_held(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t,
+                          const double *w, double *x, double *y, long *reached, long *steps) {
+    int nx = k->states, nw = k->inputs;
+    for (long i = 0; i + 1 < n; i++, *reached = i + 1) {
+        double *here = x + i * nx, *next = here + nx;
+        memcpy(next, here, sizeof(double) * (size_t)nx);
+        wc_status status = wc_project(k, p, w + i * nw, next);
+        if (status == WC_OK)
+            status = wc_advance(k, p, accuracy, t[i] - t[0], t[i + 1] - t[0], w + i * nw, w + i * nw, next, steps);
+        if (status != WC_OK) return status;
+        wc_output(k, p, w + i * nw, next, y + (i + 1) * k->outputs);
+    }
+    return WC_OK;
+}
+
+static wc_status run_linear(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t,
+                            const double *w, double *x, double *y, long *reached, long *steps) {
+    int nx = k->states, nw = k->inputs;
+    double now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
+    memcpy(now, x, sizeof(double) * (size_t)nx);
+    for (long i = 0; i + 1 < n;) {
+        long j = accuracy.grid > 0 ? i + 1 : straight_until(k, n, i, t, w);
+        const double *w0 = w + i * nw, *w1 = w + j * nw;
+        wc_status status;
+        if (accuracy.grid > 0) {
+            status = wc_advance(k, p, accuracy, t[i] - t[0], t[j] - t[0], w0, w1, now, steps);
+        } else {
+            stretch s = {t[i], t[j] - t[i], w0, w1, t + i + 1, j - i - 1, x + (i + 1) * nx};
+            status = go(k, p, accuracy.tolerance, &s, now, &h, steps);
+        }
+        if (status != WC_OK) return status;
+        memcpy(x + j * nx, now, sizeof(double) * (size_t)nx);
+        for (long r = i + 1; r <= j; r++) wc_output(k, p, w + r * nw, x + r * nx, y + r * k->outputs);
+        i = j;
+        *reached = i + 1;
+    }
+    return WC_OK;
+}
+
+wc_status wc_run(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t, const double *w,
+                 int hold, double *x, double *y, long *reached, long *steps) {
+    *reached = 0;
+    wc_status status = wc_project(k, p, w, x);
+    if (status != WC_OK) return status;
+    wc_output(k, p, w, x, y);
+    *reached = 1;
+    return (hold ? run_held : run_linear)(k, p, accuracy, n, t, w, x, y, reached, steps);
+}

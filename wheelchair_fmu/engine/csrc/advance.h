@@ -1,0 +1,51 @@
+/* The one way a wheelchair moves through time: for FMUs, Python and the report page.
+ *
+ * A kernel is one generated model: its sizes and its functions, in CasADi's calling convention. All
+ * memory is on the stack; nothing is allocated, nothing is global, so any number of threads may run.
+ */
+#ifndef WC_ADVANCE_H
+#define WC_ADVANCE_H
+
+#define WC_MAX_STATES 32
+#define WC_MAX_INPUTS 32
+
+typedef int (*wc_function)(const double **arg, double **res, long long *iw, double *w, int mem);
+
+typedef struct {
+    int states, inputs, parameters, outputs;
+    const double *nominal; /* the size of each state, against which errors are measured */
+    wc_function start, project, step, output, forward;
+} wc_kernel;
+
+typedef enum {
+    WC_OK = 0,
+    WC_NOT_FINITE = 1,    /* the model's equations gave NaN or infinity */
+    WC_STEP_TOO_SMALL = 2, /* the error test failed at every step down to WC_SHORTEST */
+    WC_NOT_CONSISTENT = 3  /* Newton's method did not put the algebraic rows right */
+} wc_status;
+
+typedef struct {
+    double tolerance; /* of each step, relative to nominal + |x| */
+    double grid;      /* > 0: no step crosses a multiple of this, and none remembers the last */
+} wc_accuracy;
+
+/* States at the start for parameters p and inputs w, algebraic ones in place. */
+wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x);
+
+/* Puts the algebraic rows right after a jump of inputs, parameters or states; others stay. */
+wc_status wc_project(const wc_kernel *k, const double *p, const double *w, double *x);
+
+/* From t0 to t1 while the inputs go linearly from w0 to w1. On failure x is as it was at t0.
+ * steps, where given, grows by the number of accepted steps. */
+wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, double t0, double t1,
+                     const double *w0, const double *w1, double *x, long *steps);
+
+/* A whole run: inputs w (n rows) at times t (n), states x (n rows, the first given), results y (n rows).
+ * hold: inputs keep each row's value until the next time, instead of going there linearly.
+ * *reached is the number of rows done, n where all went well. */
+wc_status wc_run(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t,
+                 const double *w, int hold, double *x, double *y, long *reached, long *steps);
+
+void wc_output(const wc_kernel *k, const double *p, const double *w, const double *x, double *y);
+
+#endif

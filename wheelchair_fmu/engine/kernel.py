@@ -1,0 +1,91 @@
+"""The functions a simulation needs, as CasADi functions of one model.
+
+    start(p, w)                          → x     states at the start, algebraic ones not yet in place
+    project(x, w, p)                     → x     one Newton step that puts algebraic rows right
+    step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
+    output(x, w, p)                      → y
+    forward(x, w, p, dx, dw, dp)         → dy, dr   derivatives along a direction, r = M x'
+
+These five are all that the Python tools, the FMUs and the report page run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as cs
+
+from ..model.chassis import ROWS
+from ..model.wheelchair import Model
+from .lu import factorise
+from .rodas import step
+
+NAMES = ("start", "project", "step", "output", "forward")
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """One model and its functions, by the names above."""
+
+    model: Model
+    functions: dict[str, cs.Function]
+
+
+def kernel(model: Model) -> Kernel:
+    """Derive the functions of a model."""
+    x, w, p = model.x, model.w, model.p
+    s = step(model)
+    functions = {
+        "start": cs.Function("start", [p, w], [model.start]),
+        "project": cs.Function("project", [x, w, p], [_projected(model)]),
+        "step": cs.Function("step", [x, w, s.w1, s.h, p], cs.cse([s.x1, s.error, s.d2, s.d3])),
+        "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
+        "forward": _forward(model),
+    }
+    return Kernel(model, functions)
+
+
+def algebraic(model: Model) -> list[int]:
+    """Places of the states whose mass is zero, or zero for some parameters."""
+    rows = range(len(ROWS), model.x.numel())
+    return [i for i in rows if model.mass[i].is_zero() or not model.mass[i].is_constant()]
+
+
+def _off(model: Model, places: list[int]) -> cs.SX:
+    """1 where the mass is zero as the parameters stand, else 0."""
+    return cs.vertcat(*(model.mass[i] == 0 for i in places))
+
+
+def _algebraic_change(model: Model, residual: cs.SX) -> cs.SX:
+    """dx that takes the algebraic rows' `residual` to zero, to first order; zero in all other rows."""
+    places = algebraic(model)
+    change = cs.SX.zeros(model.x.numel())
+    if places:
+        off = _off(model, places)
+        jacobian = cs.jacobian(model.f[places], model.x[places])
+        identity = cs.SX.eye(len(places))
+        gated = cs.diag(off) @ jacobian + cs.diag(1 - off) @ identity
+        change[places] = factorise(gated).solve(-off * residual[places])
+    return change
+
+
+def _projected(model: Model) -> cs.SX:
+    return model.x + _algebraic_change(model, model.f)
+
+
+def _forward(model: Model) -> cs.Function:
+    """Along (dx, dw, dp), where algebraic states follow the others whatever dx says of them."""
+    at = [model.x, model.w, model.p]
+    dx, dw, dp = (cs.SX.sym(f"d{v}", s.numel()) for v, s in zip("xwp", at, strict=True))
+    places = algebraic(model)
+    if places:
+        dx_given = cs.SX(dx)
+        dx_given[places] = (1 - _off(model, places)) * dx[places]
+    else:
+        dx_given = dx
+    everything = cs.vertcat(*at)
+    tangent = cs.jtimes(model.f, everything, cs.vertcat(dx_given, dw, dp))
+    dx_full = dx_given + _algebraic_change(model, tangent)
+    along = cs.vertcat(dx_full, dw, dp)
+    dy, dr = (cs.jtimes(e, everything, along) for e in (model.y, model.f))
+    return cs.Function("forward", [*at, dx, dw, dp], cs.cse([dy, dr]))

@@ -1,0 +1,114 @@
+"""Drive a compiled model from Python over a run with sampled inputs."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import SimulationError
+from ..model.variant import Variant
+from ..model.wheelchair import Model
+from . import cache
+
+WHY = {
+    1: "the equations gave NaN or infinity",
+    2: "no step was short enough for the tolerance",
+    3: "the algebraic equations have no solution nearby",
+}
+
+
+class Accuracy(ctypes.Structure):
+    _fields_ = (("tolerance", ctypes.c_double), ("grid", ctypes.c_double))
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Times (n,), states (n, nx) and results (n, ny) of a run, SI units; `trajectory["chair.u"]` is one column."""
+
+    time: np.ndarray
+    states: np.ndarray
+    results: np.ndarray
+    names: tuple[str, ...]
+    steps: int
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.results[:, self.names.index(name)]
+
+
+class Simulator:
+    """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads."""
+
+    def __init__(self, variant: Variant = Variant()):
+        self.variant = variant
+        self._library = cache.library(variant.choice, variant.active())
+        self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
+
+    @cached_property
+    def model(self) -> Model:
+        return self.variant.model()
+
+    def inputs(self, n: int, values: Mapping[str, np.ndarray | float]) -> np.ndarray:
+        """Inputs (n, nw) from arrays (n,) or numbers by FMI name; the rest stay at their start values."""
+        names = [i.name for i in self.model.inputs]
+        w = np.tile([i.start for i in self.model.inputs], (n, 1))
+        for name, value in values.items():
+            w[:, names.index(name)] = value
+        return w
+
+    def run(
+        self,
+        time: np.ndarray,
+        inputs: np.ndarray,
+        parameters: np.ndarray | None = None,
+        *,
+        tolerance: float = 1e-6,
+        grid: float = 0.0,
+        hold: bool = False,
+        start: np.ndarray | None = None,
+    ) -> Trajectory:
+        """Simulate over `time` (n,), with inputs (n, nw) linear between samples (or held, as an FMU master holds them).
+
+        `parameters` (np,) default to the variant's; `start` (nx,) to the start parameters. `tolerance` bounds each
+        step's error relative to 1 + |x|. `grid` > 0 makes the steps those of the FMU: none crosses a multiple of it.
+
+        Raises SimulationError, naming the time, where the model cannot go on.
+        """
+        t = np.ascontiguousarray(time, float)
+        w = np.ascontiguousarray(inputs, float)
+        p = np.ascontiguousarray(self.variant.vector() if parameters is None else parameters, float)
+        x = np.empty((len(t), self.model.x.numel()))
+        y = np.empty((len(t), self.model.y.numel()))
+        if w.shape != (len(t), self.model.w.numel()) or p.shape != (self.model.p.numel(),):
+            raise ValueError(f"inputs {w.shape} and parameters {p.shape} do not fit {len(t)} times and this model")
+        reached, steps = ctypes.c_long(), ctypes.c_long()
+        status = self._start(p, w, x) if start is None else self._given(start, x)
+        if not status:
+            status = self._library.wc_run(
+                self._at(self._kernel), _of(p), Accuracy(tolerance, grid), ctypes.c_long(len(t)), _of(t), _of(w),
+                int(hold), _of(x), _of(y), ctypes.byref(reached), ctypes.byref(steps),
+            )  # fmt: skip
+        if status:
+            when = t[min(max(reached.value, 1), len(t)) - 1]
+            raise SimulationError(f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and "
+                                  "parameters there")  # fmt: skip
+        return Trajectory(t, x, y, tuple(o.name for o in self.model.outputs), steps.value)
+
+    def _start(self, p: np.ndarray, w: np.ndarray, x: np.ndarray) -> int:
+        return self._library.wc_start(self._at(self._kernel), _of(p), _of(w), _of(x))
+
+    @staticmethod
+    def _given(start: np.ndarray, x: np.ndarray) -> int:
+        x[0] = start
+        return 0
+
+    @staticmethod
+    def _at(symbol: ctypes.c_char) -> ctypes.c_void_p:
+        return ctypes.c_void_p(ctypes.addressof(symbol))
+
+
+def _of(array: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)

@@ -1,0 +1,64 @@
+"""Every error this package raises on purpose, and how the kinds relate.
+
+::
+
+    WheelchairError             one sentence: the fact, the value, the cure
+    ├── UsageError              the question is wrong (exit code 2): unknown option, id or name
+    └── Failure                 the data or the model fails what was asked (exit code 1)
+        ├── CampaignError       faults in a campaign's files; carries all of them
+        ├── ModelError          a model that cannot be assembled
+        ├── SimulationError     a simulation that cannot go on
+        └── BuildError          no compiler, a failing compile, an archive that cannot be written
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+
+
+class WheelchairError(Exception):
+    """Base of all errors that a user can cause and cure."""
+
+    exit_code = 1
+
+
+class UsageError(WheelchairError):
+    """The question is wrong: an unknown option, identifier or name."""
+
+    exit_code = 2
+
+
+class Failure(WheelchairError):
+    """The data or the model fails what was asked."""
+
+
+class CampaignError(Failure):
+    """Faults in a campaign, all of them.
+
+    `faults` is a sequence of objects whose `str` is one line: place, fact, value, cure.
+    """
+
+    def __init__(self, faults: Sequence[object]):
+        self.faults = tuple(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+class ModelError(Failure):
+    """A model that cannot be assembled."""
+
+
+class SimulationError(Failure):
+    """A simulation that cannot go on."""
+
+
+class BuildError(Failure):
+    """Something could not be compiled or packed."""
+
+
+def unknown(kind: str, name: str, known: Iterable[str]) -> UsageError:
+    """The error for a misspelt name, with the nearest known names as the cure."""
+    known = list(known)
+    close = get_close_matches(name, known, n=3, cutoff=0.5)
+    hint = f"did you mean {' or '.join(repr(c) for c in close)}?" if close else f"known: {', '.join(known)}"
+    return UsageError(f"no {kind} {name!r}; {hint}")

@@ -1,0 +1,210 @@
+"""The rigid chair and user: geometry, loads, kinematics and Newton's second law, (18)–(23)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as cs
+
+from ..quantities import FRONT, KG, KG_M2, M_S, M_S2, N_M, ONE, PER_M, RAD, RAD_S, REAR, Input, M, N, Parameter, State
+from .frames import moment, to_chair, to_room, velocity_at
+from .stage import Row, define, stage
+
+TABLE_1 = "Doria, Table 1"
+PARAMETERS = (
+    Parameter("chair.m", KG, "total mass m of chair and user", default=80.0, lower=1.0, upper=1000.0, source=TABLE_1),
+    Parameter("chair.I_z", KG_M2, "moment of inertia I_z about the vertical axis through the CM", default=3.08,
+              lower=0.01, upper=1000.0, source=TABLE_1),
+    Parameter("chair.a", M, "distance a from the CM forward to the casters' pivots", default=0.25, lower=0.01,
+              upper=2.0, source=TABLE_1),
+    Parameter("chair.b", M, "distance b from the CM back to the rear axle", default=0.20, lower=0.0, upper=2.0,
+              source=TABLE_1),
+    Parameter("chair.t_r", M, "rear tread t_r", default=0.55, lower=0.05, upper=3.0, source=TABLE_1),
+    Parameter("chair.t_f", M, "front tread t_f", default=0.45, lower=0.05, upper=3.0, source=TABLE_1),
+    Parameter("wheel.R", M, "rolling radius R of the rear wheels; an axle torque M pushes with M/R", default=0.31,
+              lower=0.05, upper=1.0, source="common 24 in wheel"),
+    Parameter("wheel.R_rim", M, "radius of the pushrims; hands push R/R_rim as hard as the tyre", default=0.275,
+              lower=0.05, upper=1.0, source="common 24 in wheel"),
+    Parameter("g", M_S2, "acceleration due to gravity g", default=9.81, lower=0.0, upper=30.0, source="standard"),
+    Parameter("speed.mode", ONE, "free: the pushes move the chair by (20); prescribed: u stays at speed.u and "
+              "push.total_needed says what that takes", default=1, lower=1, upper=2, choices=("free", "prescribed"),
+              fixed=True, symbol="speed_mode"),
+    Parameter("speed.u", M_S, "the forward speed u held when speed.mode is prescribed", default=1.0, lower=-20.0,
+              upper=20.0, symbol="speed_u"),
+    Parameter("start.x", M, "x of the CM in the room at the start", mirror="+", symbol="start_x"),
+    Parameter("start.y", M, "y of the CM in the room at the start, to the right of x", mirror="-", symbol="start_y"),
+    Parameter("start.psi", RAD, "yaw angle ψ at the start, clockwise from above", mirror="-", symbol="start_psi"),
+    Parameter("start.u", M_S, "forward speed u at the start (free speed)", default=1.0, lower=-20.0, upper=20.0,
+              symbol="start_u"),
+    Parameter("start.v", M_S, "lateral speed v at the start, to the right", mirror="-", lower=-20.0, upper=20.0,
+              symbol="start_v"),
+    Parameter("start.psi_dot", RAD_S, "yaw rate ψ' at the start, clockwise from above", mirror="-", lower=-50.0,
+              upper=50.0, symbol="start_psi_dot"),
+)  # fmt: skip
+
+PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
+INPUTS = (
+    Input("push.F_rl", N, "push force F_rl on the left wheel, at the contact patch, forward", mirror="+F_rr",
+          lower=-PUSH_LIMIT, upper=PUSH_LIMIT, nominal=50.0),
+    Input("push.F_rr", N, "push force F_rr on the right wheel, at the contact patch, forward", mirror="+F_rl",
+          lower=-PUSH_LIMIT, upper=PUSH_LIMIT, nominal=50.0),
+    Input("push.M_rl", N_M, "axle torque on the left wheel, forward; adds M_rl/R to the push", mirror="+M_rr",
+          lower=-PUSH_LIMIT, upper=PUSH_LIMIT, nominal=15.0),
+    Input("push.M_rr", N_M, "axle torque on the right wheel, forward; adds M_rr/R to the push", mirror="+M_rl",
+          lower=-PUSH_LIMIT, upper=PUSH_LIMIT, nominal=15.0),
+    Input("brake.rl", ONE, "brake of the left wheel: 0 open, 1 fully applied", mirror="+brake_rr", lower=0.0,
+          upper=1.0, symbol="brake_rl"),
+    Input("brake.rr", ONE, "brake of the right wheel: 0 open, 1 fully applied", mirror="+brake_rl", lower=0.0,
+          upper=1.0, symbol="brake_rr"),
+    Input("floor.slope_x", RAD, "slope of the floor along the room's x, positive where it falls towards +x",
+          lower=-1.0, upper=1.0, nominal=0.05),
+    Input("floor.slope_y", RAD, "slope of the floor along the room's y, positive where it falls towards +y",
+          mirror="-", lower=-1.0, upper=1.0, nominal=0.05),
+    Input("floor.rolling_factor", ONE, "factor on both rolling resistance coefficients: 1 smooth, about 2 carpet",
+          start=1.0, lower=0.0, upper=100.0),
+)  # fmt: skip
+
+
+def per_wheel(value: Any) -> Any:
+    """The same value for the left and the right wheel."""
+    return cs.vertcat(value, value)
+
+
+@stage(define("F_t", N, "traction at the rear contact patches", "+swap", REAR))
+def traction(F_rl, F_rr, M_rl, M_rr, R):
+    return cs.vertcat(F_rl + M_rl / R, F_rr + M_rr / R)
+
+
+@stage(
+    define("x_f", M, "how far the casters' pivots lie before the CM"),
+    define("x_r", M, "how far the rear axle lies before the CM (negative)"),
+    define("y_f", M, "how far each pivot lies to the right of the CM", "-swap", FRONT),
+    define("y_r", M, "how far each rear wheel lies to the right of the CM", "-swap", REAR),
+)
+def geometry(a, b, t_f, t_r):
+    return a, -b, cs.vertcat(-t_f / 2, t_f / 2), cs.vertcat(-t_r / 2, t_r / 2)
+
+
+@stage(
+    define("mass_u", KG, "mass that resists a change of u"),
+    define("mass_v", KG, "mass that resists a change of v"),
+    define("inertia", KG_M2, "moment of inertia that resists a change of ψ'"),
+)
+def inertias(m, I_z):
+    return m, m, I_z
+
+
+@stage(
+    define("v_xf", M_S, "forward velocity of the casters' pivots", "+swap", FRONT),
+    define("v_yf", M_S, "rightward velocity of the casters' pivots", "-swap", FRONT),
+    define("v_xr", M_S, "forward velocity of the rear hubs", "+swap", REAR),
+    define("v_yr", M_S, "rightward velocity of the rear hubs", "-swap", REAR),
+)
+def kinematics(u, v, psi_dot, x_f, y_f, x_r, y_r):
+    """Numerators and denominators of (9)–(12)."""
+    v_xf, v_yf = velocity_at(x_f, y_f, u, v, psi_dot)
+    v_xr, v_yr = velocity_at(x_r, y_r, u, v, psi_dot)
+    return v_xf, per_wheel(v_yf), v_xr, per_wheel(v_yr)
+
+
+@stage(
+    define("fall_x", RAD, "slope under the chair along the room's x"),
+    define("fall_y", RAD, "slope under the chair along the room's y", "-"),
+)
+def floor(slope_x, slope_y):
+    return slope_x, slope_y
+
+
+@stage(
+    define("g_x", M_S2, "gravity along x_m"),
+    define("g_y", M_S2, "gravity along y_m", "-"),
+)
+def gravity(fall_x, fall_y, psi, g):
+    return to_chair(g * cs.sin(fall_x), g * cs.sin(fall_y), psi)
+
+
+@stage(
+    define("N_f", N, "vertical load of each caster", "+swap", FRONT),
+    define("N_r", N, "vertical load of each rear wheel", "+swap", REAR),
+)
+def loads(m, g, x_f, x_r):
+    """Static equilibrium about the axles; a = x_f and b = −x_r."""
+    a, b = x_f, -x_r
+    return (
+        per_wheel(b * g * m / (2 * (a + b))),  # (18)
+        per_wheel(a * g * m / (2 * (a + b))),  # (19)
+    )
+
+
+@stage(
+    define("F_x", N, "sum of all forces along x_m, gravity included"),
+    define("F_y", N, "sum of all forces along y_m, gravity included", "-"),
+    define("M_z", N_M, "sum of all moments about the vertical axis through the CM", "-"),
+)
+def forces(F_xr, F_s, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
+    """Right-hand sides of (20), (21), (22)."""
+    F_x = cs.sum1(F_xr) + cs.sum1(F_xf) + m * g_x  # (20)
+    F_y = cs.sum1(F_s) + cs.sum1(F_yf) + m * g_y  # (21)
+    M_z = moment(x_r, y_r, F_xr, F_s) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
+    return F_x, F_y, M_z
+
+
+@stage(
+    define("u_dot", M_S2, "u'"),
+    define("v_dot", M_S2, "v'", "-"),
+    define("a_x", M_S2, "acceleration of the CM along x_m, u' − v ψ'"),
+    define("a_y", M_S2, "acceleration of the CM along y_m, v' + u ψ'", "-"),
+    define("needed", N, "total push F_rl + F_rr that keeps u constant"),
+)
+def balance(F_x, F_y, F_t, m, mass_u, mass_v, u, v, psi_dot, speed_mode):
+    """Newton's second law (20), (21); with prescribed speed (20) says which push is needed."""
+    free = 2 - speed_mode
+    u_dot = free * (F_x + m * v * psi_dot) / mass_u
+    v_dot = (F_y - m * u * psi_dot) / mass_v
+    return u_dot, v_dot, u_dot - v * psi_dot, v_dot + u * psi_dot, cs.sum1(F_t) - F_x - m * v * psi_dot
+
+
+@stage(
+    define("x_rate", M_S, "x'"),
+    define("y_rate", M_S, "y'", "-"),
+    define("psi_rate", RAD_S, "ψ'", "-"),
+    define("u_rate", N, "mass_u · u'"),
+    define("v_rate", N, "mass_v · v'", "-"),
+    define("psi_dot_rate", N_M, "inertia · ψ''", "-"),
+)
+def motion(u, v, psi, psi_dot, u_dot, v_dot, M_z, mass_u, mass_v):
+    """Right-hand sides of the six base rows of M x' = f."""
+    x_rate, y_rate = to_room(u, v, psi)
+    return x_rate, y_rate, psi_dot, mass_u * u_dot, mass_v * v_dot, M_z
+
+
+def one() -> float:
+    return 1.0
+
+
+def start_speed(start_u, speed_u, speed_mode):
+    """The free chair starts at start.u, the prescribed one at speed.u."""
+    return (2 - speed_mode) * start_u + (speed_mode - 1) * speed_u
+
+
+ROWS = (
+    Row(State("x", M, "x of the CM in the room"), one, lambda x_rate: x_rate, lambda start_x: start_x),
+    Row(State("y", M, "y of the CM in the room", "-"), one, lambda y_rate: y_rate, lambda start_y: start_y),
+    Row(State("psi", RAD, "yaw angle ψ, clockwise from above", "-"), one, lambda psi_rate: psi_rate,
+        lambda start_psi: start_psi),
+    Row(State("u", M_S, "forward speed u of the CM"), lambda mass_u: mass_u, lambda u_rate: u_rate, start_speed),
+    Row(State("v", M_S, "lateral speed v of the CM, to the right", "-"), lambda mass_v: mass_v,
+        lambda v_rate: v_rate, lambda start_v: start_v),
+    Row(State("psi_dot", RAD_S, "yaw rate ψ', clockwise from above", "-"), lambda inertia: inertia,
+        lambda psi_dot_rate: psi_dot_rate, lambda start_psi_dot: start_psi_dot),
+)  # fmt: skip
+
+
+@stage(
+    define("curvature", PER_M, "curvature 1/R_c of the CM's path, positive to the right", "-"),
+    define("lifted", ONE, "1 where a wheel has left the ground"),
+    define("rim_needed", N, "total push at the rims that keeps u constant"),
+)
+def results(u, v, psi_dot, v_eps, N_f, N_r, needed, R, R_rim):
+    curvature = psi_dot / cs.sqrt(u * u + v * v + v_eps * v_eps)  # (23)
+    return curvature, cs.fmin(cs.mmin(N_f), cs.mmin(N_r)) <= 0, needed * R / R_rim

@@ -1,0 +1,21 @@
+"""Dry friction in the swivel bearings: M_w = −M sign(δ'), smooth within a small swivel rate."""
+
+from ...quantities import N_M, Parameter
+from ..smooth import grip
+from ..stage import Effect, adds
+
+FRICTION = Parameter("M", N_M, "dry friction torque M of each caster's swivel bearing", off=0.0,
+                     smallest_interesting=0.05, lower=0.0, upper=5.0, symbol="M_s", source="chosen")  # fmt: skip
+
+
+def friction(M_s, swivel_rate, swivel_eps):
+    return -M_s * grip(swivel_rate, swivel_rate * swivel_rate, swivel_eps)
+
+
+EFFECT = Effect(
+    "caster_friction",
+    "dry friction in the casters' swivel bearings",
+    parameters=(FRICTION,),
+    contributions=(adds("M_w", friction, opposes="swivel_rate"),),
+    needs={"caster": "swivelling"},
+)

@@ -1,0 +1,32 @@
+"""The CM beside the symmetry plane: arms, loads and geometry shift by y."""
+
+import casadi as cs
+
+from ...quantities import M, Parameter
+from ..stage import Effect, adds
+
+Y = Parameter("y", M, "how far the CM lies to the right of the symmetry plane", off=0.0, smallest_interesting=0.004,
+              lower=-0.2, upper=0.2, mirror="-", symbol="y_cm", source="rigid-body statics")  # fmt: skip
+
+RIGHT_LESS_LEFT = cs.DM([-1.0, 1.0])
+
+
+def rear(y_cm, m, g, x_f, x_r, t_r):
+    return RIGHT_LESS_LEFT * (m * g * x_f / (x_f - x_r) * y_cm / t_r)
+
+
+def front(y_cm, m, g, x_f, x_r, t_f):
+    return RIGHT_LESS_LEFT * (m * g * -x_r / (x_f - x_r) * y_cm / t_f)
+
+
+EFFECT = Effect(
+    "cm_lateral_offset",
+    "centre of mass beside the symmetry plane",
+    parameters=(Y,),
+    contributions=(
+        adds("y_r", lambda y_cm: -y_cm),
+        adds("y_f", lambda y_cm: -y_cm),
+        adds("N_r", rear),
+        adds("N_f", front),
+    ),
+)

@@ -1,0 +1,14 @@
+"""A yaw rate sensor with a wrong scale: it reads (1 + k) ψ'."""
+
+from ...quantities import ONE, Parameter
+from ..stage import Effect, scales
+
+K = Parameter("k", ONE, "scale error of the yaw rate sensor: it reads (1 + k) ψ'", off=0.0, smallest_interesting=0.01,
+              lower=-0.5, upper=1.0, symbol="scale", source="instrument")  # fmt: skip
+
+EFFECT = Effect(
+    "gyro_scale",
+    "yaw rate sensor with a wrong scale",
+    parameters=(K,),
+    contributions=(scales("read_yaw_rate", lambda scale: 1 + scale),),
+)

@@ -1,0 +1,17 @@
+"""Spin inertia of the rear wheels, as the mass m = 2 I / R² that they add to the chair's, also in a turn."""
+
+from ...quantities import KG, Parameter
+from ..stage import Effect, adds
+
+MASS = Parameter("m", KG, "equivalent mass 2 I / R² of both wheels' spin inertia", off=0.0, smallest_interesting=1.0,
+                 lower=0.0, upper=50.0, symbol="m_w", source="published wheelchair models: 0.14 kg m²")  # fmt: skip
+
+EFFECT = Effect(
+    "wheel_inertia",
+    "spin inertia of the rear wheels",
+    parameters=(MASS,),
+    contributions=(
+        adds("mass_u", lambda m_w: m_w),
+        adds("inertia", lambda m_w, t_r: m_w * t_r * t_r / 4),
+    ),
+)

@@ -1,0 +1,123 @@
+"""How equations and effects are written down, and how they meet.
+
+The model is a line of stages. A stage is a plain function: its argument names are the quantities it
+reads, its decorator names the quantities it defines, with unit and meaning. Effects sign up at any
+quantity, and one rule holds for all of them:
+
+    quantity = (base + Σ additions) · Π factors
+
+so the order of effects cannot matter, and a model without effects is the paper's. A contribution
+reads what its law's arguments name, and only what earlier stages have defined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from inspect import signature
+from typing import Any
+
+from ..quantities import Parameter, Quantity, State, Unit
+
+Law = Callable[..., Any]
+
+
+def reads(law: Law) -> tuple[str, ...]:
+    """The symbols a law reads: its argument names."""
+    return tuple(signature(law).parameters)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One line of equations: `law(*reads)` gives the quantities `defines`, in order."""
+
+    law: Law
+    defines: tuple[Quantity, ...]
+
+    @property
+    def name(self) -> str:
+        return self.law.__name__
+
+
+def stage(*defines: Quantity) -> Callable[[Law], Stage]:
+    """Make a stage of a function that returns the quantities listed here, in this order."""
+    return lambda law: Stage(law, defines)
+
+
+def define(symbol: str, unit: Unit, meaning: str, mirror: str = "+", components: tuple[str, ...] = ()) -> Quantity:
+    """A quantity that a stage defines."""
+    return Quantity(symbol, unit, meaning, mirror=mirror, components=components)
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What an effect does to one quantity: adds a term or multiplies by a factor.
+
+    `opposes` names a velocity: the law promises force · velocity ≤ 0, and the tests hold it to that.
+    """
+
+    to: str
+    law: Law
+    factor: bool = False
+    opposes: str = ""
+
+
+def adds(to: str, law: Law, *, opposes: str = "") -> Contribution:
+    """Add a term to the quantity `to`."""
+    return Contribution(to, law, opposes=opposes)
+
+
+def scales(to: str, law: Law) -> Contribution:
+    """Multiply the quantity `to` by a positive factor."""
+    return Contribution(to, law, factor=True)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A state of an effect or law, with its own line of M x' = f: `mass(...) · x' = rate(...)`.
+
+    Where the mass is zero the line is an algebraic equation for x; nothing else changes.
+    """
+
+    state: State
+    mass: Law
+    rate: Law
+    start: Law | None = None  # the value at the start, from parameters and start values; 0 unless given
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """One of several laws that exclude each other: its stages, its parameters, its states."""
+
+    name: str
+    stages: tuple[Stage, ...]
+    parameters: tuple[Parameter, ...] = ()
+    rows: tuple[Row, ...] = ()
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One physical effect the paper leaves out: a few contributions and the parameters in them.
+
+    `parameters` are off at zero. `constants` belong to the effect but are not estimated. `needs`
+    names the laws it works with, e.g. ``{"caster": "swivelling"}``.
+    """
+
+    id: str
+    title: str
+    parameters: tuple[Parameter, ...]
+    contributions: Sequence[Contribution] = ()
+    rows: tuple[Row, ...] = ()
+    constants: tuple[Parameter, ...] = ()
+    needs: dict[str, str] = field(default_factory=dict)
+    even: bool = False  # the response is even in the parameters: the slope at zero says nothing
+
+    @property
+    def owned(self) -> tuple[Parameter, ...]:
+        """All its parameters under their full names `effect.<id>.<name>`."""
+        constants = tuple(replace(c, estimated=False) for c in self.constants)
+        return tuple(p.owned_by(self.id) for p in (*self.parameters, *constants))
+
+    @property
+    def stateless(self) -> bool:
+        return not self.rows and not self.needs

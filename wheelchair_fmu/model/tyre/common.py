@@ -1,0 +1,82 @@
+"""What all tyre laws share: stiffnesses, slip, camber, and how force and torque sit on the wheel."""
+
+from __future__ import annotations
+
+import casadi as cs
+
+from ...quantities import M_S, N_M, N_M_RAD, N_RAD, ONE, RAD, REAR, M, N, Parameter
+from ..chassis import per_wheel
+from ..smooth import direction, magnitude
+from ..stage import define, stage
+
+REFERENCE = "Doria, Table 1: tyre A, 4 bar, 400 N, 4 km/h"
+
+PARAMETERS = (
+    Parameter("tyre.law", ONE, "how the tyre's lateral force follows slip", default=1, lower=1, upper=3,
+              choices=("linear", "dugoff", "magic_formula"), fixed=True, symbol="tyre_law"),
+    Parameter("tyre.C_lambda", N_RAD, "cornering stiffness C_λ of one tyre", default=5038.0, lower=1.0, upper=1e6,
+              source=REFERENCE),
+    Parameter("tyre.C_m_lambda", N_M_RAD, "self-aligning stiffness C_mλ of one tyre", default=45.0, lower=0.0,
+              upper=1e4, source=REFERENCE),
+    Parameter("tyre.C_phi", N_RAD, "camber stiffness C_φ of one tyre", default=464.0, lower=0.0, upper=1e5,
+              source=REFERENCE),
+    Parameter("tyre.C_m_phi", N_M_RAD, "twisting torque stiffness C_mφ of one tyre", default=3.0, lower=0.0,
+              upper=1e3, source="chosen: not in the paper's text"),
+    Parameter("tyre.mu", ONE, "friction coefficient μ (Dugoff and Magic Formula)", default=1.0, lower=0.05, upper=5.0,
+              source="chosen: the paper's curves do not saturate"),
+    Parameter("tyre.c_p", M, "pneumatic trail c_p (Dugoff)", default=45.0 / 5038.0, lower=0.0, upper=0.2,
+              source="C_mλ/C_λ of Table 1"),
+    Parameter("tyre.force.C", ONE, "shape factor C of the lateral force (Magic Formula)", default=1.3, lower=0.1,
+              upper=3.0, symbol="force_C", source="Pacejka: the usual value for a lateral force"),
+    Parameter("tyre.force.E", ONE, "curvature factor E of the lateral force (Magic Formula)", default=0.0, lower=-20.0,
+              upper=1.0, symbol="force_E", source="chosen"),
+    Parameter("tyre.torque.C", ONE, "shape factor C of the self-aligning torque (Magic Formula)", default=2.0,
+              lower=0.1, upper=4.0, symbol="torque_C", source="chosen: falls again beyond its peak"),
+    Parameter("tyre.torque.D", N_M, "peak D of the self-aligning torque (Magic Formula)", default=1.7, lower=0.01,
+              upper=100.0, symbol="torque_D", source="chosen: level of Fig. 9 in the reference condition"),
+    Parameter("tyre.torque.E", ONE, "curvature factor E of the self-aligning torque (Magic Formula)", default=0.0,
+              lower=-20.0, upper=1.0, symbol="torque_E", source="chosen"),
+    Parameter("regularisation.slip_speed", M_S, "speed ε in |v_x| ≈ √(v_x² + ε²), below which slip angles fade",
+              default=0.01, lower=1e-5, upper=1.0, symbol="v_eps", source="chosen"),
+)  # fmt: skip
+
+
+@stage(
+    define("k_F", N_RAD, "cornering stiffness of each rear tyre", "+swap", REAR),
+    define("k_M", N_M_RAD, "self-aligning stiffness of each rear tyre", "+swap", REAR),
+    define("phi", RAD, "camber angle of each rear wheel, positive when it leans to the right", "-swap", REAR),
+)
+def tyres(C_lambda, C_m_lambda):
+    return per_wheel(C_lambda), per_wheel(C_m_lambda), per_wheel(0.0)
+
+
+@stage(
+    define("s", ONE, "direction of rolling: +1 forward, −1 in reverse, 0 at rest", "+swap", REAR),
+    define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
+)
+def slip(v_xr, v_yr, v_eps):
+    """(11), (12) for either direction; v_y / ε, a damper, at rest."""
+    return direction(v_xr, v_eps), -cs.atan2(v_yr, magnitude(v_xr, v_eps))
+
+
+@stage(
+    define("s", ONE, "direction of rolling: always forward", "+swap", REAR),
+    define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
+)
+def slip_paper(v_xr, v_yr):
+    """(11), (12) to the letter."""
+    return per_wheel(1.0), -v_yr / v_xr
+
+
+@stage(define("lam_F", RAD, "slip angle that force and torque follow", "-swap", REAR))
+def followed_slip(lam):
+    return lam
+
+
+@stage(
+    define("F_s", N, "lateral force F_s of each rear tyre", "-swap", REAR),
+    define("M_t", N_M, "torque M of each rear tyre about the vertical", "-swap", REAR),
+)
+def tyre_forces(F_lam, M_lam, phi, s, C_phi, C_m_phi):
+    """(13)–(16). In reverse the trail lies on the other side; camber pushes no wheel at rest."""
+    return F_lam + C_phi * phi * s * s, s * (M_lam + C_m_phi * phi)

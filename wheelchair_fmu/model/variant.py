@@ -1,0 +1,143 @@
+"""A variant: which laws and effects a chair has, and with which values.
+
+`wheelchair add` writes one, everything else reads it::
+
+    [laws]
+    tyre = "linear"          # linear | dugoff | magic_formula
+    caster = "ideal"         # ideal | swivelling
+    equations = "extended"   # extended | paper
+    effects = ["relaxation_length"]
+
+    [values]                 # any parameter of the FMU, SI units; the rest keep their defaults
+    "tyre.C_lambda" = 4900.0
+    "effect.relaxation_length.sigma" = 0.12
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from ..errors import Failure, UsageError, unknown
+from ..quantities import Parameter
+from . import caster, tyre
+from .effects import bundled
+from .stage import Effect
+from .wheelchair import Choice, Model, assemble, base_parameters
+
+LAWS = {
+    "tyre": tuple(tyre.LAWS),
+    "caster": tuple(name for name in caster.LAWS if name != "paper"),
+    "equations": ("extended", "paper"),
+}
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Laws, effects by id, values by parameter name (SI units), and free notes on where they come from."""
+
+    choice: Choice = Choice()
+    effects: tuple[str, ...] = ()
+    values: Mapping[str, float] = field(default_factory=dict)
+    notes: Mapping[str, Any] = field(default_factory=dict)
+    catalogue: Mapping[str, Effect] = field(default_factory=bundled, repr=False)
+
+    def __post_init__(self) -> None:
+        for kind, known in LAWS.items():
+            if getattr(self.choice, kind) not in known:
+                raise unknown(f"{kind} law", getattr(self.choice, kind), known)
+        for effect in self.effects:
+            if effect not in self.catalogue:
+                raise unknown("effect", effect, self.catalogue)
+
+    def with_effects(self, ids: Iterable[str]) -> Variant:
+        """The same with more effects, and the laws that these need."""
+        ids = tuple(ids)
+        for effect in ids:
+            if effect not in self.catalogue:
+                raise unknown("effect", effect, self.catalogue)
+        needs = {kind: law for effect in ids for kind, law in self.catalogue[effect].needs.items()}
+        more = tuple(e for e in ids if e not in self.effects)
+        return replace(self, effects=(*self.effects, *more), choice=replace(self.choice, **needs))
+
+    def with_values(self, values: Mapping[str, float | str]) -> Variant:
+        """The same with other values; a value of an effect that is off switches it on.
+
+        Raises UsageError for an unknown name, a number out of bounds or a word that is no choice.
+        """
+        on = [e for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
+              if e not in self.effects]  # fmt: skip
+        grown = self.with_effects(dict.fromkeys(on))
+        records = {p.name: p for p in grown.parameters()}
+        numbers = {name: number(records, name, value) for name, value in values.items()}
+        choice = grown.choice
+        if "tyre.law" in numbers:
+            choice = replace(choice, tyre=records["tyre.law"].choices[int(numbers.pop("tyre.law")) - 1])
+        return replace(grown, choice=choice, values={**grown.values, **numbers})
+
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The records of every parameter this chair has."""
+        own = (p for e in sorted(self.effects) for p in self.catalogue[e].owned)
+        return (*base_parameters(self.choice), *own)
+
+    def active(self) -> tuple[Effect, ...]:
+        return tuple(self.catalogue[e] for e in sorted(self.effects))
+
+    def model(self) -> Model:
+        return assemble(self.choice, self.active())
+
+    def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
+        """Parameter values, shape (np,), in the order of `parameters()`; `values` go before the variant's own."""
+        given = {**self.values, **(values or {}), "tyre.law": 1 + LAWS["tyre"].index(self.choice.tyre)}
+        return np.array([given.get(p.name, p.default) for p in self.parameters()])
+
+
+def number(records: Mapping[str, Parameter], name: str, value: float | str) -> float:
+    """The checked value of a parameter: a number within its bounds, or the number of a named choice."""
+    if name not in records:
+        raise unknown("parameter", name, records)
+    record = records[name]
+    if record.choices:
+        if value not in record.choices:
+            raise UsageError(f"{name} = {value}: choose one of {', '.join(record.choices)}")
+        return 1.0 + record.choices.index(str(value))
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name} = {value!r} is not a number; give a number in {record.unit.name}") from None
+    if not math.isfinite(result) or not record.lower <= result <= record.upper:
+        raise UsageError(f"{name} = {value} is outside its bounds {record.lower:g} to {record.upper:g} "
+                         f"{record.unit.name}; give a value between them")  # fmt: skip
+    return result
+
+
+def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None) -> Variant:
+    """The variant in a TOML file. Raises Failure or UsageError that name the file and the fault."""
+    try:
+        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise Failure(f"{path}: no such file; give a variant that `wheelchair add` wrote") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
+    laws = dict(table.get("laws", {}))
+    effects = tuple(laws.pop("effects", ()))
+    for kind in laws:
+        if kind not in LAWS:
+            raise unknown(f"law in {path} [laws]", kind, (*LAWS, "effects"))
+    base = Variant(Choice(**laws), catalogue=catalogue if catalogue is not None else bundled())
+    notes = {key: value for key, value in table.items() if key not in ("laws", "values")}
+    return replace(base.with_effects(effects).with_values(table.get("values", {})), notes=notes)
+
+
+def variant_text(variant: Variant) -> str:
+    """The variant as TOML that `read_variant` reads."""
+    laws = {kind: getattr(variant.choice, kind) for kind in LAWS}
+    return tomli_w.dumps({"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values),
+                          **variant.notes})  # fmt: skip

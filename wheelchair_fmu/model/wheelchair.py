@@ -1,0 +1,272 @@
+"""The wheelchair: choose laws, let effects sign up, and walk the line of stages once.
+
+The result is M(p) x' = f(x, w, p) with results y(x, w, p), as CasADi expressions, and the records of
+everything in them. x are the states, w the inputs, p the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as cs
+
+from ..errors import ModelError, unknown
+from ..quantities import M_S, M_S2, N_M, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
+from . import caster, chassis, resistance, sensors, tyre
+from .stage import Alternative, Effect, Law, Row, Stage, reads
+from .tyre import common
+
+OUTPUTS = (
+    Output("chair.x", M, "x of the CM in the room"),
+    Output("chair.y", M, "y of the CM in the room", "-"),
+    Output("chair.psi", RAD, "yaw angle ψ, clockwise from above", "-"),
+    Output("chair.u", M_S, "forward speed u of the CM"),
+    Output("chair.v", M_S, "lateral speed v of the CM, to the right", "-"),
+    Output("chair.psi_dot", RAD_S, "yaw rate ψ', clockwise from above", "-"),
+    Output("chair.curvature", PER_M, "curvature 1/R_c of the CM's path, positive to the right", "-"),
+    Output("slip.rl", RAD, "slip angle λ_rl of the left rear wheel", "-slip.rr", symbol="lam", component=0),
+    Output("slip.rr", RAD, "slip angle λ_rr of the right rear wheel", "-slip.rl", symbol="lam", component=1),
+    Output("force.F_srl", N, "lateral force F_srl of the left rear tyre, to the right", "-force.F_srr", symbol="F_s"),
+    Output("force.F_srr", N, "lateral force F_srr of the right rear tyre, to the right", "-force.F_srl", symbol="F_s",
+           component=1),
+    Output("load.rl", N, "vertical load of the left rear wheel", "+load.rr", symbol="N_r"),
+    Output("load.rr", N, "vertical load of the right rear wheel", "+load.rl", symbol="N_r", component=1),
+    Output("load.fl", N, "vertical load of the left caster", "+load.fr", symbol="N_f"),
+    Output("load.fr", N, "vertical load of the right caster", "+load.fl", symbol="N_f", component=1),
+    Output("load.lifted", ONE, "true where a wheel has left the ground; the model then no longer holds",
+           symbol="lifted", boolean=True),
+    Output("caster.fl", RAD, "angle δ_fl of the left caster from straight trailing", "-caster.fr", symbol="delta"),
+    Output("caster.fr", RAD, "angle δ_fr of the right caster from straight trailing", "-caster.fl", symbol="delta",
+           component=1),
+    Output("push.total_needed", N, "total push F_rl + F_rr that keeps u constant, by (20)", symbol="needed"),
+    Output("push.rim_needed", N, "the same as the hands at both rims feel it", symbol="rim_needed"),
+    Output("sensor.wheel_speed_l", M_S, "left wheel speed: angular speed times R", "+sensor.wheel_speed_r",
+           symbol="read_wheel_speed"),
+    Output("sensor.wheel_speed_r", M_S, "right wheel speed: angular speed times R", "+sensor.wheel_speed_l",
+           symbol="read_wheel_speed", component=1),
+    Output("sensor.yaw_rate", RAD_S, "yaw rate as a gyroscope reads it, clockwise from above", "-",
+           symbol="read_yaw_rate"),
+    Output("sensor.a_x", M_S2, "specific force along x_m as an accelerometer reads it", symbol="read_a_x"),
+    Output("sensor.a_y", M_S2, "specific force along y_m as an accelerometer reads it", "-", symbol="read_a_y"),
+    Output("sensor.x", M, "x as a tracking system reads it", symbol="read_x"),
+    Output("sensor.y", M, "y as a tracking system reads it", "-", symbol="read_y"),
+    Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw"),
+)  # fmt: skip
+
+FORESEEN = ("a_x", "a_y")  # may be read before they are known; each then is an unknown of its own
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which laws a model is made of."""
+
+    tyre: str = "linear"
+    caster: str = "ideal"
+    equations: str = "extended"  # or "paper": (9)–(22) to the letter, forward motion only
+
+
+@dataclass(frozen=True)
+class Model:
+    """M(p) x' = f(x, w, p), y(x, w, p), x(0) = start(p), and the records of x, w, p and y."""
+
+    choice: Choice
+    effects: tuple[Effect, ...]
+    parameters: tuple[Parameter, ...]
+    inputs: tuple[Input, ...]
+    states: tuple[State, ...]
+    outputs: tuple[Output, ...]
+    x: cs.SX
+    w: cs.SX
+    p: cs.SX
+    mass: cs.SX  # (nx,) diagonal of M
+    f: cs.SX
+    y: cs.SX
+    start: cs.SX
+    quantities: Mapping[str, cs.SX]  # every quantity of the equations by its symbol
+    records: Mapping[str, Quantity]  # and what it means
+
+
+def assemble(choice: Choice = Choice(), effects: Iterable[Effect] = ()) -> Model:
+    """Build the model from a choice of laws and a set of effects, whose order does not matter.
+
+    Raises UsageError for an unknown law and ModelError for an effect that does not fit.
+    """
+    return _Assembly(choice, tuple(sorted(effects, key=lambda e: e.id))).model()
+
+
+def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
+    """The parameters of a model without effects."""
+    laws = (_law("tyre", tyre.LAWS, choice.tyre), _law("caster", caster.LAWS, choice.caster))
+    extra = tuple(p for law in laws for p in law.parameters)
+    return (*chassis.PARAMETERS, *common.PARAMETERS, *resistance.PARAMETERS, *extra)
+
+
+def line(choice: Choice) -> tuple[Stage, ...]:
+    """The stages, in order."""
+    paper = choice.equations == "paper"
+    tyre_law = _law("tyre", tyre.LAWS, choice.tyre)
+    caster_law = _law("caster", caster.LAWS, "paper" if paper else choice.caster)
+    return (
+        chassis.traction,
+        chassis.geometry,
+        chassis.inertias,
+        chassis.kinematics,
+        chassis.floor,
+        chassis.gravity,
+        chassis.loads,
+        common.tyres,
+        common.slip_paper if paper else common.slip,
+        common.followed_slip,
+        *tyre_law.stages,
+        common.tyre_forces,
+        resistance.rolling_resistance,
+        resistance.rear_longitudinal_paper if paper else resistance.rear_longitudinal,
+        *caster_law.stages,
+        chassis.forces,
+        chassis.balance,
+        chassis.motion,
+        sensors.sensors,
+        chassis.results,
+    )
+
+
+def _law(kind: str, laws: Mapping[str, Alternative], name: str) -> Alternative:
+    if name not in laws:
+        raise unknown(f"{kind} law", name, laws)
+    return laws[name]
+
+
+def _symbols(records: Iterable[Quantity]) -> dict[str, cs.SX]:
+    return {r.symbol: cs.SX.sym(r.symbol, r.size) for r in records}
+
+
+class _Assembly:
+    """One walk along the line: what is known so far, and what effects add as it becomes known."""
+
+    def __init__(self, choice: Choice, effects: tuple[Effect, ...]):
+        if choice.equations not in ("extended", "paper"):
+            raise unknown("kind of equations", choice.equations, ("extended", "paper"))
+        self.choice, self.effects = choice, effects
+        for effect in effects:
+            self._refuse_misfit(effect)
+        self.parameters = base_parameters(choice)
+        caster_law = _law("caster", caster.LAWS, choice.caster)
+        self.rows: list[tuple[Row, Mapping[str, cs.SX]]] = []
+        self.foreseen: list[tuple[State, cs.SX]] = []
+        self.known = _symbols(self.parameters) | _symbols(chassis.INPUTS)
+        self.own = {e.id: _symbols((*e.parameters, *e.constants)) for e in effects}
+        for row in (*chassis.ROWS, *caster_law.rows):
+            self._add_row(row, self.known)
+        for effect in effects:
+            for row in effect.rows:
+                self._add_row(row, self.own[effect.id], owner=effect.id)
+        self.records: dict[str, Quantity] = {}
+
+    def _refuse_misfit(self, effect: Effect) -> None:
+        for kind, name in effect.needs.items():
+            if getattr(self.choice, kind) != name:
+                raise ModelError(f"effect {effect.id} needs the {kind} law {name!r}; this model has "
+                                 f"{getattr(self.choice, kind)!r}: set {kind} = \"{name}\"")  # fmt: skip
+
+    def _add_row(self, row: Row, scope: dict[str, cs.SX], owner: str = "") -> None:
+        scope[row.state.symbol] = cs.SX.sym(row.state.symbol, row.state.size)
+        named = replace(row, state=replace(row.state, name=f"effect.{owner}.{row.state.name}")) if owner else row
+        self.rows.append((named, scope))
+
+    def _foresee(self, symbol: str) -> cs.SX:
+        """An unknown for a quantity that is read before it is defined, with a row 0 = value − unknown."""
+        defined = {q.symbol: q for s in line(self.choice) for q in s.defines}
+        unit, mirror = defined[symbol].unit, defined[symbol].mirror
+        guess = cs.SX.sym(f"foreseen_{symbol}")
+        state = State(f"foreseen.{symbol}", unit, f"{symbol} as the loads use it", mirror)
+        self.foreseen.append((state, guess))
+        self.known[f"foreseen {symbol}"] = guess
+        return guess
+
+    def _value(self, symbol: str, own: Mapping[str, cs.SX], reader: str) -> cs.SX:
+        for place in (own, self.known):
+            if symbol in place:
+                return place[symbol]
+        if symbol in FORESEEN:
+            foreseen = self.known.get(f"foreseen {symbol}")
+            return self._foresee(symbol) if foreseen is None else foreseen
+        later = any(symbol == q.symbol for s in line(self.choice) for q in s.defines)
+        why = "is only known further down the line of stages" if later else "is no quantity of this model"
+        raise ModelError(f"{reader} reads {symbol!r}, which {why}; known here: {', '.join(sorted(self.known))}")
+
+    def call(self, law: Law, own: Mapping[str, cs.SX], reader: str) -> Any:
+        return law(*(self._value(symbol, own, reader) for symbol in reads(law)))
+
+    def _walk(self) -> None:
+        for stage in line(self.choice):
+            values = self.call(stage.law, {}, f"stage {stage.name}")
+            for record, value in zip(stage.defines, values if isinstance(values, tuple) else (values,), strict=True):
+                value = cs.SX(value)
+                if value.shape != (record.size, 1):
+                    raise ModelError(f"stage {stage.name} gives {record.symbol} with shape {value.shape}")
+                self.records[record.symbol] = record
+                self.known[record.symbol] = self._with_effects(record, value)
+
+    def _with_effects(self, record: Quantity, base: cs.SX) -> cs.SX:
+        """(base + Σ additions) · Π factors."""
+        total, factor = base, cs.SX(1)
+        for effect in self.effects:
+            for contribution in effect.contributions:
+                if contribution.to != record.symbol:
+                    continue
+                term = cs.SX(self.call(contribution.law, self.own[effect.id], f"effect {effect.id}"))
+                if term.shape not in ((1, 1), base.shape):
+                    raise ModelError(f"effect {effect.id} gives {record.symbol} a term of shape {term.shape}, "
+                                     f"not {base.shape}")  # fmt: skip
+                if contribution.factor:
+                    factor = factor * term
+                else:
+                    total = total + term
+        return total * factor if not factor.is_one() else total
+
+    def _refuse_lost(self) -> None:
+        for effect in self.effects:
+            for contribution in effect.contributions:
+                if contribution.to not in self.records:
+                    raise unknown(f"quantity for effect {effect.id} to act on", contribution.to, self.records)
+
+    def model(self) -> Model:
+        self._walk()
+        self._refuse_lost()
+        parameters = (*self.parameters, *(p for e in self.effects for p in e.owned))
+        p = cs.vertcat(*(self.known[q.symbol] for q in self.parameters), *(s for e in self.effects
+                         for s in (self.own[e.id][q.symbol] for q in (*e.parameters, *e.constants))))  # fmt: skip
+        x = cs.vertcat(*(scope[row.state.symbol] for row, scope in self.rows), *(g for _, g in self.foreseen))
+        w = cs.vertcat(*(self.known[q.symbol] for q in chassis.INPUTS))
+        rows = [*map(self._row, self.rows), *map(self._foreseen_row, self.foreseen)]
+        mass, f, start = (cs.vertcat(*column) for column in zip(*rows, strict=True))
+        if cs.depends_on(mass, cs.vertcat(x, w)):
+            raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
+        states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
+        extra = self._state_outputs()
+        y = cs.vertcat(*(self.known[o.symbol][o.component] for o in OUTPUTS),
+                       *(scope[row.state.symbol] for row, scope in self.rows[len(chassis.ROWS) :]))  # fmt: skip
+        Table((*parameters, *chassis.INPUTS, *OUTPUTS, *extra))  # one name, one meaning
+        return Model(self.choice, self.effects, parameters, chassis.INPUTS, states, (*OUTPUTS, *extra), x, w, p,
+                     mass, f, y, start, self.known, self.records)  # fmt: skip
+
+    def _row(self, entry: tuple[Row, Mapping[str, cs.SX]]) -> tuple[cs.SX, cs.SX, cs.SX]:
+        row, scope = entry
+        size, who = row.state.size, f"state {row.state.name}"
+        mass, rate = (cs.SX(self.call(law, scope, who)) for law in (row.mass, row.rate))
+        start = cs.SX(self.call(row.start, scope, who)) if row.start else cs.SX.zeros(size)
+        return (cs.repmat(mass, size // mass.numel()), rate, start)
+
+    def _foreseen_row(self, entry: tuple[State, cs.SX]) -> tuple[cs.SX, cs.SX, cs.SX]:
+        state, guess = entry
+        return cs.SX(0), self.known[state.symbol] - guess, cs.SX(0)
+
+    def _state_outputs(self) -> tuple[Output, ...]:
+        """States beyond the chair's own six are results too."""
+        return tuple(
+            Output(name, row.state.unit, row.state.meaning, symbol=row.state.symbol, component=i)
+            for row, _ in self.rows[len(chassis.ROWS) :]
+            for i, name in enumerate(row.state.names)
+        )

@@ -1,0 +1,159 @@
+"""Units, and one record for everything that has a name.
+
+A name is written once, here or beside the equation that uses it. The FMI variable, the column of a
+table, the slider on a page and the units and mirror tests are derived from the record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import inf, pi
+
+REAR = ("rl", "rr")  # rear left, rear right: the order of every pair of rear-wheel quantities
+FRONT = ("fl", "fr")  # front left, front right: the same for casters
+
+
+@dataclass(frozen=True)
+class DisplayUnit:
+    """Another unit of the same dimension: `value in this unit = factor · SI value`."""
+
+    name: str
+    factor: float
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A coherent SI unit: a name, and its exponents of kg, m, s (and rad, which has no dimension)."""
+
+    name: str
+    kg: int = 0
+    m: int = 0
+    s: int = 0
+    rad: int = 0
+    display: tuple[DisplayUnit, ...] = ()
+
+    def scale(self, kg: float, m: float, s: float) -> float:
+        """Factor by which a number grows when the units of mass, length, time shrink by kg, m, s."""
+        return float(kg) ** self.kg * float(m) ** self.m * float(s) ** self.s
+
+
+ONE = Unit("1", display=(DisplayUnit("%", 100.0),))
+KG = Unit("kg", kg=1)
+KG_M2 = Unit("kg.m2", kg=1, m=2)
+M = Unit("m", m=1, display=(DisplayUnit("mm", 1000.0),))
+PER_M = Unit("1/m", m=-1)
+S = Unit("s", s=1, display=(DisplayUnit("ms", 1000.0),))
+M_S = Unit("m/s", m=1, s=-1, display=(DisplayUnit("km/h", 3.6),))
+M_S2 = Unit("m/s2", m=1, s=-2)
+RAD = Unit("rad", rad=1, display=(DisplayUnit("deg", 180 / pi),))
+RAD_S = Unit("rad/s", s=-1, rad=1, display=(DisplayUnit("deg/s", 180 / pi),))
+RAD_S2 = Unit("rad/s2", s=-2, rad=1)
+PER_RAD = Unit("1/rad", rad=-1)
+N = Unit("N", kg=1, m=1, s=-2)
+N_RAD = Unit("N/rad", kg=1, m=1, s=-2, rad=-1)
+N_M = Unit("N.m", kg=1, m=2, s=-2)
+N_M_RAD = Unit("N.m/rad", kg=1, m=2, s=-2, rad=-1)
+N_S_M = Unit("N.s/m", kg=1, s=-1)
+W = Unit("W", kg=1, m=2, s=-3)
+BAR = Unit("bar")  # pressure enters only as a ratio, so its own dimension never meets kg, m, s
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something with a name, a unit and a meaning.
+
+    `mirror` says what the quantity becomes in a mirror held along the chair: "+" the same, "-" its
+    negative, "+name" or "-name" (the negative of) its partner on the other side, and "+swap" or
+    "-swap" for a pair whose two components change places.
+    """
+
+    name: str
+    unit: Unit
+    meaning: str = ""
+    mirror: str = "+"
+    components: tuple[str, ...] = ()
+    symbol: str = ""  # what the equations call it; the last part of the name unless given
+
+    def __post_init__(self) -> None:
+        if not self.symbol:
+            object.__setattr__(self, "symbol", self.name.rpartition(".")[2])
+
+    @property
+    def size(self) -> int:
+        return len(self.components) or 1
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The dotted name of each component."""
+        return tuple(f"{self.name}.{c}" for c in self.components) or (self.name,)
+
+
+@dataclass(frozen=True)
+class Parameter(Quantity):
+    """A constant of the model. In an effect, `off` is its default and `smallest_interesting` its δ."""
+
+    default: float = 0.0
+    off: float | None = None
+    lower: float = -inf
+    upper: float = inf
+    nominal: float | None = None
+    smallest_interesting: float | None = None
+    source: str = ""
+    choices: tuple[str, ...] = ()  # an enumeration: the value is the 1-based place of the choice
+    fixed: bool = False  # may not change once the simulation has started
+    estimated: bool = True  # False for an effect's constants, which no fit touches
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.off is not None:
+            object.__setattr__(self, "default", self.off)
+        if self.nominal is None:
+            object.__setattr__(self, "nominal", abs(self.default) or self.smallest_interesting or 1.0)
+
+    def owned_by(self, effect: str) -> Parameter:
+        """The same parameter under its full name `effect.<id>.<name>`; partners keep their short names."""
+        return replace(self, name=f"effect.{effect}.{self.name}")
+
+
+@dataclass(frozen=True)
+class Input(Quantity):
+    """What the surroundings do to the chair, as a function of time."""
+
+    start: float = 0.0
+    lower: float = -inf
+    upper: float = inf
+    nominal: float = 1.0
+
+
+@dataclass(frozen=True)
+class State(Quantity):
+    """An unknown with a row in M x' = f. `nominal` is the size its error is measured against."""
+
+    nominal: float = 1.0
+
+
+@dataclass(frozen=True)
+class Output(Quantity):
+    """A result under its FMI name; `symbol` names the quantity it shows, `component` which of a pair."""
+
+    component: int = 0
+    nominal: float = 1.0
+    lower: float = -inf
+    upper: float = inf
+    boolean: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Records by name, in order; refuses two of the same name."""
+
+    records: tuple[Quantity, ...]
+    index: Mapping[str, int] = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        names = [name for record in self.records for name in record.names]
+        if len(set(names)) != len(names):
+            twice = sorted({name for name in names if names.count(name) > 1})
+            raise ValueError(f"names used twice: {', '.join(twice)}")
+        object.__setattr__(self, "index", {name: i for i, name in enumerate(names)})
