@@ -13,7 +13,7 @@ from typing import Any
 import casadi as cs
 
 from ..errors import ModelError, unknown
-from ..quantities import M_S, M_S2, N_M, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
+from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
 from . import caster, chassis, resistance, sensors, tyre
 from .stage import Alternative, Effect, Law, Row, Stage, reads
 from .tyre import common
@@ -266,7 +266,13 @@ class _Assembly:
     def _state_outputs(self) -> tuple[Output, ...]:
         """States beyond the chair's own six are results too."""
         return tuple(
-            Output(name, row.state.unit, row.state.meaning, symbol=row.state.symbol, component=i)
+            Output(name, row.state.unit, row.state.meaning, _component_mirror(row.state, i),
+                   symbol=row.state.symbol, component=i)
             for row, _ in self.rows[len(chassis.ROWS) :]
             for i, name in enumerate(row.state.names)
-        )
+        )  # fmt: skip
+
+
+def _component_mirror(pair: State, i: int) -> str:
+    """The mirror of one component: where the pair swaps, its partner is the other component."""
+    return pair.mirror[0] + pair.names[1 - i] if pair.mirror.endswith("swap") else pair.mirror

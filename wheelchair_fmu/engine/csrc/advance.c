@@ -23,7 +23,8 @@ static double error_norm(const wc_kernel *k, double tolerance, const double *x, 
     for (int i = 0; i < k->states; i++) {
         double size = fabs(x[i]) > fabs(x1[i]) ? fabs(x[i]) : fabs(x1[i]);
         double here = fabs(e[i]) / (tolerance * (k->nominal[i] + size));
-        if (!(here <= worst)) worst = here; /* lets NaN through */
+        if (isnan(here)) return here;
+        if (here > worst) worst = here;
     }
     return worst;
 }
@@ -60,7 +61,7 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
         double *res[] = {x1, e, d2, d3};
         k->step(arg, res, 0, 0, 0);
         double error = error_norm(k, tolerance, x, x1, e);
-        double factor = error > 0 ? 0.9 / sqrt(sqrt(error)) : 6;
+        double factor = error == 0 ? 6 : 0.9 / sqrt(sqrt(error));
         if (error <= 1) {
             fill_rows(k, s, done, now, x, x1, d2, d3);
             memcpy(x, x1, sizeof(double) * (size_t)k->states);
@@ -93,9 +94,9 @@ wc_status wc_project(const wc_kernel *k, const double *p, const double *w, doubl
         k->project(arg, res, 0, 0, 0);
         for (int i = 0; i < k->states; i++) {
             double here = fabs(next[i] - x[i]) / (k->nominal[i] + fabs(next[i]));
-            if (!(here <= change)) change = here;
+            if (!isfinite(here)) return WC_NOT_FINITE;
+            if (here > change) change = here;
         }
-        if (!isfinite(change)) return WC_NOT_FINITE;
         memcpy(x, next, sizeof(double) * (size_t)k->states);
         if (change < 1e-14) return WC_OK;
         if (round > 4 && change < 1e-10) return WC_OK; /* rounding goes on for ever in the last digits */
@@ -155,7 +156,8 @@ static long straight_until(const wc_kernel *k, long n, long i, const double *t, 
         double f = (t[j + 1] - t[i]) / (t[i + 1] - t[i]);
         for (int c = 0; c < m; c++) {
             double first = w[i * m + c], there = w[(j + 1) * m + c];
-            if (fabs(shape_of(f, first, w[(i + 1) * m + c]) - there) > 1e-13 * (fabs(first) + fabs(there))) return j;
+            double off = fabs(shape_of(f, first, w[(i + 1) * m + c]) - there);
+            if (!(off <= 1e-13 * (fabs(first) + fabs(there)))) return j; /* also where it is NaN */
         }
     }
     return j;

@@ -20,12 +20,14 @@ from ..chassis import per_wheel
 from ..smooth import grip
 from ..stage import Alternative, Row, define, stage
 
-SHORTEST = 1e-3  # m; below this the caster's own motion is too quick to matter and too stiff to solve
 SLOWEST = 1e-9  # m/s; a chair that starts at rest has its casters trailing
 
 PARAMETERS = (
     Parameter("caster.trail", M, "caster trail c in (8): the lever between swivel torque and lateral force",
-              default=0.05, lower=SHORTEST, upper=0.5, source="chosen: common casters, 30 to 60 mm"),
+              default=0.05, lower=1e-3, upper=0.5, source="chosen: common casters, 30 to 60 mm"),
+    Parameter("regularisation.trail", M, "kinematic trail of a caster without the effect caster_trail; shorter is "
+              "too quick to matter and too stiff to solve", default=1e-3, lower=1e-4, upper=0.01,
+              symbol="least_trail", source="chosen"),
     Parameter("regularisation.swivel_rate", RAD_S, "swivel rate within which dry friction builds up",
               default=0.05, lower=1e-6, upper=10.0, symbol="swivel_eps", source="chosen"),
 )  # fmt: skip
@@ -34,8 +36,8 @@ SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT)
 
 
 @stage(define("c", M, "trail that sets the caster's motion", "+swap", FRONT))
-def kinematic_trail():
-    return per_wheel(SHORTEST)
+def kinematic_trail(least_trail):
+    return per_wheel(least_trail)
 
 
 @stage(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import N_M, ONE, REAR, N
+from ...quantities import N_M, REAR, N
 from ..stage import Alternative, define, stage
 from .linear import LIGHTEST
 from .magic_formula import friction

@@ -1,0 +1,114 @@
+"""What the model must satisfy with every effect, with all of them and with none."""
+
+from __future__ import annotations
+
+import casadi as cs
+import numpy as np
+import pytest
+
+from tests.kit import Place, anywhere, evaluate, mirrored, mirrored_place, variant_with
+from wheelchair_fmu.engine.kernel import kernel
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
+
+EFFECTS = bundled()
+CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS)]
+SPEEDS = (1.0, 0.0, -0.7)
+
+
+def name(case: tuple[str, ...]) -> str:
+    return "none" if not case else case[0] if len(case) == 1 else "all"
+
+
+@pytest.fixture(params=CASES, ids=name)
+def variant(request) -> Variant:
+    return variant_with(*request.param)
+
+
+def test_mirror(variant):
+    """A mirrored chair in a mirrored motion has mirrored forces, to rounding."""
+    rng, model = np.random.default_rng(1), variant.model()
+    for speed in SPEEDS:
+        place = anywhere(variant, rng, speed)
+        f, y = evaluate(model, place, model.f, model.y)
+        fm, ym = evaluate(model, mirrored_place(model, place), model.f, model.y)
+        np.testing.assert_allclose(fm, mirrored(model.states, f), rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(ym, mirrored(model.outputs, y), rtol=1e-11, atol=1e-11)
+
+
+def test_mirror_twice_is_nothing(variant):
+    model, place = variant.model(), anywhere(variant, np.random.default_rng(2))
+    back = mirrored_place(model, mirrored_place(model, place))
+    for one, two in zip(vars(place).values(), vars(back).values(), strict=True):
+        np.testing.assert_array_equal(one, two)
+
+
+def test_units(variant):
+    """In other units of mass, length and time every number changes as its unit says."""
+    rng, model = np.random.default_rng(3), variant.model()
+    kms = (1.7, 0.6, 2.3)
+    place = anywhere(variant, rng, 1.0)
+
+    def scales(records):
+        return np.array([r.unit.scale(*kms) for r in records for _ in r.names])
+
+    other = Place(place.x * scales(model.states), place.w * scales(model.inputs), place.p * scales(model.parameters))
+    mass, f, y = evaluate(model, place, model.mass, model.f, model.y)
+    mass2, f2, y2 = evaluate(model, other, model.mass, model.f, model.y)
+    np.testing.assert_allclose(y2, y * scales(model.outputs), rtol=1e-9, atol=1e-9)
+    rate = np.array(scales(model.states)) / kms[2]
+    moving = mass != 0
+    np.testing.assert_allclose((f2[moving] / mass2[moving]), f[moving] / mass[moving] * rate[moving], rtol=1e-9)
+    np.testing.assert_allclose(f2[~moving], f[~moving] * scales(model.states)[~moving], rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("size", [0.0, 1.0, -1.0])
+def test_finite_at_standstill(variant, size):
+    """Equations and all their slopes are finite at rest, with effects off, on and turned round."""
+    model = variant.model()
+    p = variant.vector()
+    lower, upper = (np.array([getattr(q, side) for q in model.parameters]) for side in ("lower", "upper"))
+    effect = np.array([q.name.startswith("effect.") for q in model.parameters])
+    p = np.clip(np.where(effect, size * p, p), lower, upper)
+    place = Place(np.zeros(model.x.numel()), np.array([i.start for i in model.inputs]), p)
+    z = cs.vertcat(model.x, model.w, model.p)
+    for value in evaluate(model, place, model.f, model.y, cs.jacobian(model.f, z), cs.jacobian(model.y, z)):
+        assert np.isfinite(value).all()
+
+
+def test_derivatives_are_exact(variant):
+    """`forward` agrees with central differences by every state, input and parameter."""
+    rng, model = np.random.default_rng(5), variant.model()
+    forward = kernel(model).functions["forward"]
+    place = anywhere(variant, rng, 1.0, spread=0.05)
+    sizes = [np.maximum(np.abs(v), 1e-2) for v in vars(place).values()]
+    mass = evaluate(model, place, model.mass)[0]
+    places = np.flatnonzero(mass == 0)
+    for _ in range(5):
+        direction = [rng.normal(size=len(s)) * s for s in sizes]
+        direction[2] *= [not q.choices for q in model.parameters]
+        dy, dr = (d.full().ravel() for d in forward.call([*vars(place).values(), *direction]))
+        along = _consistent(model, place, direction, places)
+        expected_y, expected_r = _central(model, place, along)
+        scale = np.abs(expected_y).max() + 1
+        np.testing.assert_allclose(dy, expected_y, rtol=2e-5, atol=2e-6 * scale)
+        np.testing.assert_allclose(np.delete(dr, places), np.delete(expected_r, places), rtol=2e-5,
+                                   atol=2e-6 * np.abs(expected_r).max())  # fmt: skip
+        np.testing.assert_allclose(dr[places], 0, atol=1e-9 * np.abs(expected_r).max())
+
+
+def _consistent(model, place, direction, places):
+    """The direction with algebraic states following, by dense linear algebra."""
+    dx, dw, dp = (d.copy() for d in direction)
+    if len(places):
+        fx, fw, fp = (m[places] for m in evaluate(model, place, *(cs.jacobian(model.f, v)
+                                                  for v in (model.x, model.w, model.p))))  # fmt: skip
+        dx[places] = 0
+        dx[places] = np.linalg.solve(fx[:, places], -(fx @ dx + fw @ dw + fp @ dp))
+    return dx, dw, dp
+
+
+def _central(model, place, along, h=1e-6):
+    ends = [Place(*(v + s * h * d for v, d in zip(vars(place).values(), along, strict=True))) for s in (1, -1)]
+    (f1, y1), (f2, y2) = (evaluate(model, end, model.f, model.y) for end in ends)
+    return (y1 - y2) / (2 * h), (f1 - f2) / (2 * h)

@@ -1,0 +1,115 @@
+"""The compiled step map against SciPy's Radau, and against itself over other steps."""
+
+from __future__ import annotations
+
+import casadi as cs
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from tests.kit import variant_with
+from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.errors import SimulationError
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
+
+MANOEUVRES = {  # start speed, and pushes as functions of time
+    "at 1 m/s": (1.0, lambda t: 10 + 8 * np.sin(2 * t), lambda t: 8 - 8 * np.sin(2 * t)),
+    "from standstill": (0.0, lambda t: 10 + 8 * np.sin(2 * t), lambda t: 8 - 8 * np.sin(2 * t)),
+    "spin": (0.0, lambda t: 20 * np.sin(t), lambda t: -20 * np.sin(t)),
+    "in reverse": (-1.0, lambda t: -10 + np.sin(2 * t), lambda t: -8 - np.sin(2 * t)),
+}
+
+
+def radau(variant: Variant, t, w, x0):
+    """States (n, nx) by SciPy's Radau at 1e-10; only for models without algebraic rows."""
+    model, p = variant.model(), variant.vector()
+    rates = cs.Function("rates", [model.x, model.w, model.p], [model.f / model.mass])
+    slopes = cs.Function("slopes", [model.x, model.w, model.p], [cs.jacobian(model.f / model.mass, model.x)])
+    rows = [x0]
+    for i in range(len(t) - 1):
+        def at(s, i=i):
+            return w[i] + (w[i + 1] - w[i]) * (s - t[i]) / (t[i + 1] - t[i])
+
+        run = solve_ivp(lambda s, x, at=at: rates(x, at(s), p).full().ravel(), (t[i], t[i + 1]), rows[-1], method="Radau",
+                        rtol=1e-10, atol=1e-12, jac=lambda s, x, at=at: slopes(x, at(s), p).full())  # fmt: skip
+        rows.append(run.y[:, -1])
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("name", MANOEUVRES)
+@pytest.mark.parametrize("effects", [(), ("relaxation_length", "wheel_inertia", "floor_slope")], ids=["base", "effects"])
+def test_it_agrees_with_radau_at_the_tolerance_asked(name, effects):
+    u, left, right = MANOEUVRES[name]
+    variant = variant_with(*effects)
+    simulator = Simulator(variant)
+    t = np.linspace(0, 3, 61)
+    w = simulator.inputs(len(t), {"push.F_rl": left(t), "push.F_rr": right(t)})
+    x0 = np.zeros(simulator.model.x.numel())
+    x0[3] = u
+    truth = radau(variant, t, w, x0)
+    for tolerance in (1e-5, 1e-6, 1e-7):
+        error = np.abs(simulator.run(t, w, start=x0, tolerance=tolerance).states - truth).max()
+        # each step keeps the tolerance, and the errors of some hundred steps add up
+        assert error < 10 * tolerance, tolerance
+
+
+def test_rows_between_steps_are_as_good_as_steps():
+    """Coasting needs few steps; the rows in between come from the method's interpolation."""
+    simulator = Simulator()
+    t = np.linspace(0, 5, 5001)
+    w = simulator.inputs(len(t), {"push.F_rl": 8.0, "push.F_rr": 6.0})
+    few, many = simulator.run(t, w, tolerance=1e-7), simulator.run(t, w, grid=1e-3, tolerance=1e-10)
+    assert few.steps < 500 < many.steps
+    np.testing.assert_allclose(few.states, many.states, atol=3e-6)
+
+
+@pytest.mark.parametrize("period", [1e-3, 10e-3, 50e-3])
+def test_on_the_grid_the_communication_step_does_not_matter(period):
+    simulator = Simulator(variant_with("relaxation_length", "lateral_load_transfer", "floor_slope"))
+    ends = []
+    for step in (1e-3, period):
+        t = np.arange(0, 2 + step / 2, step)
+        w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 5.0})
+        ends.append(simulator.run(t, w, grid=1e-3, hold=True).states[-1])
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
+
+
+@pytest.mark.parametrize("period", [0.7e-3, 3.3e-3, 1 / 30])
+def test_off_the_grid_it_hardly_matters(period):
+    simulator = Simulator()
+    ends = []
+    for step in (1e-3, period):
+        t = np.append(np.arange(0, 2 - step / 2, step), 2.0)
+        w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 5.0})
+        ends.append(simulator.run(t, w, grid=1e-3, hold=True).states[-1])
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
+
+
+def test_algebraic_states_stay_in_place():
+    """With σ = 0 the lagged slip is the slip; with load transfer the foreseen a_y is a_y."""
+    variant = Variant().with_effects(bundled())
+    simulator = Simulator(variant)
+    t = np.linspace(0, 5, 501)
+    w = simulator.inputs(len(t), {"push.F_rl": 10 + 5 * np.sin(3 * t), "push.F_rr": 8.0})
+    run = simulator.run(t, w, variant.with_values({"effect.lateral_load_transfer.h": 0.5}).vector())
+    np.testing.assert_allclose(run["effect.relaxation_length.lagged_slip.rl"], run["slip.rl"], atol=1e-6)
+    np.testing.assert_allclose(run.states[1:, -1], (run["sensor.a_y"])[1:], atol=1e-4)
+
+
+def test_all_effects_off_is_the_plain_chair():
+    t = np.linspace(0, 5, 501)
+    runs = []
+    for variant in (Variant(), Variant().with_effects(bundled())):
+        simulator = Simulator(variant)
+        w = simulator.inputs(len(t), {"push.F_rl": 10 + 5 * np.sin(3 * t), "push.F_rr": 8.0})
+        runs.append(simulator.run(t, w, tolerance=1e-8)["chair.y"])
+    np.testing.assert_allclose(runs[0], runs[1], atol=1e-4)  # casters lag by their 1 mm
+
+
+def test_not_a_number_is_said_with_its_time():
+    simulator = Simulator()
+    t = np.linspace(0, 1, 101)
+    w = simulator.inputs(len(t), {"push.F_rl": np.where(t > 0.5, np.nan, 1.0)})
+    with pytest.raises(SimulationError, match=r"stops at t = 0.5 s: the equations gave NaN or infinity"):
+        simulator.run(t, w)

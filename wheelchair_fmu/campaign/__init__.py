@@ -1,0 +1,17 @@
+"""Measurements: a folder with campaign.toml and recordings, read into SI units and SAE J670 axes, or all its faults.
+
+::
+
+    campaign.toml ── document ──┐
+                                ├── draft: bind columns, units, axes, cut ── checks ── Campaign | faults
+    *.csv, ... ── tables ───────┘
+"""
+
+from .axes import to_sae
+from .channels import CHANNELS, INPUTS, Channel
+from .faults import Fault
+from .formats import read_smartwheel
+from .reading import check, read
+from .records import Campaign, Run
+
+__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "read", "read_smartwheel", "to_sae"]

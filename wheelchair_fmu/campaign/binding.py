@@ -1,0 +1,147 @@
+"""Which column of a table is which channel, and by what factor it becomes SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .channels import BY_NAME, TIME, Channel
+from .document import Document, number
+from .faults import WARNING, Fault, run_fault, suggestion
+from .units import UnitError, factor, same_dimension
+
+
+@dataclass(frozen=True)
+class Binding:
+    """Column `index` of a table feeds `channel`: SI value = scale · number in the file."""
+
+    channel: Channel
+    index: int
+    header: str
+    scale: float
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What [columns] says of one channel; by default the channel's own name."""
+
+    header: str
+    unit: str | None = None
+    radius: float | None = None
+    renamed: bool = False
+
+
+def split(header: str) -> tuple[str, str | None]:
+    """'yaw_rate [deg/s]' is ('yaw_rate', 'deg/s'); no bracket, no unit."""
+    name, bracket, unit = header.partition("[")
+    if bracket and unit.rstrip().endswith("]"):
+        return name.strip(), unit.rstrip()[:-1].strip()
+    return header.strip(), None
+
+
+def wanted(doc: Document, name: str) -> Wanted:
+    """The entry of [columns] for a channel; wrong types read as absent and are reported by a check."""
+    entry: Any = doc.table("columns").get(name)
+    if isinstance(entry, str):
+        return Wanted(entry.strip(), renamed=True)
+    if isinstance(entry, Mapping):
+        column, unit, radius = entry.get("column"), entry.get("unit"), number(entry.get("radius"))
+        renamed = isinstance(column, str)
+        header = column.strip() if isinstance(column, str) else name
+        return Wanted(header, unit if isinstance(unit, str) else None, radius, renamed)
+    return Wanted(name)
+
+
+@dataclass(frozen=True)
+class Bindings:
+    """All bindings of one table by channel name, the faults met, and the renamed columns that were not there."""
+
+    found: Mapping[str, Binding]
+    faults: tuple[Fault, ...]
+    absent: tuple[str, ...]
+
+
+def bind(doc: Document, file: str, headers: Sequence[str]) -> Bindings:
+    """Matches a table's headers to time, channels and inputs."""
+    found: dict[str, Binding] = {}
+    faults: list[Fault] = list(_twice(file, headers))
+    absent: list[str] = []
+    for channel in (TIME, *BY_NAME.values()):
+        want = wanted(doc, channel.name)
+        matches = _matches(headers, want.header)
+        if not matches and want.renamed:
+            absent.append(channel.name)
+            want, matches = Wanted(channel.name), _matches(headers, channel.name)
+        if len({headers[i] for i in matches}) > 1:
+            both = " and ".join(repr(headers[i]) for i in matches)
+            cure = f"remove one, or choose one by its whole header in [columns] {channel.name}"
+            faults.append(run_fault(file, f"{channel.name} could be {both}", cure, 1))
+        if matches:
+            binding, met = _scaled(doc, file, channel, want, headers[matches[0]], matches[0])
+            found[channel.name] = binding
+            faults += met
+    used = {binding.index for binding in found.values()}
+    extra = [repr(header) for i, header in enumerate(headers) if i not in used and header]
+    if extra:
+        what = f"column{'s' * (len(extra) > 1)} {', '.join(extra)} not used"
+        faults.append(run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING))
+    return Bindings(found, tuple(faults), tuple(absent))
+
+
+def _matches(headers: Sequence[str], header: str) -> list[int]:
+    """By the whole header first, then without the bracket."""
+    whole = [i for i, h in enumerate(headers) if h == header]
+    return whole or [i for i, h in enumerate(headers) if split(h)[0] == split(header)[0]]
+
+
+def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
+    for header in dict.fromkeys(headers):
+        if header and headers.count(header) > 1:
+            fact = f"the header {header!r} stands there {headers.count(header)} times"
+            yield run_fault(file, fact, "rename or remove all but one", 1)
+
+
+def _scaled(
+    doc: Document, file: str, channel: Channel, want: Wanted, header: str, index: int
+) -> tuple[Binding, list[Fault]]:
+    """The binding with its factor to SI; 1 where there is none, and then a fault."""
+    own, asked = split(header)[1], split(want.header)[1]
+    faults = []
+    if own is not None and asked is not None and own != asked and want.unit is None:
+        fact = f"[columns] {channel.name} says [{asked}], the file says [{own}]"
+        faults.append(run_fault(file, fact, "correct one of them, or settle it by unit = ...", 1, header))
+    unit = next((u for u in (want.unit, own, asked) if u is not None), None)
+    if unit is None:
+        fact = f"no unit given, {channel.unit.name} assumed"
+        cure = f"write the header as '{split(header)[0]} [{channel.unit.name}]'"
+        faults.append(run_fault(file, fact, cure, 1, header, WARNING))
+        unit = channel.unit.name
+    if want.radius is not None and (channel.rotary is None or not same_dimension(unit, channel.rotary.name)):
+        fact = f"[columns] gives a radius, but {unit!r} needs none"
+        faults.append(run_fault(file, fact, "remove the radius, or correct the unit", 1, header, WARNING))
+    try:
+        return Binding(channel, index, header, _factor(doc, channel, unit, want.radius)), faults
+    except UnitError as error:
+        faults.append(run_fault(file, error.fact, error.cure, 1, header))
+        return Binding(channel, index, header, 1.0), faults
+
+
+def _factor(doc: Document, channel: Channel, unit: str, radius: float | None) -> float:
+    """To SI; where the unit is of a turning wheel, through the radius in [columns], else through [wheel] R."""
+    rotary = channel.rotary
+    if rotary is None or not same_dimension(unit, rotary.name):
+        return factor(unit, channel.unit.name)
+    radius = radius if radius is not None else number(doc.table("wheel").get("R"))
+    if radius is None or radius <= 0:
+        fact = f"{channel.name} is given in {unit}, which needs the wheel's radius to become {channel.unit.name}"
+        cure = f"write [columns] {channel.name} = {{ column = ..., radius = ... }} or [wheel] R, in m"
+        raise UnitError(fact, cure)
+    return factor(unit, rotary.name) * radius**channel.rotary_power
+
+
+def absent_fault(doc: Document, name: str, headers: Sequence[str]) -> Fault:
+    """A column that [columns] names and no run has."""
+    header = wanted(doc, name).header
+    fact = f"no run has the column {header!r} that [columns] gives for {name}"
+    return doc.fault(f"columns.{name}", fact, suggestion(header, [h for h in headers if h]))

@@ -1,0 +1,73 @@
+"""What a campaign may hold: measured channels, and the inputs that drive the chair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..quantities import M_S, M_S2, N_M, ONE, RAD, RAD_S, M, N, S, Unit
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A column under its own name, in SI units and SAE J670 axes.
+
+    `fmu` is the FMU output that predicts it, or the FMU input that it feeds. `iso_sign` is its factor from
+    ISO 8855 to SAE J670. `low` and `high` bound what is plausible. A wheel turns `rotary` units into this
+    channel's unit: value = rotary value · radius ** rotary_power.
+    """
+
+    name: str
+    unit: Unit
+    fmu: str
+    meaning: str
+    low: float
+    high: float
+    iso_sign: int = 1
+    rotary: Unit | None = None
+    rotary_power: int = 0
+    wrong_unit: str = ""  # the unit that is most often meant when the size is implausible
+
+
+def _wheel_speed(side: str, word: str) -> Channel:
+    return Channel(
+        f"wheel_speed_{side}", M_S, f"sensor.wheel_speed_{side}",
+        f"speed of the {word} rear wheel at its rim of contact, positive forward", -15.0, 15.0,
+        rotary=RAD_S, rotary_power=1, wrong_unit="km/h",
+    )  # fmt: skip
+
+
+def _pushes(side: str, word: str) -> tuple[Channel, ...]:
+    return (
+        Channel(f"F_{side}", N, f"push.F_{side}", f"push force on the {word} rear wheel, positive forward",
+                -2000.0, 2000.0, rotary=N_M, rotary_power=-1, wrong_unit="lbf or N.m"),
+        Channel(f"M_{side}", N_M, f"push.M_{side}", f"torque on the {word} rear axle, positive forward",
+                -600.0, 600.0, wrong_unit="lbf.ft"),
+        Channel(f"brake_{side}", ONE, f"brake.{side}", f"brake on the {word} rear wheel, 0 free, 1 full",
+                0.0, 1.0, wrong_unit="%"),
+    )  # fmt: skip
+
+
+TIME = Channel("time", S, "time", "time of the sample", -1e12, 1e12)
+
+CHANNELS: tuple[Channel, ...] = (
+    _wheel_speed("l", "left"),
+    _wheel_speed("r", "right"),
+    Channel("yaw_rate", RAD_S, "sensor.yaw_rate", "yaw rate, positive clockwise from above",
+            -20.0, 20.0, -1, wrong_unit="deg/s"),
+    Channel("a_x", M_S2, "sensor.a_x", "specific force forward", -100.0, 100.0, wrong_unit="g"),
+    Channel("a_y", M_S2, "sensor.a_y", "specific force to the right", -100.0, 100.0, -1, wrong_unit="g"),
+    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm"),
+    Channel("y", M, "sensor.y", "position along the room's y, to the right of x", -1e4, 1e4, -1, wrong_unit="mm"),
+    Channel("yaw", RAD, "sensor.yaw", "heading, positive clockwise from above", -200.0, 200.0, -1, wrong_unit="deg"),
+    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h"),
+    Channel("v", M_S, "chair.v", "speed of the centre of mass, to the right", -15.0, 15.0, -1, wrong_unit="km/h"),
+)  # fmt: skip
+
+INPUTS: tuple[Channel, ...] = tuple(
+    channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair
+)
+
+BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + INPUTS}
+CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
+INPUT_NAMES = tuple(channel.name for channel in INPUTS)
+PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

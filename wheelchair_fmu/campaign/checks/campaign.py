@@ -1,0 +1,72 @@
+"""Checks of all runs together: noise against the data, columns that no run has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from ..binding import absent_fault
+from ..channels import BY_NAME
+from ..document import Document
+from ..draft import Draft
+from ..faults import WARNING, Fault
+from ..noise import Noise
+
+RATIO = 20.0  # between stated and visible noise
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The campaign.toml, the runs that could be read, and their noise."""
+
+    doc: Document
+    drafts: tuple[Draft, ...]
+    noise: Noise
+
+
+def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
+    drafts = all_.drafts
+    for name in sorted({name for draft in drafts for name in draft.bindings.absent}):
+        if all(name in d.bindings.absent and name not in d.bindings.found and name not in d.values for d in drafts):
+            headers = dict.fromkeys(header for draft in drafts for header in draft.table.headers)
+            yield absent_fault(all_.doc, name, list(headers))
+
+
+def bad_noise(all_: Assembly) -> Iterator[Fault]:
+    for path, error in all_.noise.faults:
+        yield all_.doc.fault(path, error.fact, error.cure)
+
+
+def noise_unknown(all_: Assembly) -> Iterator[Fault]:
+    for name in all_.noise.unknown:
+        fact = f"the noise of {name} is not given and cannot be estimated from its samples"
+        yield all_.doc.fault("noise", fact, f"write [noise] {name} = ... , or remove the channel")
+
+
+def noise_estimated(all_: Assembly) -> Iterator[Fault]:
+    names = [f"{name} {all_.noise.sd[name]:.2g} {BY_NAME[name].unit.name}" for name in sorted(all_.noise.estimated)]
+    if names:
+        fact = f"noise not given, estimated from the samples: {', '.join(names)}"
+        yield all_.doc.fault("noise", fact, "write what the sensors' data sheets say in [noise]", severity=WARNING)
+
+
+def noise_against_data(all_: Assembly) -> Iterator[Fault]:
+    for name, seen in all_.noise.seen.items():
+        stated = all_.noise.sd.get(name)
+        if name in all_.noise.estimated or not stated or not seen:
+            continue
+        unit = BY_NAME[name].unit.name
+        if stated > RATIO * seen:
+            fact = f"noise of {name} is {stated:.2g} {unit}, but from sample to sample only {seen:.2g} {unit} is seen"
+            cure = "check its unit; if the file was filtered before, leave it"
+        elif seen > RATIO * stated:
+            fact = f"noise of {name} is {stated:.2g} {unit}, but from sample to sample {seen:.2g} {unit} is seen"
+            cure = "check its unit"
+        else:
+            continue
+        yield all_.doc.fault(f"noise.{name}", fact, cure, severity=WARNING)
+
+
+CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
+    column_in_no_run, bad_noise, noise_unknown, noise_estimated, noise_against_data,
+)  # fmt: skip

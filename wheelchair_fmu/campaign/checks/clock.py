@@ -1,0 +1,105 @@
+"""Checks of a recording's time column, over the whole file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ..draft import Draft
+from ..faults import SHOWN, WARNING, Fault, run_fault
+
+COARSE = 0.05  # s: the yaw motion of a chair is over in less
+_UNEVEN = 0.5  # share of the usual step by which one may differ
+
+
+def no_time(draft: Draft) -> Iterator[Fault]:
+    if draft.whole_time is None:
+        headers = ", ".join(repr(header) for header in draft.table.headers)
+        fact = f"no time column among {headers}"
+        yield run_fault(draft.file, fact, "name it 'time [s]', or give its header in [columns] time", 1)
+
+
+def empty_time(draft: Draft) -> Iterator[Fault]:
+    if draft.whole_time is not None:
+        places = np.flatnonzero(np.isnan(draft.whole_time))
+        bad = {fault.line for fault in draft.rows.faults if fault.column == draft.header("time")}
+        places = places[[draft.rows.line(int(row)) not in bad for row in places]] if bad else places
+        yield from _listed(draft, places, lambda i: "the time is empty", "fill it in, or remove the row")
+
+
+def time_goes_back(draft: Draft) -> Iterator[Fault]:
+    time, rows = _finite(draft)
+    steps = np.flatnonzero(np.diff(time) < 0) + 1
+    yield from _listed(
+        draft, rows[steps],
+        lambda i: f"time goes back from {_before(draft, i):.10g} to {_time(draft, i):.10g} s",
+        "remove or sort the rows",
+    )  # fmt: skip
+
+
+def time_twice(draft: Draft) -> Iterator[Fault]:
+    time, rows = _finite(draft)
+    steps = np.flatnonzero(np.diff(time) == 0) + 1
+    yield from _listed(
+        draft, rows[steps], lambda i: f"time {_time(draft, i):.10g} s is there twice", "remove one of the rows"
+    )
+
+
+def uneven(draft: Draft) -> Iterator[Fault]:
+    time, rows = _finite(draft)
+    steps = np.diff(time)
+    steps_up = steps[steps > 0]
+    if steps_up.size < 2:
+        return
+    usual = float(np.median(steps_up))
+    odd = np.flatnonzero((steps > 0) & (np.abs(steps - usual) > _UNEVEN * usual))
+    if odd.size:
+        i = odd[np.argmax(steps[odd])]
+        worst = f"the largest is {steps[i]:.4g} s after {time[i]:.10g} s"
+        fact = f"{odd.size} time step{'s' * (odd.size > 1)} far from the usual {usual:.4g} s; {worst}"
+        cure = "check the logger for lost samples"
+        yield run_fault(draft.file, fact, cure, draft.rows.line(int(rows[i + 1])), draft.header("time"), WARNING)
+
+
+def coarse(draft: Draft) -> Iterator[Fault]:
+    time, _ = _finite(draft)
+    steps = np.diff(time)
+    steps = steps[steps > 0]
+    if steps.size and (usual := float(np.median(steps))) > COARSE:
+        fact = f"one sample each {usual:.4g} s is too coarse for the chair's yaw motion"
+        yield run_fault(
+            draft.file, fact, "log at 50 Hz or more; check the unit of time", 1, draft.header("time"), WARNING
+        )
+
+
+def _finite(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
+    """Times that are there, and their rows in the file."""
+    if draft.whole_time is None:
+        return np.empty(0), np.empty(0, dtype=int)
+    rows = np.flatnonzero(np.isfinite(draft.whole_time))
+    return draft.whole_time[rows], rows
+
+
+def _time(draft: Draft, row: int) -> float:
+    assert draft.whole_time is not None
+    return float(draft.whole_time[row])
+
+
+def _before(draft: Draft, row: int) -> float:
+    """The last time above this row."""
+    time, rows = _finite(draft)
+    return float(time[np.searchsorted(rows, row) - 1])
+
+
+def _listed(draft: Draft, places: np.ndarray, fact: Callable[[int], str], cure: str) -> Iterator[Fault]:
+    for row in places[:SHOWN]:
+        yield run_fault(draft.file, fact(int(row)), cure, draft.rows.line(int(row)))
+    if len(places) > SHOWN:
+        line = draft.rows.line(int(places[SHOWN]))
+        yield run_fault(draft.file, f"{len(places) - SHOWN} more rows like these", cure, line)
+
+
+CLOCK_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
+    no_time, empty_time, time_goes_back, time_twice, uneven, coarse,
+)  # fmt: skip

@@ -1,0 +1,181 @@
+"""campaign.toml as data that remembers its lines."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from .faults import ERROR, Fault
+
+FILE = "campaign.toml"
+PARAMETER_TABLES = ("chair", "tyre", "resistance", "wheel", "caster", "floor", "effect")
+OTHER_TABLES = ("campaign", "columns", "noise", "nuisance", "prior", "run")
+CAMPAIGN_KEYS = ("name", "axes", "description", "source")
+RUN_KEYS: dict[str, str] = {
+    "file": "text", "manoeuvre": "text", "role": "text", "u0": "number", "set": "table", "from": "number",
+    "to": "number", "constant": "table", "format": "text", "side": "text", "radius": "number",
+}  # fmt: skip
+Lines = dict[tuple[str, int | None], int]
+
+
+def number(value: Any) -> float | None:
+    """A finite number as float; None for anything else (true and false are no numbers)."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        return None
+    return float(value)
+
+
+def flatten(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted name and value of every leaf: [tyre.force] C and [tyre] "force.C" are both tyre.force.C."""
+    for key, value in table.items():
+        name = f"{prefix}.{key}" if prefix else key
+        if isinstance(value, Mapping):
+            yield from flatten(value, name)
+        else:
+            yield name, value
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One [[run]]. `place` counts from 0."""
+
+    place: int
+    data: Mapping[str, Any]
+
+    def text(self, key: str, default: str = "") -> str:
+        value = self.data.get(key)
+        return value if isinstance(value, str) else default
+
+    def number(self, key: str) -> float | None:
+        return number(self.data.get(key))
+
+    def table(self, key: str) -> dict[str, Any]:
+        value = self.data.get(key)
+        return dict(value) if isinstance(value, Mapping) else {}
+
+    @property
+    def file(self) -> str:
+        return self.text("file")
+
+    @property
+    def title(self) -> str:
+        return f"run {self.place + 1}" + (f" ({self.file})" if self.file else "")
+
+
+@dataclass(frozen=True)
+class Document:
+    """The content of campaign.toml; wrong types read as absent and are reported by the checks."""
+
+    path: Path
+    raw: bytes
+    data: Mapping[str, Any]
+    lines: Lines = field(repr=False)
+
+    @property
+    def folder(self) -> Path:
+        return self.path.parent
+
+    def table(self, name: str) -> dict[str, Any]:
+        value = self.data.get(name)
+        return dict(value) if isinstance(value, Mapping) else {}
+
+    @property
+    def entries(self) -> tuple[Entry, ...]:
+        runs = self.data.get("run")
+        runs = runs if isinstance(runs, list) else []
+        return tuple(Entry(i, run) for i, run in enumerate(runs) if isinstance(run, Mapping))
+
+    @property
+    def axes(self) -> str:
+        value = self.table("campaign").get("axes")
+        return value if isinstance(value, str) else ""
+
+    def parameters(self, names: tuple[str, ...] = PARAMETER_TABLES) -> dict[str, Any]:
+        """Dotted parameter names and their values as written."""
+        found = dict(flatten({name: self.table(name) for name in names}))
+        if "g" in self.data:
+            found["g"] = self.data["g"]
+        return found
+
+    def line(self, path: str, run: int | None = None) -> int | None:
+        """Line of the dotted key, or of the nearest table that holds it."""
+        while path:
+            if (path, run) in self.lines:
+                return self.lines[path, run]
+            path = path.rpartition(".")[0]
+        return None
+
+    def fault(self, path: str, fact: str, cure: str, run: int | None = None, severity: str = ERROR) -> Fault:
+        return Fault(self.path.name, self.line(path, run), None, fact, cure, severity)
+
+
+def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
+    """Reads the folder's campaign.toml, or the file itself; no document where it cannot be parsed."""
+    path = Path(path)
+    if not path.exists():
+        return None, [Fault(str(path), None, None, "no such folder or file", "check the path")]
+    if path.is_dir():
+        path = path / FILE
+        if not path.is_file():
+            what = f"no {FILE} in this folder"
+            return None, [Fault(str(path.parent), None, None, what, "write one that names the chair and the runs")]
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        fact = f"the file cannot be read ({error.strerror})"
+        return None, [Fault(path.name, None, None, fact, "check the rights to read it")]
+    try:
+        text = raw.decode("utf-8-sig").replace("\r\n", "\n")
+        data = tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        return None, [not_utf8(path.name, raw, error)]
+    except tomllib.TOMLDecodeError as error:
+        return None, [_syntax(path.name, text, str(error))]
+    return Document(path, raw, data, _lines(text)), []
+
+
+def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError, in_run: bool = False) -> Fault:
+    """The fault of bytes that are no UTF-8."""
+    line = error.object[: error.start].count(b"\n") + 1
+    fact = f"byte {error.start} (0x{error.object[error.start]:02X}) is not UTF-8 text"
+    cure = "save the file as UTF-8"
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        cure = "it looks like UTF-16; save the file as UTF-8"
+    return Fault(file, line, None, fact, cure, in_run=in_run)
+
+
+def _syntax(file: str, text: str, message: str) -> Fault:
+    place = re.search(r"\(at line (\d+), column (\d+)\)", message)
+    line = int(place[1]) if place else text.count("\n") + 1
+    what = re.sub(r" \(at .*\)$", "", message)
+    column = f" at character {place[2]}" if place else " at the end of the file"
+    return Fault(file, line, None, f"not valid TOML{column}: {what[:1].lower()}{what[1:]}", "correct this line")
+
+
+_HEADER = re.compile(r"\s*\[(\[)?\s*([^\[\]]+?)\s*\]")
+_KEY = re.compile(r"""\s*((?:"[^"]*"|'[^']*'|[\w-]+)(?:\s*\.\s*(?:"[^"]*"|'[^']*'|[\w-]+))*)\s*=""")
+
+
+def _lines(text: str) -> Lines:
+    """Line of every table and key: (dotted name, place of its run or None) → line, counted from 1."""
+    lines: Lines = {}
+    table, runs = "", -1
+    for i, row in enumerate(text.split("\n"), start=1):
+        if header := _HEADER.match(row):
+            table = re.sub(r"[\"'\s]", "", header[2])
+            runs += table == "run" and bool(header[1])
+            lines.setdefault((table, _run(table, runs)), i)
+        elif key := _KEY.match(row):
+            name = re.sub(r"[\"']", "", re.sub(r"\s*\.\s*", ".", key[1]))
+            name = f"{table}.{name}" if table else name
+            lines.setdefault((name, _run(table, runs)), i)
+    return lines
+
+
+def _run(table: str, runs: int) -> int | None:
+    return runs if runs >= 0 and table.partition(".")[0] == "run" else None

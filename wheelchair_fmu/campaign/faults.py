@@ -1,0 +1,55 @@
+"""One fault of a campaign: place, fact, value, cure, on one line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+ERROR, WARNING = "error", "warning"
+SHOWN = 10  # faults of one kind listed for one column; the rest are counted
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong, where, and what to do about it.
+
+    `file` is the name as campaign.toml writes it, `line` counts from 1 with the header as line 1,
+    `column` is a whole header. An error stops `read`; a warning does not.
+    """
+
+    file: str
+    line: int | None
+    column: str | None
+    fact: str
+    cure: str
+    severity: str = ERROR
+    in_run: bool = False  # the file is a recording, not campaign.toml
+
+    def __str__(self) -> str:
+        warning = "warning: " if self.severity == WARNING else ""
+        place = f"run {self.file}" if self.in_run else self.file
+        line = f" line {self.line}" if self.line is not None else ""
+        column = f" column {self.column!r}" if self.column is not None else ""
+        return f"{warning}{place}{line}{column}: {self.fact}; {self.cure}"
+
+
+def run_fault(
+    file: str, fact: str, cure: str, line: int | None = None, column: str | None = None, severity: str = ERROR
+) -> Fault:
+    """A fault in a recording."""
+    return Fault(file, line, column, fact, cure, severity, in_run=True)
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """The cure for a misspelt name: the nearest known ones, or all of them."""
+    known = list(known)
+    close = get_close_matches(name, known, n=3, cutoff=0.5)
+    if close:
+        return f"did you mean {' or '.join(repr(c) for c in close)}?"
+    return f"known: {', '.join(known)}"
+
+
+def once(faults: Iterable[Fault]) -> list[Fault]:
+    """The same faults without repetition (two runs may use one file), in order."""
+    return list(dict.fromkeys(faults))

@@ -1,0 +1,126 @@
+"""Noise of each channel: as the campaign states it, or from the channel's own high frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
+from .document import Document, number
+from .draft import Draft
+from .units import UnitError, quantity
+
+NAMES = (*CHANNEL_NAMES, "F_rl", "F_rr", "M_rl", "M_rr")  # what [noise] may name
+
+_THIRD = np.sqrt(1.0 + 9.0 + 9.0 + 1.0)  # third differences of white noise: their sd in units of its sd
+_MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
+_ENOUGH = 8  # differences
+
+
+def estimate(series: Iterable[np.ndarray]) -> float | None:
+    """Standard deviation of the noise in one channel, from all its runs, each (n,) with NaN in gaps.
+
+    Third differences remove any motion that is smooth over four samples; their median absolute deviation is
+    not moved by the few samples where it is not (a hand that strikes the rim). White noise is assumed: coloured
+    noise comes out too small. None where there is nothing to estimate from: too few samples, or all the same.
+    """
+    series = list(series)
+    differences = np.concatenate([np.diff(s, 3) for s in series]) if series else np.empty(0)
+    differences = differences[np.isfinite(differences)]
+    if differences.size < _ENOUGH:
+        return None
+    sd = _MAD * float(np.median(np.abs(differences))) / _THIRD
+    if sd == 0.0:  # a coarse converter: most neighbours are equal
+        sd = float(np.sqrt(np.mean(differences**2))) / _THIRD
+    sd = max(sd, _quantum(series) / np.sqrt(12.0))
+    return sd or None
+
+
+def _quantum(series: list[np.ndarray]) -> float:
+    """The smallest step between two different values: what the converter resolves."""
+    values = np.unique(np.concatenate(series))
+    steps = np.diff(values[np.isfinite(values)])
+    return float(steps.min()) if steps.size else 0.0
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations in SI by channel or push.
+
+    `seen` is what the data show, `estimated` those taken from it, `unknown` those that neither the file nor the
+    data give. `faults` are (dotted key, error) of what [noise] and [nuisance] state wrongly.
+    """
+
+    sd: dict[str, float]
+    seen: dict[str, float | None]
+    estimated: frozenset[str]
+    unknown: tuple[str, ...]
+    nuisance_sd: dict[str, float]
+    faults: tuple[tuple[str, UnitError], ...]
+
+
+def gather(doc: Document, drafts: Sequence[Draft]) -> Noise:
+    """Noise of everything measured or pushed: as stated, else as the data show."""
+    sd, faults = _stated(doc, "noise", NAMES, drafts)
+    nuisance_sd, more = _stated(doc, "nuisance", CHANNEL_NAMES, drafts)
+    wrong = {path for path, _ in faults}
+    seen: dict[str, float | None] = {}
+    estimated, missing = set(), []
+    for name in NAMES:
+        logged = [d.logged[name] for d in drafts if name in d.logged and _moves(d.logged[name])]
+        if logged:
+            seen[name] = estimate(logged)
+        if name in sd or f"noise.{name}" in wrong:
+            continue
+        value = seen.get(name)
+        if value is not None:
+            sd[name] = value
+            estimated.add(name)
+        elif name in INPUT_NAMES:
+            if logged or name in ("F_rl", "F_rr"):
+                sd[name] = 0.0  # nobody pushed, and the file knows it exactly
+        elif any(np.isfinite(d.values[name]).any() for d in drafts if name in d.values):
+            missing.append(name)
+    return Noise(sd, seen, frozenset(estimated), tuple(missing), nuisance_sd, (*faults, *more))
+
+
+def _moves(series: np.ndarray) -> bool:
+    """Whether there is anything but gaps and one value: a sensor that is stuck shows no noise."""
+    finite = series[np.isfinite(series)]
+    return finite.size > 1 and bool(finite.min() < finite.max())
+
+
+def _stated(
+    doc: Document, table: str, names: Sequence[str], drafts: Sequence[Draft]
+) -> tuple[dict[str, float], list[tuple[str, UnitError]]]:
+    """What a table states, in SI: a number is in the unit of the channel's column, text brings its own."""
+    found, faults = {}, []
+    for name, value in doc.table(table).items():
+        if name not in names or (table == "nuisance" and isinstance(value, bool)):
+            continue
+        try:
+            found[name] = _sd(name, value, drafts)
+        except UnitError as error:
+            faults.append((f"{table}.{name}", UnitError(f"[{table}] {name}: {error.fact}", error.cure)))
+    return found, faults
+
+
+def _sd(name: str, value: Any, drafts: Sequence[Draft]) -> float:
+    unit = BY_NAME[name].unit.name
+    if isinstance(value, str):
+        sd = quantity(value, unit)
+    else:
+        plain = number(value)
+        if plain is None:
+            raise UnitError(f"{value!r} is not a number", "give a standard deviation above 0")
+        scales = {d.bindings.found[name].scale for d in drafts if name in d.logged}
+        if len(scales) > 1:
+            cure = f"write the unit with it, as in {name} = '{plain:g} {unit}'"
+            raise UnitError(f"{plain:g} could be in several units, as the runs' columns differ", cure)
+        sd = plain * (scales.pop() if scales else 1.0)
+    if not sd > 0:
+        raise UnitError(f"{value!r} is not positive", "give a standard deviation above 0")
+    return sd

@@ -1,0 +1,128 @@
+"""From a folder to a Campaign, or to all the faults that stand in the way."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import CampaignError
+from .axes import SAE
+from .channels import BY_NAME, CHANNEL_NAMES
+from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, RUN_CHECKS, Assembly
+from .checks.document import Known, parameter_tables
+from .document import Document, Entry, flatten, load, number
+from .draft import Draft, prepare
+from .faults import ERROR, Fault, once
+from .noise import gather
+from .records import Campaign, Run
+
+
+def read(path: str | Path, known_parameters: Known | None = None) -> Campaign:
+    """The campaign in a folder (or of a campaign.toml).
+
+    `known_parameters` maps dotted names to (lower, upper) in SI; with it, unknown and impossible parameters are
+    found too. Raises CampaignError with every error that `check` finds; warnings are in the campaign.
+    """
+    assembly, faults = _assess(path, known_parameters)
+    errors = [fault for fault in faults if fault.severity == ERROR]
+    if errors or assembly is None:
+        raise CampaignError(errors)
+    return _campaign(assembly, known_parameters, tuple(faults))
+
+
+def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:
+    """Every fault of a campaign at once, errors and warnings; empty where there is nothing to say."""
+    return _assess(path, known_parameters)[1]
+
+
+def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, list[Fault]]:
+    """Runs every check on everything that can be read."""
+    doc, faults = load(path)
+    if doc is None:
+        return None, faults
+    faults += _by_line(fault for judge in DOCUMENT_CHECKS for fault in judge(doc, known))
+    drafts, tables = [], dict[Any, Any]()
+    for entry in doc.entries:
+        file = doc.folder / entry.file
+        if entry.file and file.is_file():
+            draft, met = prepare(doc, entry, file, tables)
+            if draft is not None:
+                drafts.append(draft)
+                met += [fault for judge in (*CLOCK_CHECKS, *RUN_CHECKS) for fault in judge(draft)]
+            faults += _by_line(met)
+    assembly = Assembly(doc, tuple(drafts), gather(doc, drafts))
+    if drafts:
+        faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]
+    return assembly, once(faults)
+
+
+def _by_line(faults: Iterable[Fault]) -> list[Fault]:
+    """In the order in which a reader of the file meets them; what has no line comes last."""
+    return sorted(faults, key=lambda fault: (fault.line is None, fault.line or 0))
+
+
+def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ...]) -> Campaign:
+    doc, noise = assembly.doc, assembly.noise
+    name = doc.table("campaign").get("name")
+    nuisance = {key: value for key, value in doc.table("nuisance").items() if value is not False}
+    names = _unique([Path(draft.file).name.partition(".")[0] for draft in assembly.drafts])
+    return Campaign(
+        name=name if isinstance(name, str) else doc.folder.resolve().name,
+        path=doc.path,
+        axes=doc.axes or SAE,
+        known=_numbers(doc.parameters(parameter_tables(known))),
+        priors=_numbers(dict(flatten(doc.table("prior")))),
+        noise=noise.sd,
+        noise_estimated=noise.estimated,
+        nuisance=tuple(channel for channel in CHANNEL_NAMES if channel in nuisance),
+        nuisance_sd=noise.nuisance_sd,
+        runs=tuple(_run(draft, name) for draft, name in zip(assembly.drafts, names, strict=True)),
+        fingerprint=_fingerprint(doc),
+        warnings=warnings,
+    )
+
+
+def _run(draft: Draft, name: str) -> Run:
+    entry: Entry = draft.entry
+    assert draft.time is not None  # a file without time is an error, so no campaign is made
+    measured = {c: series for c, series in draft.channels.items() if np.isfinite(series).any()}
+    return Run(
+        name=name,
+        file=draft.doc.folder / entry.file,
+        manoeuvre=entry.text("manoeuvre"),
+        role=entry.text("role"),
+        u0=draft.u0,
+        set=_numbers(dict(flatten(entry.table("set")))),
+        time=draft.time,
+        inputs={BY_NAME[c].fmu: series for c, series in draft.inputs.items()},
+        channels=measured,
+    )
+
+
+def _numbers(table: Mapping[str, Any]) -> dict[str, float]:
+    return {name: plain for name, value in table.items() if (plain := number(value)) is not None}
+
+
+def _unique(names: Sequence[str]) -> list[str]:
+    """The same names, with -2, -3, ... where one comes again."""
+    taken: list[str] = []
+    for name in names:
+        free, n = name, 1
+        while free in taken or (n > 1 and free in names):
+            n += 1
+            free = f"{name}-{n}"
+        taken.append(free)
+    return taken
+
+
+def _fingerprint(doc: Document) -> str:
+    """SHA-256 over campaign.toml and the files it names, in order."""
+    digest = hashlib.sha256(doc.raw)
+    for file in dict.fromkeys(entry.file for entry in doc.entries):
+        digest.update(f"\0{file}\0".encode())
+        digest.update(hashlib.sha256((doc.folder / file).read_bytes()).digest())
+    return digest.hexdigest()

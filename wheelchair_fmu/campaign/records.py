@@ -1,0 +1,64 @@
+"""A campaign as the rest of the program sees it: SI units, SAE J670 axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .faults import Fault
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One recording, or a cut of one.
+
+    `time` is (n,), in s, strictly rising, with the file's own values. `inputs` are (n,) without gaps, by the name
+    of the FMU input; `channels` are (n,) with NaN in gaps, by the names of `CHANNELS`. `u0` is the speed at the
+    first sample in m/s, from the file or else from the first wheel speeds, None where neither tells.
+    `set` holds dotted parameters that differ from the campaign's in this run.
+    """
+
+    name: str
+    file: Path
+    manoeuvre: str
+    role: str
+    u0: float | None
+    set: dict[str, float]
+    time: np.ndarray
+    inputs: dict[str, np.ndarray]
+    channels: dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """Runs with what is known about the chair and the sensors.
+
+    `known` and `priors` (standard deviations) go by dotted FMI names. `noise` is one standard deviation per
+    channel that was measured and per input in `F_rl`, `F_rr`, `M_rl`, `M_rr` that was logged (0 for an input
+    known exactly because no run logged it); `noise_estimated` says for which it was not given. `nuisance` names
+    channels with an unknown offset, `nuisance_sd` its prior where one is given. `warnings` are what `check` found
+    that is no error.
+    """
+
+    name: str
+    path: Path
+    axes: str
+    known: dict[str, float]
+    priors: dict[str, float]
+    noise: dict[str, float]
+    noise_estimated: frozenset[str]
+    nuisance: tuple[str, ...]
+    nuisance_sd: dict[str, float]
+    runs: tuple[Run, ...]
+    fingerprint: str
+    warnings: tuple[Fault, ...] = ()
+
+    @property
+    def fit(self) -> tuple[Run, ...]:
+        return tuple(run for run in self.runs if run.role == "fit")
+
+    @property
+    def holdout(self) -> tuple[Run, ...]:
+        return tuple(run for run in self.runs if run.role == "holdout")

@@ -1,0 +1,104 @@
+"""Units as loggers write them, by pint.
+
+Pint is loaded only when a unit is not SI already: most files never need it.
+"""
+
+from __future__ import annotations
+
+import re
+import tokenize
+from functools import cache
+from typing import Any
+
+STANDARD_GRAVITY = 9.80665  # m/s2
+_GRAVITY = {
+    **dict.fromkeys(("g", "G", "g0", "gn"), STANDARD_GRAVITY),
+    "mg": STANDARD_GRAVITY / 1e3,
+}  # pint: gram, gauss, milligram
+_ASIDE = {"Nm": "N.m", "N·m": "N.m", "N-m": "N.m", "-": "1", "": "1", "m/s²": "m/s2", "m/s^2": "m/s2"}
+_STUMBLES = (ValueError, TypeError, AttributeError, KeyError, SyntaxError, AssertionError, ArithmeticError, IndexError)
+_EXAMPLES = {
+    "s": "s or ms", "m": "m or mm", "m/s": "m/s or km/h", "m/s2": "m/s2 or g", "rad": "rad or deg",
+    "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %",
+}  # fmt: skip
+
+
+class UnitError(ValueError):
+    """A unit that is unknown or of another dimension: a fact and a cure."""
+
+    def __init__(self, fact: str, cure: str):
+        self.fact, self.cure = fact, cure
+        super().__init__(f"{fact}; {cure}")
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+@cache
+def _parse(text: str) -> Any:
+    """A pint unit, or None where the text is no unit."""
+    import pint
+
+    text = re.sub(r"\brev\b", "revolution", _ASIDE.get(text, text))
+    powers = re.sub(r"(?<=[A-Za-zµΩ°])\^?(-?\d+)", r"**\1", text)
+    try:
+        return _registry().parse_units(powers.replace("·", "*").replace("⋅", "*"))
+    except (pint.PintError, tokenize.TokenError, *_STUMBLES):
+        return None  # whatever pint stumbled over, the text is no unit, and the caller says so
+
+
+@cache
+def factor(text: str, si: str) -> float:
+    """`value in SI = factor · value in text`.
+
+    `si` is the name of a coherent SI unit from `quantities`. Raises UnitError for an unknown unit and for one of
+    another dimension. In an acceleration, g is standard gravity.
+    """
+    text = text.strip()
+    if text == si or _ASIDE.get(text) == si:
+        return 1.0
+    if si == "m/s2" and text in _GRAVITY:
+        return _GRAVITY[text]
+    unit = _parse(text)
+    if unit is None:
+        raise UnitError(f"unit {text!r} is unknown", f"write it as, for example, {_EXAMPLES[si]}")
+    target = _parse(si)
+    if unit.dimensionality != target.dimensionality:
+        raise UnitError(
+            f"unit {text!r} measures {_dimension(unit)}, but {si!r} is needed, which measures {_dimension(target)}",
+            f"give a unit such as {_EXAMPLES[si]}",
+        )
+    return float(_registry().Quantity(1.0, unit).to(target).magnitude)
+
+
+def same_dimension(text: str, si: str) -> bool:
+    """Whether `text` is a unit of the dimension of `si`."""
+    try:
+        factor(text, si)
+    except UnitError:
+        return False
+    return True
+
+
+def quantity(text: str, si: str) -> float:
+    """A number with a unit, such as "0.3 deg/s", in SI. Raises UnitError."""
+    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
+    if not match:
+        raise UnitError(f"{text!r} is not a number with a unit", f"write it as, for example, '0.1 {si}'")
+    return float(match[1]) * factor(match[2] or si, si)
+
+
+def _dimension(unit: Any) -> str:
+    names = {
+        "m": "a length", "s": "a time", "m/s": "a speed", "m/s2": "an acceleration", "N": "a force",
+        "N.m": "a torque", "1": "an angle or a plain number", "rad/s": "an angular rate", "kg": "a mass",
+        "Pa": "a pressure",
+    }  # fmt: skip
+    for si, name in names.items():
+        if _parse(si).dimensionality == unit.dimensionality:
+            return name
+    return f"{unit.dimensionality}"
