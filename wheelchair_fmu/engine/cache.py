@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
+import tempfile
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -16,7 +17,8 @@ from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
 from .kernel import kernel
-from .source import CSRC, c_source
+from .source import CSRC, c_source, coefficients, tangent_source
+from .tangent import tangent
 
 PACKAGE = Path(__file__).parent.parent
 
@@ -28,19 +30,42 @@ def folder() -> Path:
     return path
 
 
-def library(choice: Choice, effects: Iterable[Effect]) -> ctypes.CDLL:
-    """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions."""
+def library(choice: Choice, effects: Iterable[Effect], *, derivatives: bool = False) -> ctypes.CDLL:
+    """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions.
+
+    With `derivatives` also `wc_tangent tangent_tangent` and `tangent.h`'s.
+    """
     effects = sorted(effects, key=lambda e: e.id)
-    key = hashlib.sha256("\n".join((_toolchain(), repr(choice), *map(_effect_key, effects))).encode()).hexdigest()[:24]
+    words = "\n".join((_toolchain(), repr(choice), str(derivatives), *map(_effect_key, effects)))
+    key = hashlib.sha256(words.encode()).hexdigest()[:24]
     target = folder() / f"{key}{compiler.SUFFIX}"
     if not target.exists():
-        source = target.with_name(f"{key}-{os.getpid()}.c")
-        try:
-            source.write_text(c_source(kernel(assemble(choice, effects)), "model"))
-            compiler.compile_shared([source, CSRC / "advance.c"], target, ["-fvisibility=default", f"-I{CSRC}"])
-        finally:
-            source.unlink(missing_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder()) as place:
+            _compile(choice, effects, derivatives, Path(place), target)
     return ctypes.CDLL(str(target))
+
+
+def helper(name: str) -> ctypes.CDLL:
+    """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
+    source = CSRC / f"{name}.c"
+    key = hashlib.sha256(source.read_bytes() + _toolchain().encode()).hexdigest()[:24]
+    target = folder() / f"{name}-{key}{compiler.SUFFIX}"
+    if not target.exists():
+        compiler.compile_shared([source], target, ["-fvisibility=default", "-O3"])
+    return ctypes.CDLL(str(target))
+
+
+def _compile(choice: Choice, effects: list[Effect], derivatives: bool, place: Path, target: Path) -> None:
+    model = assemble(choice, effects)
+    sources = {"model.c": c_source(kernel(model), "model")}
+    if derivatives:
+        sources |= {"tangent_model.c": tangent_source(tangent(model), "tangent"), "coefficients.h": coefficients()}
+    for name, text in sources.items():
+        (place / name).write_text(text)
+    hand_written = CSRC / ("tangent.c" if derivatives else "advance.c")
+    first = ["-include", str(place / "coefficients.h"), "-O3"] if derivatives else []
+    c_files = [place / name for name in sources if name.endswith(".c")]
+    compiler.compile_shared([*c_files, hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
 
 
 @cache

@@ -54,6 +54,7 @@ class Step:
     error: cs.SX
     d2: cs.SX
     d3: cs.SX
+    U: list[cs.SX]
 
 
 def step(model: Model) -> Step:
@@ -72,4 +73,4 @@ def step(model: Model) -> Step:
         U.append(factors.solve(right))
     x1 = x + sum(a_j * U_j for a_j, U_j in zip((*A[5], 1.0), U, strict=True))
     d2, d3 = (sum(d_j * U_j for d_j, U_j in zip(d, U, strict=False)) for d in (DENSE_2, DENSE_3))
-    return Step(w1, h, x1, U[5], d2, d3)
+    return Step(w1, h, x1, U[5], d2, d3, U)

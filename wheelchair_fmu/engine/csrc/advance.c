@@ -14,6 +14,9 @@ typedef struct {
     const double *at; /* times of rows wanted inside, ascending */
     long wanted;
     double *rows;
+    /* told of each accepted step from `done` on, before x changes */
+    void (*accepted)(void *context, const double *x, const double *wa, const double *wb, double done, double h);
+    void *context;
 } stretch;
 
 static double shape_of(double s, double a, double b) { return (1 - s) * a + s * b; }
@@ -64,6 +67,7 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
         double factor = error == 0 ? 6 : 0.9 / sqrt(sqrt(error));
         if (error <= 1) {
             fill_rows(k, s, done, now, x, x1, d2, d3);
+            if (s->accepted) s->accepted(s->context, x, wa, wb, done, now);
             memcpy(x, x1, sizeof(double) * (size_t)k->states);
             done = now == left ? s->length : done + now;
             if (steps) ++*steps;
@@ -119,7 +123,7 @@ static wc_status advance_on_grid(const wc_kernel *k, const double *p, wc_accurac
             wa[i] = shape_of(fa, w0[i], w1[i]);
             wb[i] = shape_of(fb, w0[i], w1[i]);
         }
-        stretch s = {0, to - from, wa, wb, 0, 0, 0};
+        stretch s = {.length = to - from, .w0 = wa, .w1 = wb};
         double h = s.length;
         wc_status status = go(k, p, accuracy.tolerance, &s, x, &h, steps);
         if (status != WC_OK || final) return status;
@@ -134,7 +138,7 @@ wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, 
     if (accuracy.grid > 0) {
         status = advance_on_grid(k, p, accuracy, t0, t1, w0, w1, x, steps);
     } else {
-        stretch s = {t0, t1 - t0, w0, w1, 0, 0, 0};
+        stretch s = {.t0 = t0, .length = t1 - t0, .w0 = w0, .w1 = w1};
         double h = s.length;
         status = go(k, p, accuracy.tolerance, &s, x, &h, steps);
     }
@@ -190,7 +194,8 @@ static wc_status run_linear(const wc_kernel *k, const double *p, wc_accuracy acc
         if (accuracy.grid > 0) {
             status = wc_advance(k, p, accuracy, t[i] - t[0], t[j] - t[0], w0, w1, now, steps);
         } else {
-            stretch s = {t[i], t[j] - t[i], w0, w1, t + i + 1, j - i - 1, x + (i + 1) * nx};
+            stretch s = {.t0 = t[i], .length = t[j] - t[i], .w0 = w0, .w1 = w1,
+                         .at = t + i + 1, .wanted = j - i - 1, .rows = x + (i + 1) * nx};
             status = go(k, p, accuracy.tolerance, &s, now, &h, steps);
         }
         if (status != WC_OK) return status;

@@ -1,0 +1,67 @@
+"""The filter against dense linear algebra: r' V⁻¹ r with V built in full."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.engine.innovations import Noise, whiten
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.8])
+def test_innovations_are_generalised_least_squares(colour):
+    rng = np.random.default_rng(0)
+    n, nx, nq, nz = 12, 3, 2, 2
+    run = SimpleNamespace(
+        transition=0.3 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
+        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, 3, nx)),
+        by_push=rng.normal(size=(n, 3, 4)))  # fmt: skip
+    noise = Noise(np.array([0.3, 0.5]), np.array([0.2, 0.4]), np.full(nz, colour), np.array([0.1, 0.0, 0.2]))
+    which = [0, 2]
+    signals = rng.normal(size=(n, nz, 4))
+    signals[4, 1, 0] = np.nan
+    mean = rng.normal(size=nx)
+    white, logdet = whiten(signals, run, which, noise, mean)
+
+    V, offset = dense(run, which, noise, n, nx, nq, nz, mean)
+    keep = ~np.isnan(signals[:, :, 0].ravel())
+    V = V[np.ix_(keep, keep)]
+    flat = signals.reshape(n * nz, -1)[keep]
+    flat[:, 0] -= offset[keep]
+    filtered = white.reshape(n * nz, -1)[keep]
+    np.testing.assert_allclose(filtered.T @ filtered, flat.T @ np.linalg.solve(V, flat), rtol=1e-8)
+    assert logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
+
+
+def dense(run, which, noise, n, nx, nq, nz, mean):
+    """Covariance of all readings, and their mean from the start's, by superposition."""
+    H, D = run.by_state[:, which], run.by_push[:, which, :nq]
+    sources = [(("start", k), noise.start[k]) for k in range(nx)]
+    sources += [(("push", i, q), noise.pushes[q]) for i in range(n) for q in range(nq)]
+    V = np.zeros((n * nz, n * nz))
+    for source, sd in sources:
+        response = respond(run, source, H, D, n, nx, nq)
+        V += sd**2 * np.outer(response, response)
+    lag = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    for z in range(nz):
+        V[z::nz, z::nz] += noise.readings[z] ** 2 * noise.colour[z] ** lag
+    offset = sum(mean[k] * respond(run, ("start", k), H, D, n, nx, nq) for k in range(nx))
+    return V, offset
+
+
+def respond(run, source, H, D, n, nx, nq):
+    e, out = np.zeros(nx), []
+    if source[0] == "start":
+        e[source[1]] = 1
+    for i in range(n):
+        q = np.zeros(nq)
+        if source[0] == "push" and source[1] == i:
+            q[source[2]] = 1
+            if i:
+                e = e + run.push_after[i - 1][:, :nq] @ q
+        out.append(H[i] @ e + D[i] @ q)
+        if i + 1 < n:
+            e = run.transition[i] @ e + run.push_before[i][:, :nq] @ q
+    return np.concatenate(out)

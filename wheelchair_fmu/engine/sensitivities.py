@@ -1,0 +1,92 @@
+"""Runs with their derivatives: readings by parameters, states and recorded pushes, exact for the steps taken."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SimulationError
+from ..model.variant import Variant
+from . import cache
+from .simulate import WHY
+from .tangent import PUSHES, differentiable, sensed
+
+
+class _Wanted(ctypes.Structure):
+    _fields_ = (("active", ctypes.c_int), ("which", ctypes.c_void_p),
+                *((name, ctypes.c_void_p) for name in ("transition", "push_before", "push_after", "by_state",
+                                                       "by_push", "by_parameter")))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A run of n samples and its derivatives, SI units.
+
+    readings (n, ns); by_parameter (n, ns, k): readings by the parameters asked for, through all that went before;
+    transition (n−1, nx, nx): states by the states a sample earlier; push_before and push_after (n−1, nx, 4): by the
+    recorded pushes at both ends of the interval; by_state (n, ns, nx) and by_push (n, ns, 4): readings at a sample.
+    """
+
+    time: np.ndarray
+    states: np.ndarray
+    results: np.ndarray
+    readings: np.ndarray
+    by_parameter: np.ndarray
+    transition: np.ndarray
+    push_before: np.ndarray
+    push_after: np.ndarray
+    by_state: np.ndarray
+    by_push: np.ndarray
+
+
+class Sensitivities:
+    """A variant, compiled with its derivatives. Instances may run in parallel threads."""
+
+    def __init__(self, variant: Variant):
+        self.variant = variant
+        self.model = variant.model()
+        self._library = cache.library(variant.choice, variant.active(), derivatives=True)
+        self._library.wc_tangent_work.restype = ctypes.c_long
+        self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
+        self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
+        self.columns = tuple(p.name for p in differentiable(self.model))
+        self.rows = sensed(self.model)
+        self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
+        self.results = tuple(o.name for o in self.model.outputs)
+
+    def run(
+        self,
+        time: np.ndarray,
+        inputs: np.ndarray,
+        parameters: np.ndarray,
+        by: Sequence[str] = (),
+        *,
+        tolerance: float = 1e-6,
+    ) -> Linearised:
+        """Simulate over `time` (n,) with inputs (n, nw) linear between samples; derivatives `by` these parameters.
+
+        Raises SimulationError, naming the time, where the model cannot go on.
+        """
+        t, w, p = (np.ascontiguousarray(a, float) for a in (time, inputs, parameters))
+        which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
+        n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
+        x, y = np.empty((n, nx)), np.empty((n, ny))
+        out = {"transition": np.empty((n - 1, nx, nx)), "push_before": np.empty((n - 1, nx, PUSHES)),
+               "push_after": np.empty((n - 1, nx, PUSHES)), "by_state": np.empty((n, ns, nx)),
+               "by_push": np.empty((n, ns, PUSHES)), "by_parameter": np.empty((n, ns, k))}  # fmt: skip
+        wanted = _Wanted(k, which.ctypes.data, *(a.ctypes.data for a in out.values()))
+        work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
+        reached = ctypes.c_long()
+        status = self._library.wc_tangent_run(
+            self._kernel, self._tangent, ctypes.c_void_p(p.ctypes.data), ctypes.c_double(tolerance), ctypes.c_long(n),
+            *(ctypes.c_void_p(a.ctypes.data) for a in (t, w, x, y)), ctypes.byref(wanted),
+            ctypes.c_void_p(work.ctypes.data), ctypes.byref(reached),
+        )  # fmt: skip
+        if status:
+            when = t[min(max(reached.value, 1), n) - 1]
+            raise SimulationError(f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and "
+                                  "parameters there")  # fmt: skip
+        return Linearised(t, x, y, y[:, list(self.rows)], **out)

@@ -1,0 +1,99 @@
+"""Derivatives of the step map itself, stage by stage through one factorisation.
+
+With U_i as in `rodas`, differentiating  W U_i = f(x_i, w_i, p) + M Σ (c_ij/h) U_j + γ_i ∂f/∂w Δw  gives
+
+    W dU_i = F_x(i) (dx + Σ a_ij dU_j) + F_w(i) dw_i + F_p(i) dp + M Σ (c_ij/h) dU_j + γ_i F_w d(Δw)
+             + d[J U_i + γ_i F_w Δw] + dM (Σ (c_ij/h) U_j − U_i/(hγ))
+
+for every direction at once. These are the functions it needs; `csrc/tangent.c` does the sums. A model
+with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
+
+    stages(x, w0, w1, h, p)    → U (nx, 6), W (nx, nx)
+    slopes(x, w, p)            → F (nx, nx + 4 + nc)           columns: states, pushes, parameters
+    bend(x, w, p, U, dw)       → d[J U + F_w dw] (nx, nx + 4 + nc)
+    readout(x, w, p)           → dy of the sensors (ns, nx + 4 + nc)
+    masses(p)                  → M (nx), dM (nx, nc)
+    begin(x, w, p)             → derivative of the consistent start x (nx, nc)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as cs
+
+from ..model.wheelchair import Model
+from ..quantities import Parameter
+from .kernel import _algebraic_change
+from .rodas import GAMMA, step
+
+NAMES = ("stages", "slopes", "bend", "readout", "masses", "begin")
+SENSORS = "sensor."
+SENSED = ("chair.u", "chair.v")  # results that are also measured directly
+PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """The functions above, and what their columns and the readout's rows are."""
+
+    columns: tuple[Parameter, ...]
+    rows: tuple[int, ...]
+    functions: dict[str, cs.Function]
+
+
+def differentiable(model: Model) -> tuple[Parameter, ...]:
+    """Parameters that a fit may touch: no choices, regularisations, gravity or fixed constants."""
+    return tuple(
+        p for p in model.parameters
+        if not p.choices and p.estimated and not p.name.startswith(("regularisation.", "speed.")) and p.name != "g"
+    )  # fmt: skip
+
+
+def sensed(model: Model) -> tuple[int, ...]:
+    """Places of the results that instruments read."""
+    return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS) or o.name in SENSED)
+
+
+def tangent(model: Model) -> Tangent:
+    """Derive the functions of a model."""
+    x, w, p = model.x, model.w, model.p
+    columns, rows = differentiable(model), sensed(model)
+    places = [model.parameters.index(c) for c in columns]
+    at = [x, w, p]
+
+    def by_columns(e: cs.SX) -> cs.SX:
+        return cs.densify(cs.horzcat(cs.jacobian(e, x), cs.jacobian(e, w)[:, :PUSHES], cs.jacobian(e, p)[:, places]))
+
+    s = step(model)
+    W = cs.diag(model.mass) / (s.h * GAMMA) - cs.jacobian(model.f, x)
+    U, dw = cs.SX.sym("U", x.numel()), cs.SX.sym("dw", w.numel())
+    directional = cs.jtimes(model.f, cs.vertcat(x, w), cs.vertcat(U, dw))
+    functions = {
+        "stages": cs.Function("stages", [x, w, s.w1, s.h, p], cs.cse([cs.horzcat(*s.U), _rows(cs.densify(W))])),
+        "slopes": cs.Function("slopes", at, cs.cse([_rows(by_columns(model.f))])),
+        "bend": cs.Function("bend", [*at, U, dw], cs.cse([_rows(by_columns(directional))])),
+        "readout": cs.Function("readout", at, cs.cse([_rows(by_columns(model.y[list(rows)]))])),
+        "masses": cs.Function("masses", [p], [cs.densify(model.mass),
+                                              _rows(cs.densify(cs.jacobian(model.mass, p)[:, places]))]),
+        "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
+    }  # fmt: skip
+    return Tangent(columns, rows, functions)
+
+
+def _rows(matrix: cs.SX) -> cs.SX:
+    """CasADi stores columns one after the other; C reads rows."""
+    return matrix.T
+
+
+def _begin(model: Model, places: list[int]) -> cs.SX:
+    """dx(0)/dp, algebraic states following the others."""
+    start = cs.jacobian(model.start, model.p)[:, places]
+    everything = cs.vertcat(model.x, model.p)
+    result = []
+    for i, place in enumerate(places):
+        seed = cs.SX.zeros(model.p.numel())
+        seed[place] = 1
+        residual = cs.jtimes(model.f, everything, cs.vertcat(start[:, i], seed))
+        result.append(start[:, i] + _algebraic_change(model, residual))
+    return cs.horzcat(*result)
