@@ -55,6 +55,9 @@ N_RAD = Unit("N/rad", kg=1, m=1, s=-2, rad=-1)
 N_M = Unit("N.m", kg=1, m=2, s=-2)
 N_M_RAD = Unit("N.m/rad", kg=1, m=2, s=-2, rad=-1)
 N_S_M = Unit("N.s/m", kg=1, s=-1)
+N_S2_M2 = Unit("N.s2/m2", kg=1, m=-1)
+N_M_S = Unit("N.m.s/rad", kg=1, m=2, s=-1, rad=-1)
+PER_N = Unit("1/N", kg=-1, m=-1, s=2)
 W = Unit("W", kg=1, m=2, s=-3)
 BAR = Unit("bar")  # pressure enters only as a ratio, so its own dimension never meets kg, m, s
 

@@ -18,7 +18,7 @@ def test_innovations_are_generalised_least_squares(colour):
         transition=0.3 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
         push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, 3, nx)),
         by_push=rng.normal(size=(n, 3, 4)))  # fmt: skip
-    noise = Noise(np.array([0.3, 0.5]), np.array([0.2, 0.4]), np.full(nz, colour), np.array([0.1, 0.0, 0.2]))
+    noise = Noise(np.array([0.3, 0.5]), np.array([0.2, 0.4]), np.full(nz, colour), np.diag([0.1, 0.0, 0.2]) ** 2)
     which = [0, 2]
     signals = rng.normal(size=(n, nz, 4))
     signals[4, 1, 0] = np.nan
@@ -38,7 +38,7 @@ def test_innovations_are_generalised_least_squares(colour):
 def dense(run, which, noise, n, nx, nq, nz, mean):
     """Covariance of all readings, and their mean from the start's, by superposition."""
     H, D = run.by_state[:, which], run.by_push[:, which, :nq]
-    sources = [(("start", k), noise.start[k]) for k in range(nx)]
+    sources = [(("start", k), np.sqrt(noise.start[k, k])) for k in range(nx)]
     sources += [(("push", i, q), noise.pushes[q]) for i in range(n) for q in range(nq)]
     V = np.zeros((n * nz, n * nz))
     for source, sd in sources:
@@ -65,3 +65,17 @@ def respond(run, source, H, D, n, nx, nq):
         if i + 1 < n:
             e = run.transition[i] @ e + run.push_before[i][:, :nq] @ q
     return np.concatenate(out)
+
+
+def test_blind_gives_each_reading_in_its_own_standard_deviation():
+    rng = np.random.default_rng(1)
+    n, nx, nq, nz = 8, 2, 1, 2
+    run = SimpleNamespace(
+        transition=0.5 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
+        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
+        by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
+    noise = Noise(np.array([0.3]), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.2]) ** 2)
+    signals, mean = rng.normal(size=(n, nz, 1)), np.zeros(nx)
+    V, _ = dense(run, [0, 1], noise, n, nx, nq, nz, mean)
+    out, _ = whiten(signals, run, [0, 1], noise, mean, blind=True)
+    np.testing.assert_allclose(out.ravel(), signals.ravel() / np.sqrt(np.diag(V)), rtol=1e-10)

@@ -79,6 +79,7 @@ def _toolchain() -> str:
 
 
 def _effect_key(effect: Effect) -> str:
-    """An effect by its file's content, so that an edited file is a new effect."""
-    code = (effect.contributions[0].law if effect.contributions else effect.rows[0].rate).__code__
-    return f"{effect.id} {hashlib.sha256(Path(code.co_filename).read_bytes()).hexdigest()}"
+    """An effect by its files' content, so that an edited file is a new effect."""
+    laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
+    files = sorted({law.__code__.co_filename for law in laws})
+    return f"{effect.id} {hashlib.sha256(b''.join(Path(f).read_bytes() for f in files)).hexdigest()}"

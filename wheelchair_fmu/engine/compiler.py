@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from uuid import uuid4
 
 from ..errors import BuildError
 
@@ -46,7 +47,7 @@ def compile_shared(sources: Sequence[Path], target: Path, extra: Sequence[str] =
 
     Raises BuildError with the compiler's own words.
     """
-    beside = target.with_name(f".{os.getpid()}-{target.name}")
+    beside = target.with_name(f".{uuid4().hex}-{target.name}")
     try:
         _run([*command(), *FLAGS, *extra, *map(str, sources), "-o", str(beside), "-lm"])
         beside.replace(target)

@@ -18,7 +18,7 @@ from .tangent import PUSHES, differentiable, sensed
 class _Wanted(ctypes.Structure):
     _fields_ = (("active", ctypes.c_int), ("which", ctypes.c_void_p),
                 *((name, ctypes.c_void_p) for name in ("transition", "push_before", "push_after", "by_state",
-                                                       "by_push", "by_parameter")))  # fmt: skip
+                                                       "by_push", "start", "by_parameter")))  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,8 @@ class Linearised:
 
     readings (n, ns); by_parameter (n, ns, k): readings by the parameters asked for, through all that went before;
     transition (n−1, nx, nx): states by the states a sample earlier; push_before and push_after (n−1, nx, 4): by the
-    recorded pushes at both ends of the interval; by_state (n, ns, nx) and by_push (n, ns, 4): readings at a sample.
+    recorded pushes at both ends of the interval; by_state (n, ns, nx) and by_push (n, ns, 4): readings at a sample;
+    start (nx, k): the states at the start by the parameters asked for.
     """
 
     time: np.ndarray
@@ -40,6 +41,7 @@ class Linearised:
     push_after: np.ndarray
     by_state: np.ndarray
     by_push: np.ndarray
+    start: np.ndarray
 
 
 class Sensitivities:
@@ -76,7 +78,7 @@ class Sensitivities:
         x, y = np.empty((n, nx)), np.empty((n, ny))
         out = {"transition": np.empty((n - 1, nx, nx)), "push_before": np.empty((n - 1, nx, PUSHES)),
                "push_after": np.empty((n - 1, nx, PUSHES)), "by_state": np.empty((n, ns, nx)),
-               "by_push": np.empty((n, ns, PUSHES)), "by_parameter": np.empty((n, ns, k))}  # fmt: skip
+               "by_push": np.empty((n, ns, PUSHES)), "start": np.empty((nx, k)), "by_parameter": np.empty((n, ns, k))}  # fmt: skip
         wanted = _Wanted(k, which.ctypes.data, *(a.ctypes.data for a in out.values()))
         work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()

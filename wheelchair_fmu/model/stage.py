@@ -110,7 +110,8 @@ class Effect:
     rows: tuple[Row, ...] = ()
     constants: tuple[Parameter, ...] = ()
     needs: dict[str, str] = field(default_factory=dict)
-    even: bool = False  # the response is even in the parameters: the slope at zero says nothing
+    even: bool = False  # the response is (nearly) even in the parameters: the slope at zero says little
+    delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
 
     @property
     def owned(self) -> tuple[Parameter, ...]:
@@ -120,4 +121,4 @@ class Effect:
 
     @property
     def stateless(self) -> bool:
-        return not self.rows and not self.needs
+        return not self.rows and not self.needs and not self.delays_record

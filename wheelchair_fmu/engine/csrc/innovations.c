@@ -17,8 +17,9 @@ typedef struct {
     const double *H, *D;      /* n x nz x nx, n x nz x nq */
     const double *input_sd;   /* nq */
     const double *sd, *phi;   /* nz: standard deviation and AR(1) coefficient of each reading */
-    const double *start_sd;   /* nx */
+    const double *start_cov;  /* nx x nx */
     const double *start_mean; /* nx: of the first signal only */
+    int blind;                /* learn nothing from the readings: then only variances are right, not their independence */
 } filter;
 
 static void predict(const filter *f, long i, int n, double *P, double *S) {
@@ -77,7 +78,7 @@ double wc_innovations(const filter *f, long n, double *signals, double *work) {
     memset(P, 0, sizeof P);
     memset(S, 0, sizeof(double) * (size_t)(size * m));
     for (int r = 0; r < nx; r++) {
-        P[r * size + r] = f->start_sd[r] * f->start_sd[r];
+        memcpy(P + r * size, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
         S[r * m] = f->start_mean[r];
     }
     for (int q = 0; q < nq; q++) P[(nx + q) * (size + 1)] = f->input_sd[q] * f->input_sd[q];
@@ -102,7 +103,7 @@ double wc_innovations(const filter *f, long n, double *signals, double *work) {
                 if (h[r] == 0) continue;
                 for (int j = 0; j < m; j++) signal[j] -= h[r] * S[r * m + j];
             }
-            for (int r = 0; r < size; r++) {
+            for (int r = 0; r < size && !f->blind; r++) {
                 double gain = Ph[r] * inverse;
                 for (int j = 0; j < m; j++) S[r * m + j] += gain * signal[j];
                 for (int c = 0; c < size; c++) P[r * size + c] -= gain * Ph[c];

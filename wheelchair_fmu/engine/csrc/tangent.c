@@ -192,7 +192,8 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     for (int r = 0; r < nx; r++) {
         c.D[r * m + r] = 1;
         for (int a = 0; a < out->active; a++)
-            c.D[r * m + nx + 2 * WC_PUSHES + a] = c.slopes[r * g->columns + out->which[a]];
+            c.D[r * m + nx + 2 * WC_PUSHES + a] = out->start[r * out->active + a] =
+                c.slopes[r * g->columns + out->which[a]];
     }
     memcpy(now, x, sizeof(double) * (size_t)nx);
     for (long i = 0;; i++) {

@@ -21,6 +21,7 @@ typedef struct {
     double *push_after;   /* n-1 x states x pushes: x(i+1) by the pushes at i+1 */
     double *by_state;     /* n x sensors x states: readings by x(i) */
     double *by_push;      /* n x sensors x pushes: readings by the pushes at i */
+    double *start;        /* states x active: x(0) by the parameters */
     double *by_parameter; /* n x sensors x active: readings by the parameters, through everything before */
 } wc_derivatives;
 

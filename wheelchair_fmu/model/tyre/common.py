@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import M_S, N_M, N_M_RAD, N_RAD, ONE, RAD, REAR, M, N, Parameter
+from ...quantities import BAR, M_S, N_M, N_M_RAD, N_RAD, ONE, RAD, REAR, M, N, Parameter
 from ..chassis import per_wheel
 from ..smooth import direction, magnitude
 from ..stage import define, stage
 
+RATED = 4.0  # bar, the pressure of Table 1
 REFERENCE = "Doria, Table 1: tyre A, 4 bar, 400 N, 4 km/h"
 
 PARAMETERS = (
@@ -22,6 +23,12 @@ PARAMETERS = (
               source=REFERENCE),
     Parameter("tyre.C_m_phi", N_M_RAD, "twisting torque stiffness C_mφ of one tyre", default=3.0, lower=0.0,
               upper=1e3, source="chosen: not in the paper's text"),
+    Parameter("tyre.pressure", BAR, "inflation pressure p; C_λ and C_mλ hold at 4 bar", default=4.0, lower=0.5, upper=12.0,
+              source=REFERENCE),
+    Parameter("tyre.pressure_F", ONE, "exponent of the pressure in the cornering stiffness", default=0.62, lower=-2.0,
+              upper=2.0, source="Doria, Fig. 6.1: tyre A, 2 to 4 bar"),
+    Parameter("tyre.pressure_M", ONE, "exponent of the pressure in the self-aligning stiffness", default=-0.64, lower=-2.0,
+              upper=2.0, source="Doria, Fig. 6.2: tyre A, 2 to 4 bar"),
     Parameter("tyre.mu", ONE, "friction coefficient μ (Dugoff and Magic Formula)", default=1.0, lower=0.05, upper=5.0,
               source="chosen: the paper's curves do not saturate"),
     Parameter("tyre.c_p", M, "pneumatic trail c_p (Dugoff)", default=45.0 / 5038.0, lower=0.0, upper=0.2,
@@ -46,8 +53,11 @@ PARAMETERS = (
     define("k_M", N_M_RAD, "self-aligning stiffness of each rear tyre", "+swap", REAR),
     define("phi", RAD, "camber angle of each rear wheel, positive when it leans to the right", "-swap", REAR),
 )
-def tyres(C_lambda, C_m_lambda):
-    return per_wheel(C_lambda), per_wheel(C_m_lambda), per_wheel(0.0)
+def tyres(C_lambda, C_m_lambda, pressure, pressure_F, pressure_M):
+    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
+    log_p = cs.log(pressure / RATED)
+    k_F, k_M = C_lambda * cs.exp(pressure_F * log_p), C_m_lambda * cs.exp(pressure_M * log_p)
+    return per_wheel(k_F), per_wheel(k_M), per_wheel(0.0)
 
 
 @stage(

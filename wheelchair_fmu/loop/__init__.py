@@ -1,0 +1,1 @@
+"""Where the model fails, which effect is missing, and what to measure next. Not one word of physics here."""

@@ -1,0 +1,218 @@
+"""What a campaign says about a model: whitened residuals and sensitivities, run by run.
+
+Everything the loop decides is decided on these: innovations r (N,), in units of their own uncertainty,
+and S (N, k), what each parameter would add to them. The unknown start of each run is part of the
+uncertainty (see `innovations`); where the simulation is best started is found on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from os import cpu_count
+
+import numpy as np
+
+from ..campaign import CHANNELS, Campaign, Run
+from ..engine.innovations import Noise, whiten
+from ..engine.sensitivities import Linearised, Sensitivities
+from ..errors import SimulationError
+from ..model.variant import Variant
+
+TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
+START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
+POSE = {"start.x": "x", "start.y": "y", "start.psi": "yaw"}
+START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
+POSE_SD = 0.05
+FIRST = 0.2  # s of samples that say where a run starts
+
+
+@dataclass(frozen=True)
+class Colour:
+    """Noise of each channel: standard deviation (SI) and AR(1) coefficient per second of correlation time."""
+
+    sd: Mapping[str, float]
+    ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
+
+
+@dataclass(frozen=True)
+class RunEvidence:
+    """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k), and errors e (n, nz):
+    measured less simulated, each in units of its standard deviation (sensor noise, and push noise added up)."""
+
+    run: Run
+    channels: tuple[str, ...]
+    r: np.ndarray
+    S: np.ndarray
+    start_S: np.ndarray
+    e: np.ndarray
+    logdet: float
+    simulated: Linearised
+    start: Mapping[str, float]
+
+    @property
+    def rms(self) -> dict[str, float]:
+        """Whitened RMS error of each channel: 1.0 is the noise floor."""
+        return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2))) for i, c in enumerate(self.channels)}
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Some runs together: r (N,), S (N, k) of the finite innovations, and which run and channel each belongs to."""
+
+    runs: tuple[RunEvidence, ...]
+    by: tuple[str, ...]
+
+    @property
+    def r(self) -> np.ndarray:
+        return np.concatenate([e.r[np.isfinite(e.r)] for e in self.runs])
+
+    @property
+    def S(self) -> np.ndarray:
+        return np.concatenate([e.S[np.isfinite(e.r)] for e in self.runs])
+
+    @property
+    def misfit(self) -> float:
+        """−2 log likelihood, but for a constant."""
+        return float(sum(np.nansum(e.r**2) + e.logdet for e in self.runs))
+
+    @property
+    def rms(self) -> float:
+        """Whitened RMS error over all runs and channels: 1.0 is the noise floor."""
+        e = np.concatenate([e.e[np.isfinite(e.e)] for e in self.runs] or [np.empty(0)])
+        return float(np.sqrt(e @ e / len(e))) if len(e) else float("nan")
+
+    def table(self) -> dict[str, dict[str, float]]:
+        """Whitened RMS by run and channel."""
+        return {e.run.name: e.rms for e in self.runs}
+
+
+class Bench:
+    """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
+
+    `variant` has every effect that may be asked for; effects at zero change nothing. `colour` is the noise.
+    """
+
+    def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None):
+        self.campaign, self.variant = campaign, variant
+        self.sensitivities = Sensitivities(variant)
+        self.colour = colour or Colour(campaign.noise)
+        self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
+        self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
+
+    def known(self, run: Run) -> dict[str, float]:
+        """What the campaign file says of this run's chair."""
+        return {**self.campaign.known, **run.set}
+
+    def evidence(self, runs: Iterable[Run], values: Mapping[str, float], by: Sequence[str] = (), *,
+                 tune_start: int = 0) -> Evidence:  # fmt: skip
+        """Evidence of these runs at parameter `values` (SI), with sensitivities `by` some of them.
+
+        `tune_start`: how often to move the simulated start to where the readings want it.
+        """
+        runs = list(runs)
+        with ThreadPoolExecutor(cpu_count()) as pool:
+            found = list(pool.map(lambda run: self._tuned(run, values, tuple(by), tune_start), runs))
+        return Evidence(tuple(found), tuple(by))
+
+    def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
+        for _ in range(rounds):
+            self.starts[run.name] = self._better_start(self._one(run, values, ()))
+        return self._one(run, values, by)
+
+    def _better_start(self, e: RunEvidence) -> dict[str, float]:
+        """The start given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
+        good = np.isfinite(e.r)
+        prior, sd = prior_start(e.run, self.known(e.run)), start_sd(e.run)
+        step = np.array([sd[n] ** 2 for n in START]) * (e.start_S[good].T @ e.r[good])
+        return {n: prior[n] + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(START, step, strict=True)}
+
+    def _one(self, run: Run, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
+        channels = tuple(c.name for c in CHANNELS if c.name in run.channels)
+        which = [self.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in run.channels]
+        start = self.starts[run.name]
+        given = {**self.variant.values, **self.known(run), **values, **run.set, **start}
+        delay = sum(values.get(d, 0.0) for d in self._delays)
+        w = self._inputs(run, delay)
+        columns = [n for n in (*by, *START) if n not in self._delays]
+        # a run's own setting of a parameter stands, so that parameter moves nothing in this run
+        simulated = self.sensitivities.run(run.time, w, self.variant.vector(given), columns, tolerance=TOLERANCE)
+        measured = np.stack([run.channels[c] for c in channels], axis=1)
+        S = self._columns(run, simulated, w, by, columns, which)
+        signals = np.concatenate([(measured - simulated.readings[:, which])[:, :, None], S], axis=2)
+        prior, sd = prior_start(run, self.known(run)), start_sd(run)
+        to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
+        spread = to_state * [sd[n] for n in START]
+        offset = to_state @ [prior[n] - start[n] for n in START]
+        noise = self._noise(channels, spread @ spread.T)
+        white, logdet = whiten(signals, simulated, which, noise, offset)
+        plain, _ = whiten(signals[:, :, :1], simulated, which, self._noise(channels, 0 * noise.start), 0 * offset, blind=True)
+        k = len(by)
+        return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], plain[:, :, 0],
+                           logdet, simulated, start)  # fmt: skip
+
+    def _inputs(self, run: Run, delay: float) -> np.ndarray:
+        """Recorded inputs (n, nw); a record that is early by `delay` is read that much later."""
+        names = [i.name for i in self.sensitivities.model.inputs]
+        w = np.tile([i.start for i in self.sensitivities.model.inputs], (len(run.time), 1))
+        for name, values in run.inputs.items():
+            w[:, names.index(name)] = np.interp(run.time - delay, run.time, values) if delay else values
+        return w
+
+    def _columns(self, run, simulated, w, by, columns, which) -> np.ndarray:
+        """Unwhitened sensitivities (n, nz, len(by) + 6)."""
+        place = {n: i for i, n in enumerate(columns)}
+        out = np.zeros((len(run.time), len(which), len(by) + len(START)))
+        for j, name in enumerate((*by, *START)):
+            if name in run.set:
+                continue
+            out[:, :, j] = (self._by_delay(run, simulated, w, which) if name in self._delays
+                            else simulated.by_parameter[:, which, place[name]])  # fmt: skip
+        return out
+
+    @staticmethod
+    def _by_delay(run: Run, simulated: Linearised, w: np.ndarray, which: list[int]) -> np.ndarray:
+        """Readings by a delay of the record: every push changes by −F' per second of it."""
+        push = -np.gradient(w[:, :4], run.time, axis=0)
+        e, out = np.zeros(simulated.states.shape[1]), np.empty((len(run.time), len(which)))
+        for i in range(len(run.time)):
+            if i:
+                e = (simulated.transition[i - 1] @ e + simulated.push_before[i - 1] @ push[i - 1]
+                     + simulated.push_after[i - 1] @ push[i])  # fmt: skip
+            out[i] = simulated.by_state[i, which] @ e + simulated.by_push[i, which] @ push[i]
+        return out
+
+    def _noise(self, channels: tuple[str, ...], start: np.ndarray) -> Noise:
+        pushes = [self.colour.sd.get(side, 0.0) for side in ("F_rl", "F_rr")]
+        return Noise(np.array(pushes), np.array([self.colour.sd[c] for c in channels]),
+                     np.array([self.colour.ar.get(c, 0.0) for c in channels]), start)  # fmt: skip
+
+    def with_colour(self, colour: Colour) -> Bench:
+        """The same bench with other noise; starts found so far are kept."""
+        other = object.__new__(Bench)
+        other.__dict__ = {**self.__dict__, "colour": colour}
+        return other
+
+
+def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
+    """Where a run is expected to start, from its file and first samples."""
+    first = run.time <= run.time[0] + FIRST
+
+    def mean(channel: str) -> float:
+        values = run.channels[channel][first] if channel in run.channels else np.array([])
+        values = values[np.isfinite(values)]
+        return float(values.mean()) if len(values) else 0.0
+
+    pose = {name: mean(channel) for name, channel in POSE.items()}
+    return {**pose, "start.u": run.u0 if run.u0 is not None else mean("u"), "start.v": 0.0,
+            "start.psi_dot": mean("yaw_rate")}  # fmt: skip
+
+
+def start_sd(run: Run) -> dict[str, float]:
+    """Standard deviations of the above; a pose that nobody measured is wherever it is said to be."""
+    pose = {name: POSE_SD if channel in run.channels else 0.0 for name, channel in POSE.items()}
+    return {**pose, **START_SD}
+
+
+__all__ = ["Bench", "Colour", "Evidence", "RunEvidence", "SimulationError", "replace"]

@@ -1,0 +1,102 @@
+"""Which effects would help, from one linearisation: score tests with a robust variance.
+
+For an effect with sensitivities S_j (N, k) the calibrated directions are projected off, s_j = P S_j; score
+U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected drop Uᵀ I⁻¹ U. The variance of U is
+estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run), so that
+coloured residuals are not taken for evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from .evidence import Evidence
+
+LAG = 0.5  # s over which residuals may be correlated
+SEEN = 0.25  # a direction counts as seen when δ along it would be at least this many standard deviations, squared
+
+
+@dataclass(frozen=True)
+class Score:
+    """One effect's score test. Arrays are by parameter (k,)."""
+
+    effect: str
+    names: tuple[str, ...]
+    estimate: np.ndarray
+    se: np.ndarray
+    p: float
+    drop: float  # expected fall of −2 log likelihood
+    power: float
+    hidden: float  # share of its signature that calibration can imitate
+    signature: np.ndarray  # (N,) unit vector of the projected expected change
+
+
+def projector(Z: np.ndarray, prior_slopes: np.ndarray):
+    """A function that takes the calibrated directions (with their priors) off any columns (N, k)."""
+    A = Z.T @ Z + prior_slopes**2
+    inverse = np.linalg.pinv(A, hermitian=True)
+    return lambda X: X - Z @ (inverse @ (Z.T @ X))
+
+
+def blocks(evidence: Evidence) -> list[tuple[np.ndarray, int, float]]:
+    """For each run: the sample of every finite innovation (n_i,), how many samples, and the sample interval."""
+    out = []
+    for e in evidence.runs:
+        good = np.isfinite(e.r)
+        sample = np.broadcast_to(np.arange(e.r.shape[0])[:, None], e.r.shape)[good]
+        out.append((sample, e.r.shape[0], float(np.median(np.diff(e.run.time)))))
+    return out
+
+
+def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
+    total, at = np.zeros((s.shape[1], s.shape[1])), 0
+    for sample, n, dt in blocks(evidence):
+        part = slice(at, at + len(sample))
+        at += len(sample)
+        q = np.zeros((n, s.shape[1]))
+        np.add.at(q, sample, s[part] * r[part, None])
+        lags = max(1, min(n // 4, round(LAG / dt)))
+        total += q.T @ q
+        for lag in range(1, lags + 1):
+            c = q[lag:].T @ q[:-lag]
+            total += (1 - lag / (lags + 1)) * (c + c.T)
+    return total
+
+
+def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
+          one_sided: np.ndarray) -> Score:  # fmt: skip
+    """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
+    r, scaled = evidence.r, S * delta
+    s = off(scaled)
+    I = s.T @ s  # noqa: E741
+    size, axes = np.linalg.eigh(I)
+    seen = size > max(SEEN, 1e-9 * size.max(initial=0))
+    whole = float(np.einsum("ij,ij->", scaled, scaled))
+    hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
+    if not seen.any():
+        nothing = np.zeros(len(delta))
+        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, hidden, nothing[:0])
+    V = axes[:, seen]
+    s_V, I_V = s @ V, size[seen]
+    U = s_V.T @ r
+    Omega = robust_variance(evidence, s_V, r)
+    Omega = np.maximum(1.0, 0) * Omega + 1e-12 * np.diag(I_V)
+    change = U / I_V
+    spread = np.diag(1 / I_V) @ Omega @ np.diag(1 / I_V)
+    estimate = V @ change * delta
+    se = np.sqrt(np.maximum(np.diag(V @ spread @ V.T), 0)) * delta
+    T = float(U @ np.linalg.solve(Omega, U))
+    p = float(stats.chi2.sf(T, int(seen.sum())))
+    if len(delta) == 1 and one_sided[0]:
+        p = p / 2 if estimate[0] > 0 else 1 - p / 2
+    noncentral = 1 / np.diag(spread).mean()
+    power = float(stats.ncx2.sf(stats.chi2.isf(0.05, int(seen.sum())), int(seen.sum()), min(noncentral, 1e6)))
+    direction = s_V @ change
+    length = np.linalg.norm(direction)
+    return Score(effect, tuple(names), estimate, se, p, float(U @ change), power, hidden,
+                 direction / length if length > 0 else direction)  # fmt: skip

@@ -1,0 +1,51 @@
+"""Benches for any set of effects: each as light as it can be, made once.
+
+An effect that brings a state makes every simulation dearer, so a bench carries all effects that bring
+none, and of the others only those asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from ..campaign import Campaign
+from ..model.stage import Effect
+from ..model.variant import Variant
+from .evidence import Bench, Colour
+
+
+class Workshop:
+    """A campaign, the variant it is compared with, and a bench for every question."""
+
+    def __init__(self, campaign: Campaign, variant: Variant):
+        self.campaign, self.variant = campaign, variant
+        self.catalogue: dict[str, Effect] = dict(variant.catalogue)
+        self._plain = {p.name for p in variant.parameters()}
+        base = replace(variant, effects=(), values={})
+        size = base.model().x.numel()
+        self.light = [e for e in self.catalogue if not self.catalogue[e].needs
+                      and base.with_effects([e]).model().x.numel() == size]  # fmt: skip
+        self.heavy = [e for e in self.catalogue if e not in self.light and not self.catalogue[e].needs]
+        self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
+        self.colour = Colour(campaign.noise)
+        self._benches: dict[frozenset[str], Bench] = {}
+        self.starts: dict[str, dict[str, float]] = {}
+
+    def bench(self, effects: Iterable[str] = ()) -> Bench:
+        """The bench on which these effects, and all light ones, may be on."""
+        wanted = frozenset(e for e in (*effects, *self.variant.effects) if e not in self.light)
+        if wanted not in self._benches:
+            self._benches[wanted] = Bench(self.campaign, self.variant.with_effects((*self.light, *sorted(wanted))))
+        bench = self._benches[wanted]
+        bench.colour = self.colour
+        bench.starts.update(self.starts)
+        return bench
+
+    def remember(self, bench: Bench) -> None:
+        """Keep the starts a bench has found, for the next one."""
+        self.starts.update(bench.starts)
+
+    def parameters(self, effect: str) -> tuple[str, ...]:
+        """Full names of an effect's estimated parameters."""
+        return tuple(p.name for p in self.catalogue[effect].owned if p.estimated)

@@ -1,0 +1,24 @@
+"""An accelerometer mounted away from the CM: it also feels the turn about it."""
+
+from ...quantities import M, Parameter
+from ..stage import Effect, adds
+
+COMMON = dict(off=0.0, smallest_interesting=0.03, lower=-2.0, upper=2.0, source="rigid-body kinematics")
+X = Parameter("x", M, "how far the sensor lies before the CM", symbol="lever_x", **COMMON)
+Y = Parameter("y", M, "how far the sensor lies to the right of the CM", symbol="lever_y", mirror="-", **COMMON)
+
+
+def forward(lever_x, lever_y, psi_dot, M_z, inertia):
+    return -lever_x * psi_dot * psi_dot - lever_y * M_z / inertia
+
+
+def right(lever_x, lever_y, psi_dot, M_z, inertia):
+    return lever_x * M_z / inertia - lever_y * psi_dot * psi_dot
+
+
+EFFECT = Effect(
+    "accelerometer_offset",
+    "accelerometer mounted away from the CM",
+    parameters=(X, Y),
+    contributions=(adds("read_a_x", forward), adds("read_a_y", right)),
+)

@@ -1,0 +1,30 @@
+"""An accelerometer mounted askew: gravity leaks in, and its axes mix.
+
+Positive roll lowers the sensor's right side, positive pitch raises its front.
+"""
+
+import casadi as cs
+
+from ...quantities import RAD, Parameter
+from ..stage import Effect, adds
+
+COMMON = dict(off=0.0, smallest_interesting=0.005, lower=-0.5, upper=0.5, source="rigid-body kinematics")
+ROLL = Parameter("roll", RAD, "roll of the sensor, positive with its right side down", mirror="-", **COMMON)
+PITCH = Parameter("pitch", RAD, "pitch of the sensor, positive with its front up", **COMMON)
+
+
+def forward(roll, pitch, a_x, a_y, g_x, g_y, g):
+    f_x, f_y = a_x - g_x, a_y - g_y
+    return f_x * (cs.cos(pitch) - 1) + (f_y * cs.sin(roll) + g * cs.cos(roll)) * cs.sin(pitch)
+
+
+def right(roll, a_y, g_y, g):
+    return (a_y - g_y) * (cs.cos(roll) - 1) - g * cs.sin(roll)
+
+
+EFFECT = Effect(
+    "accelerometer_tilt",
+    "accelerometer mounted askew",
+    parameters=(ROLL, PITCH),
+    contributions=(adds("read_a_x", forward), adds("read_a_y", right)),
+)

@@ -1,0 +1,33 @@
+"""Swivel inertia of the casters: turning one takes a torque,  M_w = −I (δ'' + ψ'').
+
+The acceleration is that of the swivel rate through a short filter, Ω' = (δ' + ψ' − Ω)/τ, because the
+rate itself may jump with the pushes.
+"""
+
+from ...quantities import FRONT, KG_M2, RAD_S, Parameter, S, State
+from ..stage import Effect, Row, adds
+
+INERTIA = Parameter("I", KG_M2, "moment of inertia I of each caster about its pivot", off=0.0, smallest_interesting=0.005,
+                    lower=0.0, upper=0.5, source="Doria, (8)")  # fmt: skip
+FILTER = Parameter("filter", S, "time constant that smooths the swivel rate", default=0.02, lower=1e-4, upper=1.0,
+                   symbol="T_filter", source="chosen")  # fmt: skip
+RATE = State("smoothed_rate", RAD_S, "turning rate of each caster in the room, smoothed", mirror="-swap", components=FRONT)
+
+
+def acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter):
+    return (swivel_rate + psi_dot - smoothed_rate) / T_filter
+
+
+def reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter):  # noqa: E741
+    return -I * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter)
+
+
+EFFECT = Effect(
+    "caster_inertia",
+    "swivel inertia of the casters",
+    parameters=(INERTIA,),
+    constants=(FILTER,),
+    contributions=(adds("M_w", reaction),),
+    rows=(Row(RATE, lambda: 1.0, acceleration),),
+    needs={"caster": "swivelling"},
+)

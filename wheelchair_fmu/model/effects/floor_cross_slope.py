@@ -1,0 +1,16 @@
+"""A slope across the chair whatever its heading, as on a treadmill or along a corridor."""
+
+import casadi as cs
+
+from ...quantities import RAD, Parameter
+from ..stage import Effect, adds
+
+THETA = Parameter("theta", RAD, "slope across the chair, positive where the floor falls to the right", off=0.0,
+                  smallest_interesting=0.001, lower=-0.3, upper=0.3, mirror="-", source="Richter2007")  # fmt: skip
+
+EFFECT = Effect(
+    "floor_cross_slope",
+    "a slope across the chair, whatever its heading",
+    parameters=(THETA,),
+    contributions=(adds("g_y", lambda theta, g: g * cs.sin(theta)),),
+)

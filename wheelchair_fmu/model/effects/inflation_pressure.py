@@ -1,0 +1,25 @@
+"""Tyres at another pressure than stated: stiffness and trail follow the pressure p + dp instead of p."""
+
+import casadi as cs
+
+from ...quantities import BAR, Parameter
+from ..stage import Effect, scales
+
+DP = Parameter("dp", BAR, "how much the pressure lies above the stated tyre.pressure", off=0.0, smallest_interesting=0.3,
+               lower=-1.5, upper=5.0, source="Doria, Fig. 6")  # fmt: skip
+FLATTEST = 0.05  # of the stated pressure
+
+
+def ratio(dp, pressure):
+    return cs.fmax(1 + dp / pressure, FLATTEST)
+
+
+EFFECT = Effect(
+    "inflation_pressure",
+    "tyres at another pressure than stated",
+    parameters=(DP,),
+    contributions=(
+        scales("k_F", lambda dp, pressure, pressure_F: cs.exp(pressure_F * cs.log(ratio(dp, pressure)))),
+        scales("k_M", lambda dp, pressure, pressure_M: cs.exp(pressure_M * cs.log(ratio(dp, pressure)))),
+    ),
+)

@@ -1,0 +1,22 @@
+"""Pushing loads the rear wheels:  ΔN = ± m a_x h / (2 (a + b))  at each wheel, by the height h of the CM."""
+
+from ...quantities import M, Parameter
+from ..stage import Effect, adds
+
+H = Parameter("h", M, "height h of the CM that shifts load backward", off=0.0, smallest_interesting=0.3, lower=0.0,
+              upper=2.0, source="rigid-body statics")  # fmt: skip
+
+
+def shift(h, m, a_x, g_x, x_f, x_r):
+    return m * (a_x - g_x) * h / (2 * (x_f - x_r))
+
+
+EFFECT = Effect(
+    "longitudinal_load_transfer",
+    "load that shifts to the rear wheels under a push",
+    parameters=(H,),
+    contributions=(
+        adds("N_r", shift),
+        adds("N_f", lambda h, m, a_x, g_x, x_f, x_r: -shift(h, m, a_x, g_x, x_f, x_r)),
+    ),
+)

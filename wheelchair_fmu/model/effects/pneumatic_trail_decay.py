@@ -1,0 +1,23 @@
+"""The pneumatic trail shrinks with slip, so the self-aligning torque saturates before the force."""
+
+from ...quantities import PER_RAD, RAD, Parameter
+from ..smooth import magnitude
+from ..stage import Effect, scales
+
+INV_SLIP = Parameter("inv_slip", PER_RAD, "inverse of the slip angle at which the trail has halved", off=0.0,
+                     smallest_interesting=5.0, lower=0.0, upper=500.0, source="Doria, Fig. 4.2")  # fmt: skip
+ROUNDING = Parameter("rounding", RAD, "slip angle within which |λ| is rounded off", default=1e-4, lower=1e-8, upper=0.1,
+                     source="chosen")  # fmt: skip
+
+
+def decay(inv_slip, lam_F, rounding):
+    return 1 / (1 + inv_slip * (magnitude(lam_F, rounding) - rounding))
+
+
+EFFECT = Effect(
+    "pneumatic_trail_decay",
+    "self-aligning torque that saturates before the force",
+    parameters=(INV_SLIP,),
+    constants=(ROUNDING,),
+    contributions=(scales("M_lam", decay),),
+)

@@ -1,0 +1,14 @@
+"""A torque that resists turning in proportion to the yaw rate:  M_z = −d ψ'."""
+
+from ...quantities import N_M_S, Parameter
+from ..stage import Effect, adds
+
+D = Parameter("d", N_M_S, "torque per yaw rate d that resists turning", off=0.0, smallest_interesting=0.2, lower=0.0,
+              upper=50.0, source="chosen")  # fmt: skip
+
+EFFECT = Effect(
+    "scrub_torque_viscous",
+    "a torque that resists turning in proportion to the yaw rate",
+    parameters=(D,),
+    contributions=(adds("M_z", lambda d, psi_dot: -d * psi_dot, opposes="psi_dot"),),
+)

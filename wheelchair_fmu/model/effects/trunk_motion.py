@@ -1,0 +1,58 @@
+"""The user leans into the push: the CM moves forward against the frame by `amplitude` per 80 N, lagged.
+
+The push F passes a short filter, F_f' = (F − F_f)/τ, then  s' = (amplitude F_f / 80 N − s)/T. The frame
+recoils: its speed is the CM's less s', an accelerometer on it feels −s'', and the CM lies a − s behind
+the pivots and b + s before the axle. The filter is there because s'' needs F' and pushes may jump.
+"""
+
+import casadi as cs
+
+from ...quantities import M, N, Parameter, S, State
+from ..stage import Effect, Row, adds
+
+AMPLITUDE = Parameter("amplitude", M, "forward motion of the CM against the frame per 80 N of total push", off=0.0,
+                      smallest_interesting=0.01, lower=0.0, upper=0.3, source="Fuss2024")  # fmt: skip
+CONSTANTS = (
+    Parameter("push", N, "total push that moves the CM by the amplitude", default=80.0, lower=1.0, upper=1e4, symbol="F_lean",
+              source="Fuss2024"),
+    Parameter("lag", S, "time by which the trunk follows the push", default=0.15, lower=0.01, upper=5.0, symbol="T_lag",
+              source="Fuss2024"),
+    Parameter("filter", S, "time constant that smooths the push", default=0.02, lower=1e-4, upper=1.0, symbol="T_filter",
+              source="chosen"),
+)  # fmt: skip
+
+
+def felt_rate(F_t, felt, T_filter):
+    return (cs.sum1(F_t) - felt) / T_filter
+
+
+def lean_rate(amplitude, felt, F_lean, lean, T_lag):
+    return (amplitude * felt / F_lean - lean) / T_lag
+
+
+def recoil(amplitude, felt, F_lean, lean, T_lag):
+    return -lean_rate(amplitude, felt, F_lean, lean, T_lag)
+
+
+def jerk_back(amplitude, F_t, felt, T_filter, F_lean, lean, T_lag):
+    rate = amplitude * felt_rate(F_t, felt, T_filter) / F_lean
+    return -(rate - lean_rate(amplitude, felt, F_lean, lean, T_lag)) / T_lag
+
+
+EFFECT = Effect(
+    "trunk_motion",
+    "a trunk that leans into the push",
+    parameters=(AMPLITUDE,),
+    constants=CONSTANTS,
+    contributions=(
+        adds("x_f", lambda lean: -lean),
+        adds("x_r", lambda lean: -lean),
+        adds("v_xf", recoil),
+        adds("v_xr", recoil),
+        adds("read_a_x", jerk_back),
+    ),
+    rows=(
+        Row(State("felt_push", N, "total push as the trunk follows it", nominal=10.0, symbol="felt"), lambda: 1.0, felt_rate),
+        Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
+    ),
+)
