@@ -1,0 +1,61 @@
+/* The seam between generated physics and hand-written protocol.
+ *
+ * A generated file defines `wc_the_model`: the table of variables, the kernels, and the few rules that
+ * tie them together. fmi2.c and instance.c read nothing else of the physics.
+ */
+#ifndef WC_MODEL_H
+#define WC_MODEL_H
+
+#include "advance.h"
+
+#define WC_MAX_PARAMETERS 256
+#define WC_MAX_OUTPUTS 128
+
+typedef enum { WC_TIME, WC_PARAMETER, WC_INPUT, WC_OUTPUT } wc_kind;
+typedef enum { WC_REAL, WC_ENUMERATION, WC_BOOLEAN } wc_type;
+
+/* One variable; its value reference is its place in the table. */
+typedef struct {
+    const char *name, *unit;
+    wc_kind kind;
+    wc_type type;
+    int index; /* into the parameters, inputs or outputs of a kernel */
+    int fixed; /* a parameter that may not change once the simulation has started */
+    double start, min, max;
+    const char *const *choices; /* of an enumeration, whose values count from 1; else 0 */
+} wc_variable;
+
+/* While parameter `mode` has the value `when`, state `state` takes every new value of `parameter`. */
+typedef struct {
+    int parameter, mode;
+    double when;
+    int state;
+} wc_jump;
+
+/* Beyond ±limits[law] of one of `count` outputs, the model no longer holds; not looked at while
+ * output `guard` (< 0: none) lies within ±guard_limit. */
+typedef struct {
+    int variable, count; /* the first variable's value reference */
+    const double *limits;
+    int guard;
+    double guard_limit;
+    const char *meaning; /* the rest of the sentence that begins with the variable's value */
+} wc_watch;
+
+typedef struct {
+    const char *name, *token; /* the token (FMI 2: guid) changes with everything that changes results */
+    int variables;
+    const wc_variable *variable;
+    const wc_kernel *const *kernels; /* of the same size; parameter `law` (from 1, within its bounds) chooses */
+    int law;
+    wc_function start_forward; /* (p, w, dp, dw) → dx at the start */
+    int jumps;
+    const wc_jump *jump;
+    int watches;
+    const wc_watch *watch;
+    double tolerance, grid; /* of the internal steps, unless the importer asks for another tolerance */
+} wc_model;
+
+extern const wc_model wc_the_model;
+
+#endif

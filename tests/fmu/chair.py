@@ -1,0 +1,115 @@
+"""An unpacked FMU, by the names of its variables, and what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import fmpy
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+from fmpy.model_description import ModelDescription
+
+DISCARD, ERROR = 2, 3
+
+
+@dataclass(frozen=True)
+class Unpacked:
+    """An FMU, its folder and its description."""
+
+    path: Path
+    folder: Path
+    description: ModelDescription
+
+    @staticmethod
+    def of(path: Path, folder: Path) -> Unpacked:
+        fmpy.extract(str(path), str(folder))
+        return Unpacked(path, folder, fmpy.read_model_description(str(path)))
+
+    @property
+    def library(self) -> Path:
+        return next((self.folder / "binaries" / "linux64").glob("*.so"))
+
+    def reference(self, name: str) -> int:
+        return next(v.valueReference for v in self.description.modelVariables if v.name == name)
+
+    def names(self, causality: str, kind: str = "Real") -> list[str]:
+        return [v.name for v in self.description.modelVariables if v.causality == causality and v.type == kind]
+
+
+class Chair:
+    """One instance. `said` collects (status, category, sentence)."""
+
+    def __init__(self, unpacked: Unpacked, name: str = "chair", logging: bool = False):
+        d = unpacked.description
+        self.unpacked, self.said, self.time = unpacked, [], 0.0
+        self.types = {v.name: v for v in d.modelVariables}
+        self.fmu = FMU2Slave(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name,
+                             modelIdentifier=d.coSimulation.modelIdentifier)  # fmt: skip
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
+
+    def _log(self, environment, name, status, category, text, *rest) -> None:
+        self.said.append((status, category.decode(), text.decode()))
+
+    @property
+    def sentences(self) -> list[str]:
+        return [text for status, _, text in self.said if status > 0]
+
+    def start(self, values: Mapping[str, float] | None = None, time: float = 0.0, **setup) -> Chair:
+        self.time = time
+        self.fmu.setupExperiment(startTime=time, **setup)
+        self.set(values or {})
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        return self
+
+    def set(self, values: Mapping[str, float]) -> None:
+        """Reals in one call, then the rest."""
+        reals = {n: v for n, v in values.items() if self.types[n].type == "Real"}
+        if reals:
+            self.fmu.setReal([self.types[n].valueReference for n in reals], list(reals.values()))
+        for n in values.keys() - reals.keys():
+            self.fmu.setInteger([self.types[n].valueReference], [int(values[n])])
+
+    def get(self, *names: str) -> list[float]:
+        call = {"Real": self.fmu.getReal, "Boolean": self.fmu.getBoolean, "Enumeration": self.fmu.getInteger}
+        return [call[self.types[n].type]([self.types[n].valueReference])[0] for n in names]
+
+    def outputs(self) -> list[float]:
+        return self.fmu.getReal([self.unpacked.reference(n) for n in self.unpacked.names("output")])
+
+    def step(self, h: float, count: int = 1) -> Chair:
+        for _ in range(count):
+            self.fmu.doStep(self.time, h)
+            self.time += h
+        return self
+
+    def free(self) -> None:
+        self.fmu.fmi2FreeInstance(self.fmu.component)
+
+
+@contextmanager
+def chair(unpacked: Unpacked, **options) -> Iterator[Chair]:
+    made = Chair(unpacked, **options)
+    try:
+        yield made
+    finally:
+        made.free()
+
+
+def pushed(i: int) -> dict[str, float]:
+    """Inputs of the i-th step: strokes once a second, turning right, then left."""
+    stroke = 40.0 if i % 100 < 40 else 0.0
+    turn = 5.0 if (i // 100) % 2 == 0 else -6.0
+    return {"push.F_rl": stroke + turn, "push.F_rr": stroke - turn}

@@ -1,0 +1,194 @@
+/* A host without Python: loads an FMU's library and drives it.
+ *
+ *     host LIBRARY GUID MODE STEPS LENGTH IN_LEFT IN_RIGHT OUT...
+ *
+ * The last arguments are value references. MODE: final prints the outputs after the last step; time
+ * prints median and worst cost of set + doStep + get in nanoseconds, the worst over steps of the
+ * smallest of five repeats; memory prints by how many KiB the process has grown and how often the
+ * FMU has asked for memory since it was instantiated; reset prints how many of STEPS runs after
+ * fmi2Reset differ in any byte from the first.
+ */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "fmi2FunctionTypes.h"
+
+#define REPEATS 5
+#define MOST 16
+
+static fmi2InstantiateTYPE *instantiate;
+static fmi2SetupExperimentTYPE *setup;
+static fmi2EnterInitializationModeTYPE *enter;
+static fmi2ExitInitializationModeTYPE *leave;
+static fmi2SetRealTYPE *set;
+static fmi2GetRealTYPE *get;
+static fmi2DoStepTYPE *do_step;
+static fmi2ResetTYPE *reset;
+static fmi2TerminateTYPE *terminate;
+static fmi2FreeInstanceTYPE *release;
+
+static long allocations;
+static fmi2ValueReference in[2], out[MOST];
+static size_t outs;
+
+static void *count_calloc(size_t n, size_t size) {
+    allocations++;
+    return calloc(n, size);
+}
+
+static void logger(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
+                   ...) {
+    (void)e;
+    va_list rest;
+    va_start(rest, text);
+    fprintf(stderr, "%s %d %s: ", name, (int)status, category);
+    vfprintf(stderr, text, rest);
+    fputc('\n', stderr);
+    va_end(rest);
+}
+
+static void check(fmi2Status status, const char *what) {
+    if (status == fmi2OK) return;
+    fprintf(stderr, "%s gives status %d\n", what, (int)status);
+    exit(1);
+}
+
+static void *need(void *library, const char *name) {
+    void *symbol = dlsym(library, name);
+    if (!symbol) {
+        fprintf(stderr, "no %s\n", name);
+        exit(1);
+    }
+    return symbol;
+}
+
+static void begin(fmi2Component c) {
+    check(setup(c, fmi2False, 0, 0, fmi2False, 0), "fmi2SetupExperiment");
+    check(enter(c), "fmi2EnterInitializationMode");
+    check(leave(c), "fmi2ExitInitializationMode");
+}
+
+/* Pushes once a second on both sides, a little more on the left. */
+static void push(long i, double h, fmi2Real w[2]) {
+    double beat = sin(2 * 3.141592653589793 * (double)i * h), both = beat > 0 ? 60 * beat : 0;
+    w[0] = both + 1;
+    w[1] = both - 1;
+}
+
+static void step_with(fmi2Component c, long i, double h, const fmi2Real w[2], fmi2Real *y) {
+    check(set(c, in, 2, w), "fmi2SetReal");
+    check(do_step(c, (double)i * h, h, fmi2True), "fmi2DoStep");
+    check(get(c, out, outs, y), "fmi2GetReal");
+}
+
+static void step(fmi2Component c, long i, double h, fmi2Real *y) {
+    fmi2Real w[2];
+    push(i, h, w);
+    step_with(c, i, h, w, y);
+}
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+static long resident(void) {
+    long size = 0, pages = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f && fscanf(f, "%ld %ld", &size, &pages) != 2) pages = 0;
+    if (f) fclose(f);
+    return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static void measure(fmi2Component c, long steps, double h) {
+    double y[MOST], *least = malloc(sizeof(double) * (size_t)steps);
+    for (int r = 0; r < REPEATS; r++) {
+        check(reset(c), "fmi2Reset");
+        begin(c);
+        for (long i = 0; i < steps; i++) {
+            fmi2Real w[2];
+            push(i, h, w);
+            double before = now();
+            step_with(c, i, h, w, y);
+            double cost = now() - before;
+            if (!r || cost < least[i]) least[i] = cost;
+        }
+    }
+    qsort(least, (size_t)steps, sizeof *least, ascending);
+    printf("%.0f %.0f\n", least[steps / 2], least[steps - 1]);
+    free(least);
+}
+
+static long count_different(fmi2Component c, long runs, double h) {
+    double first[MOST], y[MOST];
+    long different = 0;
+    for (long r = 0; r < runs; r++) {
+        check(reset(c), "fmi2Reset");
+        begin(c);
+        for (long i = 0; i < 20; i++) step(c, i, h, y);
+        if (!r) memcpy(first, y, sizeof first);
+        different += memcmp(first, y, sizeof(double) * outs) != 0;
+    }
+    return different;
+}
+
+int main(int n, char **word) {
+    if (n < 9 || n - 8 > MOST) return 2;
+    void *library = dlopen(word[1], RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+        fprintf(stderr, "%s\n", dlerror());
+        return 1;
+    }
+    instantiate = (fmi2InstantiateTYPE *)need(library, "fmi2Instantiate");
+    setup = (fmi2SetupExperimentTYPE *)need(library, "fmi2SetupExperiment");
+    enter = (fmi2EnterInitializationModeTYPE *)need(library, "fmi2EnterInitializationMode");
+    leave = (fmi2ExitInitializationModeTYPE *)need(library, "fmi2ExitInitializationMode");
+    set = (fmi2SetRealTYPE *)need(library, "fmi2SetReal");
+    get = (fmi2GetRealTYPE *)need(library, "fmi2GetReal");
+    do_step = (fmi2DoStepTYPE *)need(library, "fmi2DoStep");
+    reset = (fmi2ResetTYPE *)need(library, "fmi2Reset");
+    terminate = (fmi2TerminateTYPE *)need(library, "fmi2Terminate");
+    release = (fmi2FreeInstanceTYPE *)need(library, "fmi2FreeInstance");
+    long steps = atol(word[4]);
+    double h = atof(word[5]), y[MOST];
+    for (int i = 0; i < 2; i++) in[i] = (fmi2ValueReference)atoi(word[6 + i]);
+    for (outs = 0; (int)outs < n - 8; outs++) out[outs] = (fmi2ValueReference)atoi(word[8 + outs]);
+
+    fmi2CallbackFunctions callbacks = {logger, count_calloc, free, 0, 0};
+    fmi2Component c = instantiate("chair", fmi2CoSimulation, word[2], "", &callbacks, fmi2False, fmi2False);
+    if (!c) return 1;
+    begin(c);
+    if (!strcmp(word[3], "final")) {
+        for (long i = 0; i < steps; i++) step(c, i, h, y);
+        for (size_t i = 0; i < outs; i++) printf("%.17g\n", y[i]);
+    } else if (!strcmp(word[3], "time")) {
+        measure(c, steps, h);
+    } else if (!strcmp(word[3], "memory")) {
+        for (long i = 0; i < 1000; i++) step(c, i, h, y);
+        long before = resident(), asked = allocations;
+        for (long i = 1000; i < steps; i++) step(c, i, h, y);
+        printf("%ld %ld\n", resident() - before, allocations - asked);
+    } else if (!strcmp(word[3], "reset")) {
+        printf("%ld\n", count_different(c, steps, h));
+    } else {
+        return 2;
+    }
+    check(terminate(c), "fmi2Terminate");
+    release(c);
+    release(0);
+    dlclose(library);
+    return 0;
+}

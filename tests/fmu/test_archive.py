@@ -1,0 +1,213 @@
+"""What is in an archive, and that two builds are the same."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from fmpy.fmi1 import FMICallException
+
+from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.fmu import dependencies
+from wheelchair_fmu.fmu import native as native_flavour
+from wheelchair_fmu.fmu.build import build, with_chosen_effects
+from wheelchair_fmu.fmu.describe import units
+from wheelchair_fmu.fmu.validate import problems
+from wheelchair_fmu.fmu.variables import interface
+from wheelchair_fmu.model.stage import Effect
+from wheelchair_fmu.model.variant import Variant, variant_text
+from wheelchair_fmu.quantities import ONE, Parameter
+
+from .chair import Unpacked, chair
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("flavour", ["native", "everything", "in_python"])
+def test_fmpy_finds_no_fault(flavour, request):
+    assert problems(request.getfixturevalue(flavour).path) == []
+
+
+@pytest.mark.parametrize("flavour", ["native", "in_python"])
+def test_two_builds_are_the_same_bytes(flavour, request, tmp_path):
+    first = request.getfixturevalue(flavour).path
+    again = build(target=tmp_path / "again.fmu", flavour="native" if flavour == "native" else "python")
+    assert first.read_bytes() == again.read_bytes()
+
+
+def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
+    exported = _lines("nm", "-D", "--defined-only", str(native.library))
+    assert len(exported) > 30
+    assert [line for line in exported if not re.fullmatch(r"\S+ T fmi2\w+", line)] == []
+    needed = re.findall(r"\(NEEDED\).*\[(.+)]", "\n".join(_lines("readelf", "-d", str(native.library))))
+    assert set(needed) <= {"libc.so.6", "libm.so.6"}
+    asked = _lines("nm", "-D", "--undefined-only", str(native.library))
+    memory = [line.split()[-1].split("@")[0] for line in asked if "alloc" in line]
+    assert set(memory) <= {"calloc"}  # the importer's, or this one; never malloc or realloc
+
+
+def test_compiles_without_a_warning(native, tmp_path):
+    sources = native.folder / "sources"
+    done = subprocess.run([*compiler.command(), "-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
+                           "-ffp-contract=off", "-fsyntax-only", f"-I{native_flavour.headers()}",
+                           *(str(sources / name) for name in ("fmi2.c", "instance.c", "advance.c", "model_data.c"))],
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+
+
+def test_lists_its_sources_and_carries_documentation(native):
+    names = set(zipfile.ZipFile(native.path).namelist())
+    description = ElementTree.fromstring((native.folder / "modelDescription.xml").read_bytes())
+    listed = {f"sources/{file.get('name')}" for file in description.iter("File")}
+    assert listed and listed <= names
+    assert {"documentation/index.html", "documentation/licenses/license.txt", "model.png"} <= names
+    page = (native.folder / "documentation" / "index.html").read_text(encoding="utf-8")
+    assert "x_m  forward" in page and "push.total_needed" in page and "$" not in page
+
+
+def test_every_variable_is_described(native):
+    for v in native.description.modelVariables:
+        assert v.description, v.name
+        if v.type == "Real":
+            assert v.unit, v.name
+        if v.causality in ("parameter", "input"):
+            assert v.start is not None, v.name
+
+
+def test_units_have_the_right_dimensions_and_display_units():
+    found = {u.get("name"): u for u in units(interface(Variant()))}
+    assert dict(found["N.m"].find("BaseUnit").items()) == {"kg": "1", "m": "2", "s": "-2"}
+    assert dict(found["bar"].find("BaseUnit").items()) == {"kg": "1", "m": "-1", "s": "-2", "factor": "100000"}
+    assert float(found["m/s"].find("DisplayUnit").get("factor")) == 3.6
+    assert float(found["rad"].find("DisplayUnit").get("factor")) == pytest.approx(57.29577951308232, rel=1e-15)
+
+
+def test_dependencies():
+    plain = interface(Variant())
+    on = {name: {v.name: kind for v, kind in known} for name, known in dependencies.outputs(plain).items()}
+    assert on["chair.x"] == {} and on["load.rl"] == {}
+    assert on["sensor.a_x"]["push.F_rl"] == "tunable" and on["sensor.a_x"]["brake.rl"] == "dependent"
+    assert "push.F_rl" not in on["push.total_needed"]  # it cancels
+    start = {name: {v.name for v, _ in known} for name, known in dependencies.initial(plain).items()}
+    assert start["chair.u"] == {"start.u", "speed.u", "speed.mode"}
+    assert {"tyre.law", "tyre.C_lambda", "start.psi_dot"} <= start["force.F_srl"]
+    assert "tyre.law" not in start["load.rl"]
+
+
+def test_dependencies_go_through_algebraic_states():
+    """Load transfer reads an acceleration that is only known at the end of the line."""
+    transfer = interface(Variant().with_effects(["lateral_load_transfer"]))
+    on = {name: {v.name for v, _ in known} for name, known in dependencies.outputs(transfer).items()}
+    assert {"floor.slope_x", "floor.slope_y"} <= on["load.rl"] and "push.F_rl" not in on["load.rl"]
+    start = {name: {v.name for v, _ in known} for name, known in dependencies.initial(transfer).items()}
+    assert {"tyre.law", "tyre.C_lambda", "start.psi_dot", "floor.slope_y"} <= start["load.rl"]
+
+
+def test_dependencies_are_what_the_values_say(everything):
+    """Moving an input moves no output that does not depend on it."""
+    depends = {u.variable.name: {d.name for d in u.dependencies} for u in everything.description.outputs}
+    outputs = everything.names("output")
+    with chair(everything) as c:
+        c.start({"effect.lateral_load_transfer.h": 0.5, "effect.relaxation_length.sigma": 0.1, "start.psi_dot": 0.3})
+        c.step(0.01, 20)
+        c.set({"push.F_rl": 10.0, "brake.rr": 0.1})
+        before = c.outputs()
+        for name in everything.names("input"):
+            old = c.get(name)[0]
+            c.set({name: 0.2})
+            moved = {o for o, a, b in zip(outputs, before, c.outputs(), strict=True) if abs(a - b) > 1e-9}
+            assert moved <= {o for o in outputs if name in depends[o]}, name
+            c.set({name: old})
+
+
+def test_effects_on_request():
+    catalogue = Variant().catalogue
+    stateless = {e.id for e in catalogue.values() if e.stateless}
+    assert set(with_chosen_effects(Variant()).effects) == stateless
+    assert set(with_chosen_effects(Variant(), "all").effects) == {e.id for e in catalogue.values() if not e.delays_record}
+    assert with_chosen_effects(Variant(), "all").choice.caster == "swivelling"
+    assert with_chosen_effects(Variant(), "none").effects == ()
+    assert with_chosen_effects(Variant(), "gyro_scale, wheel_inertia").effects == ("gyro_scale", "wheel_inertia")
+
+
+def test_an_effect_that_needs_a_tyre_law_leaves_no_other(tmp_path):
+    effect = Effect("bent", "an effect of one law", (Parameter("k", ONE, "size", off=0.0),), needs={"tyre": "dugoff"})
+    variant = Variant(catalogue={"bent": effect}).with_effects(["bent"])
+    bent = Unpacked.of(build(variant, tmp_path / "bent.fmu", effects="none"), tmp_path / "bent")
+    with chair(bent) as c:
+        with pytest.raises(FMICallException):
+            c.set({"tyre.law": 1})
+        assert c.sentences == ["tyre.law = 1 is none of its choices 2 (dugoff); the old value 2 (dugoff) stays"]
+        assert c.start().step(0.01).get("chair.u")[0] < 1
+
+
+def test_a_variant_gives_start_values(tmp_path):
+    variant = Variant().with_values({"chair.m": 91.5, "tyre.law": "dugoff", "effect.relaxation_length.sigma": 0.12})
+    file = tmp_path / "better.toml"
+    file.write_text(variant_text(variant), encoding="utf-8")
+    done = _build(["--variant", str(file), "--effects", "none", "-o", str(tmp_path / "better.fmu")])
+    assert done.returncode == 0, done.stderr
+    better = Unpacked.of(tmp_path / "better.fmu", tmp_path / "better")
+    starts = {v.name: v.start for v in better.description.modelVariables}
+    assert float(starts["chair.m"]) == 91.5 and int(starts["tyre.law"]) == 2
+    assert float(starts["effect.relaxation_length.sigma"]) == 0.12 and "effect.gyro_scale.k" not in starts
+    with chair(better) as c:
+        c.start()
+        assert c.get("chair.m", "tyre.law", "effect.relaxation_length.sigma") == [91.5, 2, 0.12]
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "says"),
+    [
+        (["--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
+        (["--effects", "push_force_delay"], 2, "shifts recorded pushes in time and is no part of an FMU"),
+        (["--flavour", "pyton"], 2, "no flavour 'pyton'; did you mean 'python'?"),
+        (["--equations", "papr"], 2, "did you mean 'paper'?"),
+        (["--variants", "x", "y"], 2, "unrecognized arguments: --variants"),
+        (["--variant", "nowhere.toml"], 1, "nowhere.toml: no such file"),
+    ],
+)
+def test_bad_arguments_get_one_line(words, code, says, tmp_path):
+    done = _build([*words, "-o", str(tmp_path / "x.fmu")])
+    assert done.returncode == code
+    assert says in done.stderr and done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_half_written_where_it_cannot_be(tmp_path):
+    (tmp_path / "dist").write_text("a file, not a folder")
+    done = _build(["--effects", "none", "-o", str(tmp_path / "dist" / "x.fmu")])
+    assert done.returncode == 1 and "cannot be written" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not installed: `pip install ziglang`")
+def test_builds_with_zig_instead_of_a_system_compiler(tmp_path, native):
+    code = ("from pathlib import Path; from wheelchair_fmu.fmu.build import build; import sys; "
+            "build(target=Path(sys.argv[1]))")  # fmt: skip
+    done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "zig.fmu")], capture_output=True, text=True, cwd=ROOT,
+                          env=_environment(CC=f"{sys.executable} -m ziglang cc"))  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    with chair(Unpacked.of(tmp_path / "zig.fmu", tmp_path / "zig")) as by_zig, chair(native) as by_cc:
+        results = [c.start({"push.F_rl": 20.0}).step(0.01, 100).outputs() for c in (by_zig, by_cc)]
+    assert results[0] == pytest.approx(results[1], rel=1e-12, abs=1e-12)
+
+
+def _lines(*words: str) -> list[str]:
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+def _environment(**more: str) -> dict[str, str]:
+    import os
+
+    return {**os.environ, "PYTHONPATH": str(ROOT), **more}
+
+
+def _build(words: list[str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, str(ROOT / "build_fmu.py"), *words], capture_output=True, text=True,
+                          env=_environment())  # fmt: skip

@@ -1,0 +1,1 @@
+"""From the model to an FMU: describe, generate, compile, pack, validate."""

@@ -1,0 +1,99 @@
+"""The generated C: kernels, and the tables that fmu_src/model.h asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isinf
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import casadi as cs
+
+from ..engine.kernel import kernel
+from ..engine.source import c_source
+from ..errors import BuildError
+from ..model.variant import LAWS
+from ..model.wheelchair import Model
+from .variables import GRID, TOLERANCE, Interface, Variable
+
+LIMITS = {"parameters": 256, "outputs": 128, "states": 32, "inputs": 32}  # as in model.h and advance.h
+
+
+def generate(face: Interface) -> dict[str, str]:
+    """C files by name, all but the tables, which need the token that depends on these."""
+    _refuse_too_large(face.model)
+    files = {f"{law}.c": c_source(kernel(model), law) for law, model in face.models.items()}
+    return {**files, "start_forward.c": _start_forward(face.model)}
+
+
+def _refuse_too_large(m: Model) -> None:
+    sizes = {"parameters": m.p, "outputs": m.y, "states": m.x, "inputs": m.w}
+    for what, symbol in sizes.items():
+        if symbol.numel() > LIMITS[what]:
+            raise BuildError(f"the model has {symbol.numel()} {what}, more than the {LIMITS[what]} that an instance "
+                             f"holds; raise WC_MAX_{what.upper()}")  # fmt: skip
+
+
+def _start_forward(m: Model) -> str:
+    """How the states at the start change along changes of parameters and inputs."""
+    dp, dw = cs.SX.sym("dp", m.p.numel()), cs.SX.sym("dw", m.w.numel())
+    dx = cs.densify(cs.jtimes(m.start, cs.vertcat(m.p, m.w), cs.vertcat(dp, dw)))
+    generator = cs.CodeGenerator("start_forward.c", {"with_header": False})
+    generator.add(cs.Function("wc_start_forward", [m.p, m.w, dp, dw], [dx]))
+    with TemporaryDirectory() as folder:
+        return Path(generator.generate(folder + "/")).read_text()
+
+
+def tables(face: Interface, name: str, token: str) -> str:
+    """model_data.c: `const wc_model wc_the_model`."""
+    kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in LAWS["tyre"])
+    return "\n".join([
+        '#include "model.h"',
+        "",
+        "#include <math.h>",
+        "",
+        f"extern const wc_kernel {', '.join(f'{law}_kernel' for law in face.models)};",
+        "int wc_start_forward(const double **arg, double **res, long long *iw, double *w, int mem);",
+        "",
+        *(_choices(v) for v in face.variables if v.choices),
+        *_array("wc_variable", "variables", map(_variable, face.variables)),
+        *_array("wc_jump", "jumps", (f"{{{j.parameter.index}, {j.mode.index}, {j.when}, {j.state}}}"
+                                     for j in face.jumps)),
+        *(f"static const double limits_{i}[] = {{{', '.join(map(_number, w.limits))}}};"
+          for i, w in enumerate(face.watches)),
+        *_array("wc_watch", "watches", (
+            f"{{{w.variables[0].reference}, {len(w.variables)}, limits_{i}, {w.guard.index if w.guard else -1}, "
+            f"{_number(w.guard_limit)}, {_string(w.meaning)}}}" for i, w in enumerate(face.watches))),
+        f"static const wc_kernel *const kernels[] = {{{kernels}}};",
+        "",
+        "const wc_model wc_the_model = {",
+        f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
+        f"    {face.by_name['tyre.law'].index}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
+        f"watches, {_number(TOLERANCE)}, {_number(GRID)}}};",
+        "",
+    ])  # fmt: skip
+
+
+def _choices(v: Variable) -> str:
+    words = ", ".join(map(_string, v.choices))
+    return f"static const char *const choices_{v.reference}[] = {{{words}}};"
+
+
+def _array(kind: str, name: str, rows: Iterable[str]) -> list[str]:
+    return [f"static const {kind} {name}[] = {{", *(f"    {row}," for row in rows), "};"]
+
+
+def _variable(v: Variable) -> str:
+    start = 0.0 if v.start is None else v.start
+    return (f"{{{_string(v.name)}, {_string(v.unit.name)}, WC_{v.kind.upper()}, WC_{v.type.upper()}, {v.index}, "
+            f"{int(v.fixed)}, {_number(start)}, {_number(v.lower)}, {_number(v.upper)}, "
+            f"{f'choices_{v.reference}' if v.choices else '0'}}}")  # fmt: skip
+
+
+def _number(value: float) -> str:
+    return ("-" if value < 0 else "") + "INFINITY" if isinf(value) else repr(float(value))
+
+
+def _string(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'

@@ -1,0 +1,50 @@
+"""documentation/index.html inside the archive, and what lies beside it."""
+
+from __future__ import annotations
+
+from html import escape
+from math import isfinite
+from pathlib import Path
+from string import Template
+
+from ..model import frames
+from .describe import number
+from .variables import Interface, Variable
+
+SOURCE = Path(__file__).parents[2] / "fmu_src"
+
+
+def files(face: Interface) -> dict[str, bytes]:
+    """Documentation, licence and icon by their path in the archive."""
+    page = (SOURCE / "documentation" / "index.html").read_text(encoding="utf-8")
+    choice = face.variant.choice
+    filled = Template(page).substitute(
+        frames=escape((frames.__doc__ or "").split("::", 1)[1].strip("\n")),
+        parameters=_table(face, "parameter"),
+        inputs=_table(face, "input"),
+        outputs=_table(face, "output"),
+        effects=_effects(face),
+        equations=escape(choice.equations),
+        caster=escape(choice.caster),
+    )
+    return {
+        "documentation/index.html": filled.encode(),
+        "documentation/licenses/license.txt": (SOURCE / "documentation" / "license.txt").read_bytes(),
+        "model.png": (SOURCE / "model.png").read_bytes(),
+    }
+
+
+def _effects(face: Interface) -> str:
+    active = face.model.effects
+    return "\n".join(f"<li><code>{escape(e.id)}</code>: {escape(e.title)}</li>" for e in active) or "<li>none</li>"
+
+
+def _table(face: Interface, kind: str) -> str:
+    return "\n".join(_row(v) for v in face.of(kind))
+
+
+def _row(v: Variable) -> str:
+    bounds = " to ".join(number(b) if isfinite(b) else "…" for b in (v.lower, v.upper))
+    start = "" if v.start is None else v.choices[int(v.start) - 1] if v.choices else number(v.start)
+    cells = (v.name, v.unit.name, start, "" if bounds == "… to …" else bounds, v.variability, v.description, v.source)
+    return "<tr>" + "".join(f"<td>{escape(str(c))}</td>" for c in cells) + "</tr>"

@@ -1,0 +1,42 @@
+"""The archive: the same files give the same bytes, and it appears whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ..errors import BuildError
+
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest a zip file can say, so that no build shows its date
+Files = Mapping[str, bytes]
+
+
+def write(target: Path, files: Files, faults: Callable[[Path], list[str]]) -> Path:
+    """Write an archive of `files` by path, if it has no faults. Raises BuildError where that is not possible."""
+    beside = target.with_name(f".{os.getpid()}-{target.name}")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            _zip(beside, files)
+            if found := faults(beside):
+                raise BuildError(f"{target}: would not be a valid FMU: {'; '.join(found)}")
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+    except OSError as error:
+        raise BuildError(f"{target}: cannot be written: {error.strerror}; give another place with -o") from error
+    return target
+
+
+def _zip(path: Path, files: Files) -> None:
+    # The description comes first, as readers expect; the rest in alphabetical order.
+    order = sorted(files, key=lambda name: (name != "modelDescription.xml", name))
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in order:
+            entry = zipfile.ZipInfo(name, EPOCH)
+            entry.create_system = 3  # unix, so that permissions mean the same wherever it was built
+            entry.external_attr = 0o644 << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, files[name])

@@ -1,0 +1,132 @@
+"""The Python flavour: the model's own files inside an FMU, driven by pythonfmu.
+
+pythonfmu writes neither units nor bounds nor right InitialUnknowns, so the description is the native
+one. The package inside gets a name of its own for each build: two FMUs whose modules share a name
+silently use each other's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+import sys
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import isfinite
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+from uuid import UUID
+
+from ..errors import BuildError
+from ..model.variant import LAWS
+from . import describe, documentation
+from .variables import GRID, TOLERANCE, Interface, Variable
+
+NAME = "WheelchairPython"
+PACKAGE = Path(__file__).parents[1]
+PLACEHOLDER = "wheelchair_package"  # what slave.py calls the package before it has its name
+ENGINE = ("__init__.py", "kernel.py", "lu.py", "rodas.py")
+
+
+def archive(face: Interface) -> dict[str, bytes]:
+    """Everything in the archive, by path."""
+    modules = _modules(face)
+    token = _token(face, modules)
+    package = f"wheelchair_python_{token[1:9]}"
+    with TemporaryDirectory() as folder:
+        source = Path(folder) / "source"
+        script = _write(source, package, modules, _interface(face, token))
+        files = _pythonfmu(script, source / package, Path(folder) / f"{NAME}.fmu")
+    description = describe.description(face, NAME, token, describe.PYTHON, [])
+    return {**files, "modelDescription.xml": description, **documentation.files(face)}
+
+
+def _modules(face: Interface) -> dict[str, str]:
+    """The model's files by their path in the package, and stepping.py beside them."""
+    files = [PACKAGE / "__init__.py", PACKAGE / "quantities.py", PACKAGE / "errors.py"]
+    files += [f for f in (PACKAGE / "model").rglob("*.py") if f.name != "variant.py"]
+    files += [PACKAGE / "engine" / name for name in ENGINE]
+    texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
+    for effect in face.model.effects:  # a user's own effects come along
+        if f"model/effects/{effect.id}.py" in texts:
+            continue
+        law = effect.contributions[0].law if effect.contributions else effect.rows[0].rate
+        file = Path(inspect.getfile(inspect.unwrap(law)))
+        texts[f"model/effects/{effect.id}.py"] = file.read_text(encoding="utf-8")
+    texts["stepping.py"] = (documentation.SOURCE / "python" / "stepping.py").read_text(encoding="utf-8")
+    return texts
+
+
+def _token(face: Interface, modules: dict[str, str]) -> str:
+    slave = (documentation.SOURCE / "python" / "slave.py").read_text(encoding="utf-8")
+    content = "\0".join((json.dumps(_interface(face, ""), sort_keys=True), slave,
+                         *(name + "\0" + modules[name] for name in sorted(modules))))  # fmt: skip
+    return "{" + str(UUID(bytes=hashlib.sha256(content.encode()).digest()[:16])) + "}"
+
+
+def _interface(face: Interface, token: str) -> dict[str, Any]:
+    """What the slave has to know, as plain data."""
+    choice = face.variant.choice
+    return {
+        "token": token,
+        "choice": {"caster": choice.caster, "equations": choice.equations},
+        "laws": LAWS["tyre"],
+        "effects": [e.id for e in face.model.effects],
+        "tolerance": TOLERANCE,
+        "grid": GRID,
+        "log_categories": describe.LOG_CATEGORIES,
+        "variables": [_variable(v) for v in face.variables],
+        "jumps": [{"parameter": j.parameter.name, "mode": j.mode.name, "when": j.when, "state": j.state}
+                  for j in face.jumps],
+        "watches": [{"variables": [v.name for v in w.variables], "limits": w.limits, "meaning": w.meaning,
+                     "guard": w.guard.name if w.guard else "", "guard_limit": w.guard_limit} for w in face.watches],
+    }  # fmt: skip
+
+
+def _variable(v: Variable) -> dict[str, Any]:
+    start = int(v.start or 0) if v.choices else v.start
+    lower, upper = (b if isfinite(b) else None for b in (v.lower, v.upper))
+    return {"name": v.name, "kind": v.kind, "type": v.type, "unit": v.unit.name, "start": start, "min": lower,
+            "max": upper, "variability": v.variability, "choices": v.choices}  # fmt: skip
+
+
+def _write(source: Path, package: str, modules: dict[str, str], interface: dict[str, Any]) -> Path:
+    """The package and the slave's script, in the folder `source`; returns the script."""
+    for name, text in modules.items():
+        file = source / package / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    (source / package / "interface.json").write_text(json.dumps(interface, indent=1), encoding="utf-8")
+    slave = (documentation.SOURCE / "python" / "slave.py").read_text(encoding="utf-8")
+    script = source / f"{package}_slave.py"
+    script.write_text(slave.replace(PLACEHOLDER, package), encoding="utf-8")
+    return script
+
+
+def _pythonfmu(script: Path, package: Path, target: Path) -> dict[str, bytes]:
+    """What pythonfmu puts into the archive, by path."""
+    try:
+        from pythonfmu.builder import FmuBuilder
+    except ImportError as error:
+        raise BuildError("the python flavour needs pythonfmu; `pip install pythonfmu`") from error
+    with _imports_undone(package.name):
+        FmuBuilder.build_FMU(script, dest=target, project_files=[package])
+    with zipfile.ZipFile(target) as made:
+        names = [n for n in made.namelist() if not n.endswith("/") and "__pycache__" not in n]
+        return {name: made.read(name) for name in names}
+
+
+@contextmanager
+def _imports_undone(package: str) -> Iterator[None]:
+    """pythonfmu imports the script to ask for its variables; afterwards it never happened."""
+    path, bytecode = list(sys.path), sys.dont_write_bytecode
+    sys.dont_write_bytecode = True
+    try:
+        yield
+    finally:
+        sys.path[:], sys.dont_write_bytecode = path, bytecode
+        for name in [n for n in sys.modules if n.startswith(package)]:
+            del sys.modules[name]

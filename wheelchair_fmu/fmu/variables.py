@@ -1,0 +1,163 @@
+"""The table of FMI variables, one record each, that both flavours, both texts and the C tables are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+
+import casadi as cs
+
+from ..errors import BuildError
+from ..model.variant import LAWS, Variant
+from ..model.wheelchair import Model
+from ..quantities import Output, Parameter, S, Unit
+
+TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
+GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
+STOP, STEP = 10.0, 0.01  # s, of the default experiment
+HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a state follows at once: in which mode, which
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One FMI variable. `reference` is its value reference, `index` its place among the model's p, w or y."""
+
+    reference: int
+    name: str
+    description: str
+    unit: Unit
+    kind: str  # time | parameter | input | output
+    type: str = "Real"  # Real | Enumeration | Boolean
+    index: int = 0
+    start: float | None = None
+    lower: float = -inf
+    upper: float = inf
+    nominal: float = 1.0
+    fixed: bool = False
+    choices: tuple[str, ...] = ()
+    source: str = ""
+
+    @property
+    def variability(self) -> str:
+        if self.kind == "parameter":
+            return "fixed" if self.fixed else "tunable"
+        return "continuous" if self.type == "Real" else "discrete"
+
+
+@dataclass(frozen=True)
+class Jump:
+    """While the parameter `mode` is `when`, the state at `state` takes every new value of `parameter`."""
+
+    parameter: Variable
+    mode: Variable
+    when: int
+    state: int
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Beyond ±limits (by tyre law) of an output, the model no longer holds."""
+
+    variables: tuple[Variable, ...]  # neighbours in the table
+    limits: tuple[float, ...]
+    guard: Variable | None  # not looked at while this one lies within ±guard_limit
+    guard_limit: float
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Interface:
+    """A variant seen through FMI: its variables, and a model of the same shape for each tyre law it can have."""
+
+    variant: Variant
+    models: Mapping[str, Model]
+    variables: tuple[Variable, ...]
+
+    @property
+    def model(self) -> Model:
+        return self.models[self.variant.choice.tyre]
+
+    @cached_property
+    def by_name(self) -> dict[str, Variable]:
+        return {v.name: v for v in self.variables}
+
+    def of(self, kind: str) -> tuple[Variable, ...]:
+        return tuple(v for v in self.variables if v.kind == kind)
+
+    @property
+    def jumps(self) -> tuple[Jump, ...]:
+        states = [s.symbol for s in self.model.states for _ in s.names]
+        modes = {name: self.by_name[mode] for name, (mode, _, _) in HELD.items()}
+        return tuple(Jump(self.by_name[name], modes[name], 1 + modes[name].choices.index(when), states.index(state))
+                     for name, (_, when, state) in HELD.items())  # fmt: skip
+
+    @property
+    def watches(self) -> tuple[Watch, ...]:
+        name = self.by_name
+        # The paper calls its curves linear below 3°; the other laws were fitted to 9°.
+        slip = tuple({"linear": 0.0524}.get(law, 0.16) for law in LAWS["tyre"])
+        return (
+            Watch((name["load.lifted"],), (0.5,) * len(slip), None, 0.0,
+                  "a wheel has left the ground and the model no longer holds; push or turn less"),
+            Watch((name["slip.rl"], name["slip.rr"]), slip, name["chair.u"], 0.3,
+                  "the tyre law is not meant for so much slip; push or turn less, or choose another tyre.law"),
+        )  # fmt: skip
+
+
+def interface(variant: Variant) -> Interface:
+    """The FMI variables of a variant. Raises BuildError where the tyre laws make models of different shapes."""
+    variant = _without_delays(variant)
+    needed = {e.needs["tyre"] for e in variant.active() if "tyre" in e.needs}
+    laws = [law for law in LAWS["tyre"] if law in needed or not needed]
+    models = {law: replace(variant, choice=replace(variant.choice, tyre=law)).model() for law in laws}
+    shapes = {(m.parameters, m.inputs, m.states, m.outputs) for m in models.values()}
+    if len(shapes) != 1:
+        raise BuildError("the tyre laws differ in parameters, states or outputs; one FMU cannot hold them all")
+    model = models[variant.choice.tyre]
+    starts = variant.vector()
+    only_start = _only_at_the_start(models)
+    table = [Variable(0, "time", "simulation time", S, "time")]
+    for i, (p, start) in enumerate(zip(model.parameters, starts, strict=True)):
+        variable = _parameter(len(table), i, p, float(start), p.fixed or (i in only_start and p.name not in HELD))
+        if p.name == "tyre.law":
+            variable = replace(variable, lower=1 + p.choices.index(laws[0]), upper=1 + p.choices.index(laws[-1]))
+        table.append(variable)
+    for i, w in enumerate(model.inputs):
+        table.append(Variable(len(table), w.name, w.meaning, w.unit, "input", "Real", i, w.start, w.lower, w.upper,
+                              w.nominal))  # fmt: skip
+    for record, i in zip(model.outputs, range(model.y.numel()), strict=True):
+        table.append(_output(len(table), i, record))
+    return Interface(variant, models, tuple(table))
+
+
+def _without_delays(variant: Variant) -> Variant:
+    """What shifts a record in time is about the measurement; an FMU's pushes act when they are set."""
+    late = [e.id for e in variant.active() if e.delays_record]
+    values = {name: v for name, v in variant.values.items() if not any(name.startswith(f"effect.{e}.") for e in late)}
+    return replace(variant, effects=tuple(e for e in variant.effects if e not in late), values=values)
+
+
+def _parameter(reference: int, index: int, p: Parameter, start: float, fixed: bool) -> Variable:
+    kind = "Enumeration" if p.choices else "Real"
+    lower, upper = (1, len(p.choices)) if p.choices else (p.lower, p.upper)
+    assert p.nominal is not None
+    return Variable(reference, p.name, p.meaning, p.unit, "parameter", kind, index, start, lower, upper, p.nominal,
+                    fixed, p.choices, p.source)  # fmt: skip
+
+
+def _output(reference: int, index: int, o: Output) -> Variable:
+    kind = "Boolean" if o.boolean else "Real"
+    return Variable(reference, o.name, o.meaning, o.unit, "output", kind, index, None, o.lower, o.upper, o.nominal)
+
+
+def _only_at_the_start(models: Mapping[str, Model]) -> set[int]:
+    """Places of the parameters that the start depends on, and nothing afterwards: changing them later is no use."""
+
+    def used(m: Model, *expressions: cs.SX) -> set[int]:
+        pattern = cs.Function("f", [m.x, m.w, m.p], [cs.vertcat(*expressions)]).jac_sparsity(0, 2)
+        return set(pattern.get_triplet()[1])
+
+    late = set().union(*(used(m, m.f, m.y, m.mass) for m in models.values()))
+    return set().union(*(used(m, m.start) for m in models.values())) - late
