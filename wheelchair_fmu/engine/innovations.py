@@ -20,9 +20,12 @@ MOST = 64  # states, pushes and readings together, as in innovations.c
 
 
 class _Filter(ctypes.Structure):
-    _fields_ = (*((name, ctypes.c_int) for name in ("nx", "nq", "nz", "m")),
-                *((name, ctypes.c_void_p) for name in ("A", "B", "C", "H", "D", "input_sd", "sd", "phi", "start_cov",
-                                                       "start_mean")), ("blind", ctypes.c_int))  # fmt: skip
+    _fields_ = (
+        *((name, ctypes.c_int) for name in ("nx", "nq", "nz", "m")),
+        *((name, ctypes.c_void_p)
+          for name in ("A", "B", "C", "H", "D", "input_sd", "sd", "phi", "start_cov", "start_mean")),
+        ("blind", ctypes.c_int),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -7,23 +7,40 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import FRONT, N_M, RAD, N
+from ...quantities import FRONT, N_M, RAD, M, N, Parameter
 from ..smooth import grip
 from ..stage import Alternative, define, stage
 
+PARAMETERS = (
+    Parameter("caster.trail", M, "caster trail c in (8): the lever between a torque on the caster and its lateral force",
+              default=0.05, lower=1e-3, upper=0.5, source="chosen: common casters, 30 to 60 mm"),
+)  # fmt: skip
+
+
+@stage(define("delta", RAD, "caster angles", "-swap", FRONT))
+def angles(v_xf, v_yf, drag_eps):
+    tiny = 1e-6 * drag_eps  # keeps the angle's slope finite at rest
+    return cs.atan2(v_yf, v_xf + tiny)  # (9), (10)
+
+
+@stage(define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT))
+def bearing(delta):
+    return 0 * delta
+
 
 @stage(
-    define("delta", RAD, "caster angles", "-swap", FRONT),
     define("F_xf", N, "force of each caster on the chair along x_m", "+swap", FRONT),
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f, drag_eps):
-    tiny = 1e-6 * drag_eps  # keeps the angle's slope finite at rest
-    delta = cs.atan2(v_yf, v_xf + tiny)  # (9), (10)
+def casters(v_xf, v_yf, D_f, M_w, trail, drag_eps):
+    """Rolling resistance against the pivot's velocity, M_w / c across it."""
     speed_squared = v_xf * v_xf + v_yf * v_yf
-    F_xf, F_yf = -D_f * grip(v_xf, speed_squared, drag_eps), -D_f * grip(v_yf, speed_squared, drag_eps)
-    return delta, F_xf, F_yf, 0 * D_f
+    speed = cs.sqrt(speed_squared + drag_eps * drag_eps)
+    lateral = M_w / trail / speed  # (8)
+    F_xf = -D_f * grip(v_xf, speed_squared, drag_eps) - lateral * v_yf
+    F_yf = -D_f * grip(v_yf, speed_squared, drag_eps) + lateral * v_xf
+    return F_xf, F_yf, -M_w
 
 
-LAW = Alternative("ideal", (casters,))
+LAW = Alternative("ideal", (angles, bearing, casters), PARAMETERS)

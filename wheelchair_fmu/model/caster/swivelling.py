@@ -19,12 +19,12 @@ from ...quantities import FRONT, M_S, N_M, RAD, RAD_S, M, N, Parameter, State
 from ..chassis import per_wheel
 from ..smooth import grip
 from ..stage import Alternative, Row, define, stage
+from . import ideal
 
 SLOWEST = 1e-9  # m/s; a chair that starts at rest has its casters trailing
 
 PARAMETERS = (
-    Parameter("caster.trail", M, "caster trail c in (8): the lever between swivel torque and lateral force",
-              default=0.05, lower=1e-3, upper=0.5, source="chosen: common casters, 30 to 60 mm"),
+    *ideal.PARAMETERS,
     Parameter("regularisation.trail", M, "kinematic trail of a caster without the effect caster_trail; shorter is "
               "too quick to matter and too stiff to solve", default=1e-3, lower=1e-4, upper=0.01,
               symbol="least_trail", source="chosen"),
@@ -49,29 +49,28 @@ def swivelling(v_xf, v_yf, psi_dot, swivel, c):
     return slip, slip / c
 
 
-@stage(define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT))
-def bearing(c):
-    return 0 * c
+@stage(define("delta", RAD, "caster angles", "-swap", FRONT))
+def turned(swivel):
+    return swivel
 
 
 @stage(
-    define("delta", RAD, "caster angles", "-swap", FRONT),
     define("F_xf", N, "force of each caster on the chair along x_m", "+swap", FRONT),
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(swivel, v_xf, v_yf, D_f, M_w, trail, drag_eps):
+def casters(delta, v_xf, v_yf, D_f, M_w, trail, drag_eps):
     """(6), (7) without the casters' mass: rolling resistance along the heading, M_w / c across it."""
-    forward, right = cs.cos(swivel), cs.sin(swivel)
+    forward, right = cs.cos(delta), cs.sin(delta)
     rolling = v_xf * forward + v_yf * right
     drag = -D_f * grip(rolling, rolling * rolling, drag_eps)
     lateral = M_w / trail  # (8)
-    return swivel, drag * forward - lateral * right, drag * right + lateral * forward, -M_w
+    return drag * forward - lateral * right, drag * right + lateral * forward, -M_w
 
 
 LAW = Alternative(
     "swivelling",
-    (kinematic_trail, swivelling, bearing, casters),
+    (kinematic_trail, swivelling, turned, ideal.bearing, casters),
     PARAMETERS,
     (
         Row(
