@@ -9,19 +9,19 @@ import numpy as np
 from scipy import stats
 
 from ..errors import SimulationError
-from .evidence import Bench, Evidence
+from .evidence import Bench, Evidence, block_length
 from .fit import Fit, fit, prior_of
-from .screen import Score, projector, robust_variance, score
+from .screen import SEEN, Score, projector, robust_variance, score
 from .workshop import Workshop
 
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
 SIGNIFICANT = 0.05
 TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 VISIBLE = 0.01  # fall of the whitened RMS in the channel and run where it falls most
-SHORTLIST = 6
+SHORTLIST = 5
+HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less is not refitted
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
-BLOCK = 2.0  # s of held-out data that are resampled together
 RESAMPLES = 400
 
 
@@ -37,7 +37,7 @@ class Candidate:
     p: float
     visible: float  # largest fall of a channel's RMS in a run
     gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
-    heldout: float
+    heldout: Evidence | None
     small: bool
     lawful: bool
 
@@ -69,16 +69,17 @@ class Search:
 
     # -- models ---------------------------------------------------------------------------------------------
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], precision: float = 1e-6) -> tuple[Fit, Bench]:
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], precision: float = 1e-6,
+              most: int = 12) -> tuple[Fit, Bench]:  # fmt: skip
         """The campaign's best values of the calibrated and these effects' parameters."""
         bench = self.workshop.bench(effects)
         names = [*self.calibrated, *(n for e in effects for n in self.workshop.parameters(e))]
-        found = fit(bench, names, start, precision=precision)
+        found = fit(bench, names, start, precision=precision, most=most)
         return found, bench
 
     def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
-        found = bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
-        return found
+        """Evidence of the held-out runs; only where each starts is estimated on them."""
+        return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
 
     # -- screen ---------------------------------------------------------------------------------------------
 
@@ -115,8 +116,7 @@ class Search:
 
     def _secant(self, bench, base, evidence, off, effect, own, delta, one_sided) -> Score | None:
         """The score along what the effect really does at its smallest interesting size."""
-        record = self.workshop.catalogue[effect]
-        if not (record.even or record.rows or record.needs):
+        if self._linear(effect):
             return None
         columns = []
         for name, size in zip(own, delta, strict=True):
@@ -128,6 +128,11 @@ class Search:
             columns.append((evidence.r - there.r) / size)
         return score(evidence, off, effect, own, np.stack(columns, axis=1), delta, one_sided)
 
+    def _linear(self, effect: str) -> bool:
+        """Does the slope at zero tell what the effect does at the size it has?"""
+        record = self.workshop.catalogue[effect]
+        return not (record.even or record.rows or record.needs)
+
     # -- refits ---------------------------------------------------------------------------------------------
 
     def candidate(self, base: Fit, base_held: Evidence, effects: tuple[str, ...], s: Score, tests: int) -> Candidate | None:
@@ -137,7 +142,7 @@ class Search:
         names = w.parameters(effect)
         try:
             start = self._start(bench, base, s, names)
-            found, bench = self.refit((*effects, effect), start, precision=1e-5)
+            found, bench = self.refit((*effects, effect), start, precision=1e-5, most=8)
             held = self.heldout(bench, found.everything) if w.campaign.holdout else None
         except SimulationError:
             return None
@@ -150,8 +155,7 @@ class Search:
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.clip(np.where(np.isfinite(s.estimate), s.estimate, 0), lower, upper)
         tries = [expected]
-        record = self.workshop.catalogue[s.effect]
-        if record.even or record.rows or record.needs:
+        if not self._linear(s.effect):
             tries += [np.clip(f * delta, lower, upper) for f in (1.0, 3.0, *((-1.0, -3.0) if lower[0] < 0 else ()))]
         if len(tries) == 1:
             return {**base.values, **dict(zip(names, map(float, expected), strict=True))}
@@ -170,36 +174,34 @@ class Search:
                 best, best_misfit = t, expected_misfit
         return {**base.values, **dict(zip(names, map(float, best), strict=True))}
 
-    def _judge(self, base, base_held, found, held, effect, names, tests) -> Candidate:
-        k = [found.names.index(n) for n in names]
+    def _judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
+               names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
+        at = [found.names.index(n) for n in names]
         delta = np.array([self.records[n].smallest_interesting for n in names])
         one_sided = np.array([self.records[n].lower == 0 for n in names])
         estimate = np.array([found.values[n] for n in names])
-        covariance = sandwich(found, prior_of(self.workshop.bench((effect,)), found.names).slopes
-                              if False else self._prior_slopes(found))[np.ix_(k, k)]  # fmt: skip
-        se = np.sqrt(np.maximum(np.diag(covariance), 0))
-        scaled, size = covariance / np.outer(delta, delta), estimate / delta
-        spread, axes = np.linalg.eigh(scaled)
-        seen = spread < 1 / 0.25
-        if not seen.any():
-            seen = spread == spread.min()
-        along = axes[:, seen].T @ size
-        T = float(np.sum(along**2 / np.maximum(spread[seen], 1e-12)))
-        p = float(stats.chi2.sf(T, int(seen.sum())))
+        covariance = sandwich(found)[np.ix_(at, at)]
+        along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
+        dispersion = float(np.mean(found.evidence.r**2))
+        drop = (base.misfit - found.misfit) / dispersion
+        p = max(float(stats.chi2.sf(np.sum(along**2 / spread), len(spread))),
+                float(stats.chi2.sf(drop / correlation_time(found.evidence), len(spread))))  # fmt: skip
         if len(names) == 1 and one_sided[0]:
             p /= 2
-        reach = np.abs(along) + 1.96 * np.sqrt(spread[seen])
-        dispersion = float(np.mean(found.evidence.r**2))
-        at_bound = bool(np.all((estimate <= 1e-9 * delta) & one_sided))
         before, after = base.evidence.table(), found.evidence.table()
-        visible = max(before[run][c] - after[run][c] for run in before for c in before[run])
-        gain = held_out_gain(base_held, held) if held is not None else None
-        return Candidate(effect, found, (base.misfit - found.misfit) / dispersion, estimate, se, min(1.0, tests * p), visible,
-                         gain, held.rms if held is not None else float("nan"), bool(np.all(reach < 1)),
-                         not at_bound)  # fmt: skip
-
-    def _prior_slopes(self, found: Fit) -> np.ndarray:
-        return prior_of(self.workshop.bench(), self.calibrated).slopes
+        return Candidate(
+            effect=effect,
+            fit=found,
+            drop=drop,
+            estimate=estimate,
+            se=np.sqrt(np.maximum(np.diag(covariance), 0)),
+            p=min(1.0, tests * p),
+            visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
+            gain=held_out_gain(base_held, held) if held is not None else None,
+            heldout=held,
+            small=bool(np.all(np.abs(along) + 1.96 * np.sqrt(spread) < 1)),
+            lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
+        )
 
     # -- search ---------------------------------------------------------------------------------------------
 
@@ -208,8 +210,11 @@ class Search:
         """Screen, refit the shortlist, and rank."""
         scores = self.screen(base, effects, among)
         short = shortlist(scores, most)
-        candidates = []
+        candidates: list[Candidate] = []
         for s in short:
+            leader = max((c.drop for c in candidates), default=0.0)
+            if self._linear(s.effect) and s.drop < HOPELESS * leader:
+                continue
             self.say(f"refitting {s.effect}")
             c = self.candidate(base, base_held, effects, s, len(scores))
             if c is not None:
@@ -245,26 +250,53 @@ def shortlist(scores: Sequence[Score], most: int) -> list[Score]:
     return [*first, *alike]
 
 
-def sandwich(found: Fit, prior_slopes: np.ndarray) -> np.ndarray:
+def sandwich(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates that allows for correlated residuals."""
     S, r = found.evidence.S, found.evidence.r
-    A = S.T @ S
-    n = len(prior_slopes)
-    A[:n, :n] += prior_slopes**2
-    inverse = np.linalg.pinv(A, hermitian=True)
-    B = robust_variance(found.evidence, S, r)
-    B[:n, :n] += prior_slopes**2
-    return inverse @ B @ inverse
+    prior = found.prior_slopes**2
+    inverse = np.linalg.pinv(S.T @ S + prior, hermitian=True)
+    return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
+
+
+def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sizes and variances, in units of δ, along the directions that the data can see at all (one at least)."""
+    spread, axes = np.linalg.eigh(covariance)
+    spread = np.maximum(spread, 1e-12)
+    seen = (spread < 1 / SEEN) | (spread == spread.min())
+    return axes[:, seen].T @ size, spread[seen]
+
+
+def correlation_time(evidence: Evidence) -> float:
+    """Samples per independent one: 1 + 2 Σ ρ_k of the innovations until ρ falls below noise, at least 1."""
+    time, weight = 0.0, 0
+    for e in evidence.runs:
+        for i in range(e.r.shape[1]):
+            r = np.nan_to_num(e.r[:, i])
+            n = len(r)
+            power = float(r @ r)
+            if power == 0:
+                continue
+            rho = [float(r[k:] @ r[:-k]) / power for k in range(1, min(n // 4, 100))]
+            stop = next((k for k, value in enumerate(rho) if value < 2 / np.sqrt(n)), len(rho))
+            time, weight = time + n * (1 + 2 * sum(rho[:stop])), weight + n
+    return max(1.0, time / max(weight, 1))
 
 
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
-    """Fall of the mean squared innovation on held-out runs, with a 95 % interval by a moving-block bootstrap."""
-    differences, rng = [], np.random.default_rng(0)
-    for one, two in zip(before.runs, after.runs, strict=True):
-        d = np.nansum(one.r**2 - two.r**2, axis=1)
-        length = max(1, round(BLOCK / float(np.median(np.diff(one.run.time)))))
-        differences += [d[i : i + length].sum() for i in range(0, len(d), length)]
-    blocks = np.array(differences)
-    means = blocks[rng.integers(0, len(blocks), (RESAMPLES, len(blocks)))].sum(axis=1)
-    low, high = np.quantile(means, (0.025, 0.975))
+    """Fall of the summed squared innovations on held-out runs, with a 95 % interval by a block bootstrap."""
+    blocks, rng = difference_blocks(before, after), np.random.default_rng(0)
+    if not len(blocks):
+        return 0.0, 0.0, 0.0
+    totals = blocks[rng.integers(0, len(blocks), (RESAMPLES, len(blocks)))].sum(axis=1)
+    low, high = np.quantile(totals, (0.025, 0.975))
     return float(blocks.sum()), float(low), float(high)
+
+
+def difference_blocks(one: Evidence, other: Evidence) -> np.ndarray:
+    """Summed differences of squared innovations, by blocks of time."""
+    out = []
+    for a, b in zip(one.runs, other.runs, strict=True):
+        d = np.nansum(a.r**2 - b.r**2, axis=1)
+        length = block_length(a.run)
+        out += [d[i : i + length].sum() for i in range(0, len(d), length)]
+    return np.array(out)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from os import cpu_count
 
 import numpy as np
@@ -17,7 +17,6 @@ import numpy as np
 from ..campaign import CHANNELS, Campaign, Run
 from ..engine.innovations import Noise, whiten
 from ..engine.sensitivities import Linearised, Sensitivities
-from ..errors import SimulationError
 from ..model.variant import Variant
 
 TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
@@ -25,6 +24,7 @@ START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot
 POSE = {"start.x": "x", "start.y": "y", "start.psi": "yaw"}
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
+BLOCK = 2.0  # s of data that a bootstrap resamples together
 FIRST = 0.2  # s of samples that say where a run starts
 
 
@@ -50,6 +50,7 @@ class RunEvidence:
     logdet: float
     simulated: Linearised
     start: Mapping[str, float]
+    predicted: np.ndarray  # (n, nz) simulated readings
 
     @property
     def rms(self) -> dict[str, float]:
@@ -150,7 +151,7 @@ class Bench:
         plain, _ = whiten(signals[:, :, :1], simulated, which, self._noise(channels, 0 * noise.start), 0 * offset, blind=True)
         k = len(by)
         return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], plain[:, :, 0],
-                           logdet, simulated, start)  # fmt: skip
+                           logdet, simulated, start, simulated.readings[:, which])  # fmt: skip
 
     def _inputs(self, run: Run, delay: float) -> np.ndarray:
         """Recorded inputs (n, nw); a record that is early by `delay` is read that much later."""
@@ -195,6 +196,11 @@ class Bench:
         return other
 
 
+def block_length(run: Run) -> int:
+    """Samples in a block."""
+    return max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
+
+
 def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
     """Where a run is expected to start, from its file and first samples."""
     first = run.time <= run.time[0] + FIRST
@@ -213,6 +219,3 @@ def start_sd(run: Run) -> dict[str, float]:
     """Standard deviations of the above; a pose that nobody measured is wherever it is said to be."""
     pose = {name: POSE_SD if channel in run.channels else 0.0 for name, channel in POSE.items()}
     return {**pose, **START_SD}
-
-
-__all__ = ["Bench", "Colour", "Evidence", "RunEvidence", "SimulationError", "replace"]

@@ -12,6 +12,7 @@ from ..errors import SimulationError
 from ..quantities import Parameter
 from .evidence import Bench, Evidence
 
+REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
 RELATIVE_PRIOR = 0.3  # of a calibrated value whose uncertainty the campaign does not state
 
 
@@ -24,6 +25,7 @@ class Fit:
     covariance: np.ndarray
     evidence: Evidence
     misfit: float  # −2 log likelihood and prior
+    prior_slopes: np.ndarray
     fixed: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -81,8 +83,8 @@ def fit(
     names, fixed = tuple(names), dict(fixed or {})
     records = {p.name: p for p in bench.variant.parameters()}
     prior = prior_of(bench, names)
-    lower = np.array([records[n].lower for n in names])
-    upper = np.array([records[n].upper for n in names])
+    lower = np.maximum([records[n].lower for n in names], prior.mean - REACH * prior.sd)
+    upper = np.minimum([records[n].upper for n in names], prior.mean + REACH * prior.sd)
     scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
     runs = bench.campaign.fit
     memory: dict[bytes, Evidence] = {}
@@ -121,4 +123,4 @@ def fit(
     A = evidence.S.T @ evidence.S + prior.slopes**2
     covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
     misfit = evidence.misfit + float(np.sum(prior.rows(theta) ** 2))
-    return Fit(names, values, covariance, evidence, misfit, fixed)
+    return Fit(names, values, covariance, evidence, misfit, prior.slopes, fixed)

@@ -85,18 +85,20 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
     s_V, I_V = s @ V, size[seen]
     U = s_V.T @ r
     Omega = robust_variance(evidence, s_V, r)
-    Omega = np.maximum(1.0, 0) * Omega + 1e-12 * np.diag(I_V)
     change = U / I_V
     spread = np.diag(1 / I_V) @ Omega @ np.diag(1 / I_V)
     estimate = V @ change * delta
     se = np.sqrt(np.maximum(np.diag(V @ spread @ V.T), 0)) * delta
-    T = float(U @ np.linalg.solve(Omega, U))
+    T = float(U @ np.linalg.pinv(Omega, hermitian=True) @ U)
     p = float(stats.chi2.sf(T, int(seen.sum())))
     if len(delta) == 1 and one_sided[0]:
         p = p / 2 if estimate[0] > 0 else 1 - p / 2
     noncentral = 1 / np.diag(spread).mean()
     power = float(stats.ncx2.sf(stats.chi2.isf(0.05, int(seen.sum())), int(seen.sum()), min(noncentral, 1e6)))
+    drop = float(U @ change)
+    if one_sided.all() and (estimate <= 0).all():
+        drop = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
-    return Score(effect, tuple(names), estimate, se, p, float(U @ change), power, hidden,
+    return Score(effect, tuple(names), estimate, se, p, drop, power, hidden,
                  direction / length if length > 0 else direction)  # fmt: skip

@@ -6,7 +6,7 @@ none, and of the others only those asked for.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from ..campaign import Campaign
@@ -45,6 +45,12 @@ class Workshop:
     def remember(self, bench: Bench) -> None:
         """Keep the starts a bench has found, for the next one."""
         self.starts.update(bench.starts)
+
+    def widened(self, more: Mapping[str, Effect]) -> Workshop:
+        """The same campaign with more effects in the catalogue; noise and starts are kept."""
+        other = Workshop(self.campaign, replace(self.variant, catalogue={**self.catalogue, **more}))
+        other.colour, other.starts = self.colour, dict(self.starts)
+        return other
 
     def parameters(self, effect: str) -> tuple[str, ...]:
         """Full names of an effect's estimated parameters."""

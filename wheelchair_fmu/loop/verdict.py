@@ -1,0 +1,253 @@
+"""The verdict: missing, tie, small, adequate, cannot_see or outside, with the evidence for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..campaign import Campaign
+from ..model.stage import Effect
+from ..model.variant import Variant
+from .diagnose import CALIBRATED, MOST_EFFECTS, RESAMPLES, TIED, Candidate, Round, Search, correlation_time, difference_blocks
+from .evidence import Evidence
+from .fit import Fit
+from .noise import colour_of
+from .workshop import Workshop
+
+ENOUGH_POWER = 0.8
+WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
+NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
+SMALL_VISIBLE = 0.005
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the staircase: whitened RMS on fitted and on held-out runs."""
+
+    name: str
+    fit: float
+    heldout: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything `diagnose` says. `rounds` are the rounds of the search, `proposal` the generic term of "outside"."""
+
+    campaign: str
+    verdict: str
+    effects: tuple[str, ...]
+    ties: tuple[tuple[str, ...], ...]
+    ladder: tuple[Step, ...]
+    rounds: tuple[Round, ...]
+    leftover: Round | None
+    proposal: Candidate | None
+    final: Fit
+    search: Search
+    notes: tuple[str, ...]
+    seconds: float
+
+
+def diagnose(
+    campaign: Campaign,
+    variant: Variant | None = None,
+    generic: Mapping[str, Effect] | None = None,
+    calibrated: Sequence[str] = CALIBRATED,
+    progress: Callable[[str], None] = lambda words: None,
+) -> Diagnosis:
+    """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
+
+    `generic` are the terms of the leftover test. `progress` is told what is being done, in words.
+    """
+    began = time.monotonic()
+    workshop = Workshop(campaign, variant or Variant())
+    search = Search(workshop, calibrated, progress)
+    progress("calibrating")
+    base, held, nominal, nominal_held = search.calibrate()
+    workshop.colour, notes = colour_of(base.evidence, campaign.noise)
+    if workshop.colour.ar or notes:
+        base, held, nominal, nominal_held = search.calibrate()
+    ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+    rounds, effects = [], ()
+    for _ in range(MOST_EFFECTS):
+        progress(f"screening {'what is left' if effects else 'the catalogue'}")
+        now = search.round(effects, base, held)
+        rounds.append(now)
+        best = next((c for c in now.candidates if c.found), None)
+        if best is None:
+            break
+        effects = (*effects, best.effect)
+        base, _ = search.refit(effects, best.fit.values)
+        held = search.heldout(workshop.bench(effects), base.everything)
+        ladder.append(Step(f"+{best.effect}", base.evidence.rms, held.rms))
+    leftover, proposal = _leftover(search, effects, base, held, rounds, generic or {})
+    if proposal is not None:
+        effects, ladder = _without_pretenders(proposal, effects, ladder)
+        beyond = proposal.heldout.rms if proposal.heldout else np.nan
+        ladder.append(Step(f"+{proposal.effect}", proposal.fit.evidence.rms, beyond))
+    ties = tuple(t for t in (_tied(r) for r in rounds) if len(t) > 1) if proposal is None else ()
+    verdict = _verdict(effects, ties, rounds, proposal)
+    named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
+    return Diagnosis(campaign.name, verdict, tuple(named), ties, tuple(ladder), tuple(rounds), leftover, proposal, base,
+                     search, tuple(notes), time.monotonic() - began)  # fmt: skip
+
+
+def _tied(r: Round) -> tuple[str, ...]:
+    """The effect a round found, and every other that this campaign cannot tell from it."""
+    found = [c for c in r.candidates if c.found]
+    if not found:
+        return ()
+    leader = found[0]
+    margin = TIED * correlation_time(leader.fit.evidence)
+    group = [leader.effect]
+    for c in found[1:]:
+        near = leader.drop - c.drop <= margin
+        if near or (c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)):
+            group.append(c.effect)
+    return tuple(group)
+
+
+def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
+    """Do both predict the held-out runs equally well, but for the bootstrap's standard error?"""
+    if one.heldout is None or other.heldout is None or not one.heldout.runs:
+        return False
+    blocks, rng = difference_blocks(one.heldout, other.heldout), np.random.default_rng(0)
+    totals = blocks[rng.integers(0, len(blocks), (RESAMPLES, len(blocks)))].sum(axis=1)
+    return abs(float(blocks.sum())) < float(totals.std())
+
+
+def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidence, rounds: Sequence[Round],
+              generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:  # fmt: skip
+    """Test the generic terms on what is left; a proposal where one is found that no effect explains."""
+    if not generic:
+        return None, None
+    search.say("looking for what no effect explains")
+    wider = search.workshop.widened(generic)
+    generic_search = Search(wider, search.calibrated, search.say)
+    left = generic_search.round(effects, base, held, among=list(generic), most=4)
+    best = next((c for c in left.candidates if c.found), None)
+    if best is None:
+        return left, None
+    if effects:  # does the term do alone what the effects found were to do?
+        first = rounds[0]
+        alone = generic_search.round((), first.fit, first.heldout, among=[best.effect], most=1)
+        lone = next((c for c in alone.candidates if c.found), None)
+        if lone is not None and lone.fit.misfit < base.misfit - TIED:
+            return left, lone
+    return left, best
+
+
+def _without_pretenders(proposal: Candidate, effects: tuple[str, ...], ladder: list[Step]):
+    """The effects that stand beside the proposal; those it replaces leave the staircase."""
+    kept = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
+    return kept, [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
+
+
+def _verdict(effects, ties, rounds, proposal) -> str:
+    if proposal is not None:
+        return "outside"
+    if effects:
+        return "tie" if ties else "missing"
+    if _small(rounds, "small"):
+        return "small"
+    powers = [s.power for s in rounds[0].scores]
+    return "adequate" if np.mean([p >= ENOUGH_POWER for p in powers] or [0]) >= WHOLE_LIBRARY else "cannot_see"
+
+
+def _small(rounds: Sequence[Round], verdict: str) -> tuple[str, ...]:
+    """Effects that are surely there, surely smaller than interesting, and just visible."""
+    if verdict != "small":
+        return ()
+    return tuple(c.effect for c in rounds[0].candidates if c.small and c.lawful and c.p < 0.05 and c.visible > SMALL_VISIBLE
+                 and (c.gain is None or c.gain[1] > 0))  # fmt: skip
+
+
+def as_json(d: Diagnosis) -> dict[str, Any]:
+    """The diagnosis with the keys that are fixed for `diagnose --json`."""
+    return {
+        "campaign": d.campaign,
+        "verdict": d.verdict,
+        "effects": list(d.effects),
+        "ties": [list(t) for t in d.ties],
+        "ranking": ranking(d),
+        "ladder": [{"step": s.name, "fit": s.fit, "heldout": _number(s.heldout)} for s in d.ladder],
+        "leftover": leftover_json(d),
+        "next_experiment": None,
+        "notes": list(d.notes),
+        "seconds": d.seconds,
+    }
+
+
+def ranking(d: Diagnosis) -> list[dict[str, Any]]:
+    """Every effect, the refitted first, as the round in which it did best saw it."""
+    first = d.rounds[0]
+    scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
+    candidates: dict[str, tuple[Candidate, Round]] = {}
+    for r in d.rounds:
+        for c in r.candidates:
+            if c.effect not in candidates or c.effect in d.effects[len(r.effects) : len(r.effects) + 1]:
+                candidates[c.effect] = (c, r)
+    order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
+                                          else scores[e].drop)))  # fmt: skip
+    return [_row(d, scores[e], *candidates.get(e, (None, first))) for e in order]
+
+
+def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
+    records = d.search.records
+    estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
+    parameters = {
+        name.rpartition(".")[2]: {"estimate": float(v), "se": _number(e), "unit": records[name].unit.name,
+                                  "smallest_interesting": records[name].smallest_interesting}
+        for name, v, e in zip(s.names, estimate, se, strict=True)
+    }  # fmt: skip
+    before = r.heldout.rms if r.heldout.runs else float("nan")
+    return {
+        "effect": s.effect,
+        "parameters": parameters,
+        "p": c.p if c else min(1.0, s.p * len(r.scores)),
+        "power": s.power,
+        "lr": c.drop if c else s.drop,
+        "hidden_in_fit": s.hidden,
+        "heldout_before": _number(before),
+        "heldout_after": _number(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
+        "rivals": _rivals(s, d.rounds[0].scores),
+        "verdict": _row_verdict(d, s, c),
+    }
+
+
+def _rivals(s: Any, scores: Sequence[Any]) -> list[dict[str, Any]]:
+    """The effects whose signature is most like this one's."""
+    alike = [(o.effect, abs(float(o.signature @ s.signature))) for o in scores
+             if o.effect != s.effect and len(o.signature) == len(s.signature) > 0]  # fmt: skip
+    return [{"effect": e, "cosine": round(c, 4)} for e, c in sorted(alike, key=lambda a: -a[1])[:4] if c > 0.5]
+
+
+def _row_verdict(d: Diagnosis, s: Any, c: Candidate | None) -> str:
+    if s.effect in d.effects:
+        return "tie" if d.verdict == "tie" else "missing"
+    if any(s.effect in t for t in d.ties):
+        return "tie"
+    if c and c.small and c.p < 0.05:
+        return "small"
+    return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"
+
+
+def leftover_json(d: Diagnosis) -> dict[str, Any]:
+    """Is anything structured left, and where."""
+    if d.leftover is None:
+        return {"p": None, "where": None}
+    best = d.proposal or (d.leftover.candidates[0] if d.leftover.candidates else None)
+    if best is None:
+        return {"p": 1.0, "where": None}
+    worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
+    out = {"p": best.p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
+    if d.proposal:
+        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": _number(best.se[0])}
+    return out
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
