@@ -17,7 +17,7 @@ CONSTANTS = (
               source="Fuss2024"),
     Parameter("lag", S, "time by which the trunk follows the push", default=0.15, lower=0.01, upper=5.0, symbol="T_lag",
               source="Fuss2024"),
-    Parameter("filter", S, "time constant that smooths the push", default=0.02, lower=1e-4, upper=1.0, symbol="T_filter",
+    Parameter("filter", S, "time constant that smooths the push", default=0.003, lower=1e-4, upper=1.0, symbol="T_filter",
               source="chosen"),
 )  # fmt: skip
 
@@ -52,7 +52,8 @@ EFFECT = Effect(
         adds("read_a_x", jerk_back),
     ),
     rows=(
-        Row(State("felt_push", N, "total push as the trunk follows it", nominal=10.0, symbol="felt"), lambda: 1.0, felt_rate),
+        Row(State("felt_push", N, "total push as the trunk follows it", nominal=10.0, symbol="felt"), lambda: 1.0, felt_rate,
+            lambda F_t: cs.sum1(F_t)),
         Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
     ),
-)
+)  # fmt: skip

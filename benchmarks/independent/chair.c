@@ -1,0 +1,193 @@
+/* A rigid chair with its user on two rear wheels and two swivelling casters, moving in the plane.
+ *
+ * Axes: x forward, y right, yaw clockwise seen from above. Classical Runge-Kutta of fourth order with a fixed step.
+ * The enumerations of the parameters (P_...) and of the outputs (O_...) are put in front of this file when it is compiled:
+ * chair.py writes them, so there is one list of names.
+ *
+ * Tyres are bristles: a lateral deflection e of the patch grows with the sideways speed and fades with the distance rolled,
+ *   e' = -v_y + |v_x| * camber - (|v_x| / sigma + v_y^2 / (|v| e_max)) e,
+ * and the force is F_max * tanh(C e / (sigma F_max)). No slip angle is ever divided by a speed, so standstill, spinning on
+ * the spot and reverse need no special case. */
+#include <math.h>
+#include <string.h>
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT
+#endif
+
+enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, STATES };
+
+static const double CREEP = 0.002;      /* m/s, within which rolling resistance changes its sign */
+static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel bearing */
+static const double SCRUB_CREEP = 0.01; /* rad/s, the same for the yaw of the patches */
+static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
+static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
+
+typedef struct { double force, deflection_rate; } Tyre;
+
+static double rounded(double v) { return sqrt(v * v + STILL * STILL); }
+
+static double forward(double v) { return v / sqrt(v * v + 4e-4); }
+
+/* Lateral force of a tyre whose patch moves with (vx, vy) in the wheel's own frame. */
+static Tyre tyre(double e, double vx, double vy, double stiffness, double sigma, double limit, double lean) {
+    Tyre out;
+    double speed = rounded(vx), total = sqrt(speed * speed + vy * vy);
+    double fade = speed / sigma + vy * vy / total * stiffness / (3 * sigma * limit);
+    double standing = DAMPING / (1 + vx * vx / 0.01);
+    out.deflection_rate = -vy + (speed - STILL) * lean - fade * e;
+    out.force = limit * tanh(stiffness / sigma * (e + standing * out.deflection_rate) / limit);
+    return out;
+}
+
+/* A wheel's part of its axle's load; at least 1 N, as this chair does not tip over. */
+static double share_of(double load, double share) { return load * share > 1 ? load * share : 1; }
+
+/* Rates of all states, and what the instruments need, for the pushes F (right, left) and their slopes dF. */
+static void rates(const double *p, const double *s, const double *F, const double *dF, double *d, double *out) {
+    double u = s[U], v = s[V], r = s[R];
+    double shift = s[TRUNK];
+    double target = p[P_trunk] * (F[0] + F[1]) / 80;
+    double shift_rate = p[P_trunk] != 0 ? (target - shift) / p[P_trunk_lag] : 0;
+    double shift_acceleration = p[P_trunk] != 0 ? (p[P_trunk] * (dF[0] + dF[1]) / 80 - shift_rate) / p[P_trunk_lag] : 0;
+    double a = p[P_a] - shift, b = p[P_b] + shift, base = p[P_a] + p[P_b];
+    double frame = u - shift_rate;
+    double c = cos(s[PSI]), n = sin(s[PSI]);
+    double gx = p[P_g] * (p[P_slope_x] * c + p[P_slope_y] * n);
+    double gy = p[P_g] * (-p[P_slope_x] * n + p[P_slope_y] * c + p[P_cross_slope]);
+    double weight = p[P_m] * p[P_g];
+    double y_r[2] = {p[P_t_r] / 2 - p[P_y_cm], -p[P_t_r] / 2 - p[P_y_cm]};
+    double y_f[2] = {p[P_t_f] / 2 - p[P_y_cm], -p[P_t_f] / 2 - p[P_y_cm]};
+    double toe[2] = {p[P_toe_r], p[P_toe_l]}, camber[2] = {p[P_camber_r], p[P_camber_l]};
+    double felt_x = 0, felt_y = 0, u_dot = 0, v_dot = 0, r_dot = 0, wheel[2];
+    int passes = p[P_h_x] != 0 || p[P_h_y] != 0 ? 4 : 1; /* loads and accelerations need one another */
+
+    for (int pass = 0; pass < passes; pass++) {
+        double rear = weight * a / base + p[P_m] * felt_x * p[P_h_x] / base;
+        double front = weight - rear;
+        double FX = p[P_m] * gx - p[P_aero] * u * fabs(u);
+        double FY = p[P_m] * gy;
+        double MZ = -p[P_scrub] * tanh(r / SCRUB_CREEP) - p[P_scrub_viscous] * r + p[P_wobble] * n + p[P_speed_torque] * u * u;
+        for (int i = 0; i < 2; i++) { /* rear wheels, right and left */
+            double side = i == 0 ? 1 : -1;
+            double load = share_of(rear, 0.5 + side * (p[P_y_cm] - felt_y * p[P_h_y] / p[P_g]) / p[P_t_r]);
+            double ct = cos(toe[i]), st = sin(toe[i]);
+            double hx = frame - y_r[i] * r, hy = v - b * r;
+            double vx = ct * hx + st * hy, vy = -st * hx + ct * hy;
+            double stiffness = p[P_C_lambda] * p[P_pressure];
+            if (p[P_load_exponent] != 0) stiffness *= pow(load / 400, p[P_load_exponent]);
+            double limit = load / p[P_inv_mu];
+            Tyre t = tyre(s[E_RR + i], vx, vy, stiffness, p[P_sigma], limit, p[P_C_phi] * camber[i] / stiffness);
+            double slip = s[E_RR + i] / p[P_sigma];
+            double trail = p[P_C_m_lambda] / p[P_C_lambda] / sqrt(1 + p[P_inv_slip] * p[P_inv_slip] * slip * slip)
+                / (p[P_pressure] * sqrt(p[P_pressure]));
+            double moment = forward(vx) * (-trail * (t.force - p[P_C_phi] * camber[i]) + p[P_C_m_phi] * camber[i]);
+            double rolling = tanh(vx / CREEP);
+            double drag = (p[P_f_r] * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * vx;
+            if (i == 0) drag += p[P_sticky] * rolling * 0.5 * (1 + tanh(r / 0.02));
+            double pull = F[i] - drag;
+            double fx = ct * pull - st * t.force, fy = st * pull + ct * t.force;
+            FX += fx;
+            FY += fy;
+            MZ += -b * fy - y_r[i] * fx + moment;
+            d[E_RR + i] = t.deflection_rate;
+            wheel[i] = vx + p[P_slip_compliance] * pull * fabs(vx);
+        }
+        for (int i = 0; i < 2; i++) { /* casters, right and left */
+            double side = i == 0 ? 1 : -1;
+            double load = share_of(front, 0.5 + side * (p[P_y_cm] - felt_y * p[P_h_y] / p[P_g]) / p[P_t_f]);
+            double angle = s[SWIVEL_R + 2 * i], rate = s[SWIVEL_RATE_R + 2 * i];
+            double cd = cos(angle), sd = sin(angle);
+            double px = frame - y_f[i] * r, py = v + a * r;
+            double vx = cd * px + sd * py, vy = -sd * px + cd * py - p[P_trail] * (r + rate);
+            Tyre t = tyre(s[E_FR + i], vx, vy, p[P_C_caster], p[P_sigma_caster], load, 0);
+            double drag = p[P_f_f] * load * tanh(vx / CREEP) + p[P_drag_speed] * load / weight * vx;
+            double bearing = -p[P_swivel_dry] * tanh(rate / SWIVEL_CREEP) - p[P_swivel_viscous] * rate
+                - p[P_swivel_spring] * sd;
+            double fx = -cd * drag - sd * t.force, fy = -sd * drag + cd * t.force;
+            FX += fx;
+            FY += fy;
+            MZ += a * fy - y_f[i] * fx - bearing;
+            d[E_FR + i] = t.deflection_rate;
+            d[SWIVEL_R + 2 * i] = rate;
+            d[SWIVEL_RATE_R + 2 * i] = (bearing - p[P_trail] * t.force) / p[P_I_swivel];
+        }
+        { /* the spin of both rear wheels counts along their headings only */
+            double half = p[P_m_spin] / 2, sum = y_r[0] + y_r[1], squares = y_r[0] * y_r[0] + y_r[1] * y_r[1];
+            double m11 = p[P_m] + 2 * half, m12 = -half * sum, m22 = p[P_I_z] + half * squares;
+            double b1 = FX + p[P_m] * v * r + 2 * half * shift_acceleration, b2 = MZ - half * sum * shift_acceleration;
+            double det = m11 * m22 - m12 * m12;
+            u_dot = (m22 * b1 - m12 * b2) / det;
+            r_dot = (m11 * b2 - m12 * b1) / det;
+            v_dot = FY / p[P_m] - u * r;
+        }
+        felt_x = u_dot - v * r - gx;
+        felt_y = v_dot + u * r - gy;
+    }
+    for (int i = 0; i < 2; i++) d[SWIVEL_RATE_R + 2 * i] -= r_dot; /* the swivel inertia feels the absolute rotation */
+    d[X] = u * c - v * n;
+    d[Y] = u * n + v * c;
+    d[PSI] = r;
+    d[U] = u_dot;
+    d[V] = v_dot;
+    d[R] = r_dot;
+    d[TRUNK] = shift_rate;
+    if (!out) return;
+    out[O_wheel_speed_l] = wheel[1];
+    out[O_wheel_speed_r] = wheel[0];
+    out[O_yaw_rate] = r;
+    out[O_a_x] = felt_x - shift_acceleration; /* the frame carries the accelerometer */
+    out[O_a_y] = felt_y;
+    out[O_x] = s[X] - shift * c;
+    out[O_y] = s[Y] - shift * n;
+    out[O_yaw] = s[PSI];
+    out[O_u] = frame;
+    out[O_v] = v;
+    out[O_yaw_acceleration] = r_dot;
+    out[O_swivel_r] = s[SWIVEL_R];
+    out[O_swivel_l] = s[SWIVEL_L];
+    out[O_energy] = 0.5 * p[P_m] * (u * u + v * v) + 0.5 * p[P_I_z] * r * r;
+    for (int i = 0; i < 2; i++) {
+        double q = r + s[SWIVEL_RATE_R + 2 * i];
+        double limit = weight * a / base / 2 / p[P_inv_mu], k = p[P_C_lambda] / p[P_sigma];
+        double kf = p[P_C_caster] / p[P_sigma_caster], lf = weight * b / base / 2;
+        out[O_energy] += 0.5 * p[P_I_swivel] * q * q - p[P_swivel_spring] * cos(s[SWIVEL_R + 2 * i]);
+        out[O_energy] += limit * limit / k * log(cosh(k * s[E_RR + i] / limit)) + lf * lf / kf * log(cosh(kf * s[E_FR + i] / lf));
+    }
+}
+
+/* Outputs at n samples, interval apart; the pushes are linear between samples. The accelerations of a sample are the mean of
+ * those just before and just after it, as the pushes bend there. */
+EXPORT void simulate(const double *p, const double *start, int n, const double *push, double interval, int steps, double *out) {
+    double s[STATES], k1[STATES], k2[STATES], k3[STATES], k4[STATES], w[STATES], h = interval / steps, none[2] = {0, 0};
+    memcpy(s, start, sizeof s);
+    memset(k1, 0, sizeof k1);
+    for (int k = 0; k < n; k++) {
+        const double *F = push + 2 * k, *next = k + 1 < n ? F + 2 : F, *last = k > 0 ? F - 2 : F;
+        double slope[2], centre[2];
+        for (int i = 0; i < 2; i++) {
+            slope[i] = (next[i] - F[i]) / interval;
+            centre[i] = (next[i] - last[i]) / ((k > 0 && k + 1 < n ? 2 : 1) * interval);
+        }
+        rates(p, s, F, n > 1 ? centre : none, k1, out + k * OUTPUTS);
+        if (k + 1 == n) break;
+        for (int j = 0; j < steps; j++) {
+            double Fa[2], Fm[2], Fe[2];
+            for (int i = 0; i < 2; i++) {
+                Fa[i] = F[i] + slope[i] * j * h;
+                Fm[i] = F[i] + slope[i] * (j + 0.5) * h;
+                Fe[i] = F[i] + slope[i] * (j + 1) * h;
+            }
+            rates(p, s, Fa, slope, k1, 0);
+            for (int i = 0; i < STATES; i++) w[i] = s[i] + 0.5 * h * k1[i];
+            rates(p, w, Fm, slope, k2, 0);
+            for (int i = 0; i < STATES; i++) w[i] = s[i] + 0.5 * h * k2[i];
+            rates(p, w, Fm, slope, k3, 0);
+            for (int i = 0; i < STATES; i++) w[i] = s[i] + h * k3[i];
+            rates(p, w, Fe, slope, k4, 0);
+            for (int i = 0; i < STATES; i++) s[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+        }
+    }
+}
