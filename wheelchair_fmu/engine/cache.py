@@ -81,5 +81,6 @@ def _toolchain() -> str:
 def _effect_key(effect: Effect) -> str:
     """An effect by its files' content, so that an edited file is a new effect."""
     laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
-    files = sorted({law.__code__.co_filename for law in laws})
-    return f"{effect.id} {hashlib.sha256(b''.join(Path(f).read_bytes() for f in files)).hexdigest()}"
+    files = sorted(f for f in {law.__code__.co_filename for law in laws} if Path(f).exists())
+    words = repr([(c.to, c.factor, c.law.__code__.co_names, c.law.__code__.co_consts) for c in effect.contributions])
+    return f"{effect.id} {words} {hashlib.sha256(b''.join(Path(f).read_bytes() for f in files)).hexdigest()}"

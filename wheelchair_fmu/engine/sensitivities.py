@@ -78,7 +78,8 @@ class Sensitivities:
         x, y = np.empty((n, nx)), np.empty((n, ny))
         out = {"transition": np.empty((n - 1, nx, nx)), "push_before": np.empty((n - 1, nx, PUSHES)),
                "push_after": np.empty((n - 1, nx, PUSHES)), "by_state": np.empty((n, ns, nx)),
-               "by_push": np.empty((n, ns, PUSHES)), "start": np.empty((nx, k)), "by_parameter": np.empty((n, ns, k))}  # fmt: skip
+               "by_push": np.empty((n, ns, PUSHES)), "start": np.empty((nx, k)),
+               "by_parameter": np.empty((n, ns, k))}  # fmt: skip
         wanted = _Wanted(k, which.ctypes.data, *(a.ctypes.data for a in out.values()))
         work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()

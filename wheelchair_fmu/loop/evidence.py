@@ -47,6 +47,7 @@ class RunEvidence:
     S: np.ndarray
     start_S: np.ndarray
     e: np.ndarray
+    scale: np.ndarray  # (n, nz) one over the standard deviation that e is measured in
     logdet: float
     simulated: Linearised
     start: Mapping[str, float]
@@ -148,9 +149,11 @@ class Bench:
         offset = to_state @ [prior[n] - start[n] for n in START]
         noise = self._noise(channels, spread @ spread.T)
         white, logdet = whiten(signals, simulated, which, noise, offset)
-        plain, _ = whiten(signals[:, :, :1], simulated, which, self._noise(channels, 0 * noise.start), 0 * offset, blind=True)
+        ones = np.concatenate([signals[:, :, :1], np.ones_like(signals[:, :, :1])], axis=2)
+        plain, _ = whiten(ones, simulated, which, self._noise(channels, 0 * noise.start), 0 * offset, blind=True)
         k = len(by)
         return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], plain[:, :, 0],
+                           plain[:, :, 1],
                            logdet, simulated, start, simulated.readings[:, which])  # fmt: skip
 
     def _inputs(self, run: Run, delay: float) -> np.ndarray:

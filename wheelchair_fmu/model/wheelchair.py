@@ -55,6 +55,12 @@ OUTPUTS = (
     Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw"),
 )  # fmt: skip
 
+REGIMES = {  # what to sort errors by: name -> result
+    "speed": "chair.u",
+    "yaw rate": "chair.psi_dot",
+    "lateral force": "force.F_srl",
+    "heading": "chair.psi",
+}
 FORESEEN = ("a_x", "a_y")  # may be read before they are known; each then is an unknown of its own
 
 

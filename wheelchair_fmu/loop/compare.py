@@ -1,0 +1,69 @@
+"""How far off a model is, in which run and channel, and in which regime the excess lies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .evidence import RunEvidence
+
+BINS = 4
+
+
+@dataclass(frozen=True)
+class RunErrors:
+    """Errors of one run, e (n, nz), measured less predicted in standard deviations; NaN in gaps."""
+
+    name: str
+    role: str
+    channels: tuple[str, ...]
+    e: np.ndarray
+    predicted: np.ndarray
+    regime: Mapping[str, np.ndarray]  # by name, (n,)
+
+    @property
+    def rms(self) -> dict[str, float]:
+        return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2))) for i, c in enumerate(self.channels)}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Whitened errors of a campaign: 1.0 is the noise floor."""
+
+    runs: tuple[RunErrors, ...]
+
+    def rms(self, role: str | None = None) -> float:
+        """Over all channels of all runs, or of those with this role; NaN where there are none."""
+        e = np.concatenate([r.e[np.isfinite(r.e)] for r in self.runs if role in (None, r.role)] or [np.empty(0)])
+        return float(np.sqrt(np.mean(e**2))) if len(e) else float("nan")
+
+    def excess_by(self, name: str) -> list[tuple[float, float, float]]:
+        """(from, to, share of the excess Σ(e² − 1)) over bins of a regime that hold equally many samples."""
+        values = np.concatenate([r.regime[name] for r in self.runs])
+        excess = np.concatenate([np.nansum(r.e**2 - 1, axis=1) for r in self.runs])
+        edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
+        if len(edges) < 2:
+            return []
+        place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+        total = float(excess.sum())
+        return [(float(a), float(b), float(excess[place == i].sum()) / total if total else 0.0)
+                for i, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True))]  # fmt: skip
+
+    def worst(self) -> tuple[str, str, float]:
+        """(run, channel, whitened RMS) where the error is largest."""
+        return max(((r.name, c, v) for r in self.runs for c, v in r.rms.items()), key=lambda row: row[2])
+
+
+def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str],
+              results: Sequence[str]) -> RunErrors:  # fmt: skip
+    """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
+    own = evidence.predicted
+    there = np.stack([predicted[c] for c in evidence.channels], axis=1) if predicted is not None else own
+    measured = np.stack([evidence.run.channels[c] for c in evidence.channels], axis=1)
+    where = {name: evidence.simulated.results[:, results.index(output)] for name, output in regimes.items()}
+    pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
+    if pushes:
+        where["push"] = np.sum(pushes, axis=0)
+    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, (measured - there) * evidence.scale, there, where)
