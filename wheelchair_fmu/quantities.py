@@ -105,6 +105,7 @@ class Parameter(Quantity):
     source: str = ""
     choices: tuple[str, ...] = ()  # an enumeration: the value is the 1-based place of the choice
     fixed: bool = False  # may not change once the simulation has started
+    uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
     estimated: bool = True  # False for an effect's constants, which no fit touches
 
     def __post_init__(self) -> None:

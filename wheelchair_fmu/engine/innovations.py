@@ -54,7 +54,8 @@ def whiten(
     `run` is a `Linearised` run, `which` the places of its readings that were measured. The first signal is the
     residual, measured less simulated, NaN in gaps; the others are sensitivities. `start_mean` (nx,) is where the
     true start is expected, less the simulated one. `blind`: nothing is learnt from the readings, so that what comes out is
-    each reading's own deviation in units of its standard deviation, far from the start as near it. Gaps come out as NaN in the first signal and 0 in the others.
+    each reading's own deviation in units of its standard deviation, far from the start as near it. Gaps
+    come out as NaN in the first signal and 0 in the others.
     """
     n, nz, m = signals.shape
     nx, nq = run.transition.shape[1], len(noise.pushes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class Comparison:
         place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
         total = float(excess.sum())
         return [(float(a), float(b), float(excess[place == i].sum()) / total if total else 0.0)
-                for i, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True))]  # fmt: skip
+                for i, (a, b) in enumerate(pairwise(edges))]  # fmt: skip
 
     def worst(self) -> tuple[str, str, float]:
         """(run, channel, whitened RMS) where the error is largest."""

@@ -17,9 +17,12 @@ from .workshop import Workshop
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
 SIGNIFICANT = 0.05
 TIED = 9.2  # −2 log likelihood: odds of a hundred to one
-VISIBLE = 0.01  # fall of the whitened RMS in the channel and run where it falls most
+VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
+PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long as they do not contradict
 SHORTLIST = 5
 HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less is not refitted
+BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
+PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 RESAMPLES = 400
@@ -44,7 +47,7 @@ class Candidate:
     @property
     def found(self) -> bool:
         """There, large enough to matter, visible, and it predicts runs it has not seen."""
-        predicts = self.gain is None or self.gain[1] > 0
+        predicts = self.gain is None or self.gain[1] > 0 or (self.p < PLAIN and self.gain[2] > 0)
         return self.lawful and self.p < SIGNIFICANT and not self.small and self.visible > VISIBLE and predicts
 
 
@@ -76,6 +79,26 @@ class Search:
         names = [*self.calibrated, *(n for e in effects for n in self.workshop.parameters(e))]
         found = fit(bench, names, start, precision=precision, most=most)
         return found, bench
+
+    def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
+        """A fit again from its own result, with every run started where this model wants it, and held out."""
+        bench = self.workshop.bench(effects)
+        bench.evidence(self.workshop.campaign.fit, found.everything, (), tune_start=2)
+        again, bench = self.refit(effects, found.values)
+        bench.evidence(self.workshop.campaign.holdout, found.everything, (), tune_start=2)
+        held = self.heldout(bench, again.everything)
+        self.workshop.remember(bench)
+        return again, held
+
+    def pruned(self, effects: tuple[str, ...], found: Fit) -> tuple[tuple[str, ...], Fit]:
+        """Backward: leave out every effect but the last that the others have made needless."""
+        for effect in effects[:-1]:
+            fewer = tuple(e for e in effects if e != effect)
+            without, _ = self.refit(fewer, found.values)
+            margin = TIED * correlation_time(found.evidence) * float(np.mean(found.evidence.r**2))
+            if without.misfit - found.misfit < margin:
+                return self.pruned(fewer, without)
+        return effects, found
 
     def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them."""
@@ -142,7 +165,7 @@ class Search:
         names = w.parameters(effect)
         try:
             start = self._start(bench, base, s, names)
-            found, bench = self.refit((*effects, effect), start, precision=1e-5, most=8)
+            found, bench = self.refit((*effects, effect), start, precision=1e-5, most=6)
             held = self.heldout(bench, found.everything) if w.campaign.holdout else None
         except SimulationError:
             return None
@@ -154,25 +177,29 @@ class Search:
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.clip(np.where(np.isfinite(s.estimate), s.estimate, 0), lower, upper)
-        tries = [expected]
+        sizes = [expected]
         if not self._linear(s.effect):
-            tries += [np.clip(f * delta, lower, upper) for f in (1.0, 3.0, *((-1.0, -3.0) if lower[0] < 0 else ()))]
-        if len(tries) == 1:
-            return {**base.values, **dict(zip(names, map(float, expected), strict=True))}
-        best, best_misfit = expected, np.inf
-        prior = prior_of(bench, base.names)
-        for t in tries:
-            try:
-                e = bench.evidence(self.workshop.campaign.fit, {**base.everything, **dict(zip(names, t, strict=True))},
-                                   base.names)  # fmt: skip
-            except SimulationError:
-                continue
-            r, S = e.r, e.S
-            g = S.T @ r
-            expected_misfit = e.misfit - g @ np.linalg.pinv(S.T @ S + prior.slopes**2, hermitian=True) @ g
-            if expected_misfit < best_misfit:
-                best, best_misfit = t, expected_misfit
-        return {**base.values, **dict(zip(names, map(float, best), strict=True))}
+            sizes += [np.clip(f * delta, lower, upper) for f in (1.0, 3.0, *((-1.0, -3.0) if lower[0] < 0 else ()))]
+        prior = prior_of(bench, [*base.names, *names])
+        calibrations = [np.array([base.values[n] for n in base.names])]
+        off = np.abs(calibrations[0] - prior.mean[: len(base.names)]) / prior.sd[: len(base.names)]
+        if off.max(initial=0) > BENT:  # a fit without the effect may have bent what it could to imitate it
+            calibrations.append(np.where(np.isfinite(off), prior.mean[: len(base.names)], calibrations[0]))
+        tries = [np.concatenate([c, size]) for c in calibrations for size in sizes]
+        best = min(tries, key=lambda t: self._promise(bench, [*base.names, *names], t)) if len(tries) > 1 else tries[0]
+        return dict(zip([*base.names, *names], map(float, best), strict=True))
+
+    def _promise(self, bench: Bench, names: list[str], theta: np.ndarray) -> float:
+        """The misfit that one linear step from here would reach."""
+        try:
+            e = bench.evidence(self.workshop.campaign.fit, dict(zip(names, theta, strict=True)), names)
+        except SimulationError:
+            return float("inf")
+        prior = prior_of(bench, names)
+        rows = prior.rows(theta)
+        g = e.S.T @ e.r + prior.slopes @ rows
+        reached = e.misfit + rows @ rows - g @ np.linalg.pinv(e.S.T @ e.S + prior.slopes**2, hermitian=True) @ g
+        return float(max(reached, e.misfit - 0.9 * e.r @ e.r))
 
     def _judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
                names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
@@ -240,7 +267,7 @@ class Search:
 
 def shortlist(scores: Sequence[Score], most: int) -> list[Score]:
     """The best by expected drop, and whatever looks like the leader."""
-    promising = [s for s in scores if s.drop > 0.5]
+    promising = [s for s in scores if s.drop > PROMISING]
     first = promising[:most]
     if not first:
         return []

@@ -13,7 +13,6 @@ from ..quantities import Parameter
 from .evidence import Bench, Evidence
 
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
-RELATIVE_PRIOR = 0.3  # of a calibrated value whose uncertainty the campaign does not state
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def prior_of(bench: Bench, names: Sequence[str]) -> Prior:
     records = {p.name: p for p in bench.variant.parameters()}
     mean = np.array([start_value(bench, records[n]) for n in names])
     stated = bench.campaign.priors
-    sd = [stated.get(n, RELATIVE_PRIOR * abs(m) if not n.startswith("effect.") else np.inf)
+    sd = [stated.get(n, np.inf if n.startswith("effect.") else records[n].uncertainty * (abs(m) or 1.0))
           for n, m in zip(names, mean, strict=True)]  # fmt: skip
     return Prior(mean, np.array(sd))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,18 @@ import numpy as np
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import CALIBRATED, MOST_EFFECTS, RESAMPLES, TIED, Candidate, Round, Search, correlation_time, difference_blocks
+from .diagnose import (
+    CALIBRATED,
+    MOST_EFFECTS,
+    RESAMPLES,
+    TIED,
+    Candidate,
+    Round,
+    Search,
+    correlation_time,
+    difference_blocks,
+    sandwich,
+)
 from .evidence import Evidence
 from .fit import Fit
 from .noise import colour_of
@@ -22,6 +33,7 @@ ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
 NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
 SMALL_VISIBLE = 0.005
+PLAINLY_VISIBLE = 0.06
 
 
 @dataclass(frozen=True)
@@ -80,14 +92,11 @@ def diagnose(
         if best is None:
             break
         effects = (*effects, best.effect)
-        base, _ = search.refit(effects, best.fit.values)
-        held = search.heldout(workshop.bench(effects), base.everything)
+        base, held = search.settled(effects, best.fit)
         ladder.append(Step(f"+{best.effect}", base.evidence.rms, held.rms))
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic or {})
     if proposal is not None:
-        effects, ladder = _without_pretenders(proposal, effects, ladder)
-        beyond = proposal.heldout.rms if proposal.heldout else np.nan
-        ladder.append(Step(f"+{proposal.effect}", proposal.fit.evidence.rms, beyond))
+        effects, proposal, ladder = _settle(search, generic or {}, effects, proposal, ladder)
     ties = tuple(t for t in (_tied(r) for r in rounds) if len(t) > 1) if proposal is None else ()
     verdict = _verdict(effects, ties, rounds, proposal)
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
@@ -127,23 +136,35 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     search.say("looking for what no effect explains")
     wider = search.workshop.widened(generic)
     generic_search = Search(wider, search.calibrated, search.say)
-    left = generic_search.round(effects, base, held, among=list(generic), most=4)
-    best = next((c for c in left.candidates if c.found), None)
-    if best is None:
-        return left, None
-    if effects:  # does the term do alone what the effects found were to do?
+    if effects:  # does one term do alone what the effects found were to do?
         first = rounds[0]
-        alone = generic_search.round((), first.fit, first.heldout, among=[best.effect], most=1)
-        lone = next((c for c in alone.candidates if c.found), None)
-        if lone is not None and lone.fit.misfit < base.misfit - TIED:
-            return left, lone
-    return left, best
+        alone = generic_search.round((), first.fit, first.heldout, among=list(generic), most=3)
+        lone = next((c for c in alone.candidates if _clear(c)), None)
+        if lone is not None and lone.fit.misfit < base.misfit - TIED * correlation_time(base.evidence):
+            return alone, lone
+    left = generic_search.round(effects, base, held, among=list(generic), most=3)
+    return left, next((c for c in left.candidates if _clear(c)), None)
 
 
-def _without_pretenders(proposal: Candidate, effects: tuple[str, ...], ladder: list[Step]):
-    """The effects that stand beside the proposal; those it replaces leave the staircase."""
-    kept = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
-    return kept, [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
+def _clear(c: Candidate) -> bool:
+    """A term that nobody asked for must show more plainly than an effect of the catalogue."""
+    return c.found and c.visible > PLAINLY_VISIBLE
+
+
+def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate,
+            ladder: list[Step]) -> tuple[tuple[str, ...], Candidate, list[Step]]:  # fmt: skip
+    """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
+    wider = Search(search.workshop.widened(generic), search.calibrated, search.say)
+    beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
+    every, found = wider.pruned((*beside, proposal.effect), proposal.fit)
+    found, held = wider.settled(every, found)
+    at = [found.names.index(n) for n in wider.workshop.parameters(proposal.effect)]
+    estimate = np.array([found.values[found.names[i]] for i in at])
+    se = np.sqrt(np.diag(sandwich(found))[at])
+    kept = every[:-1]
+    steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
+    steps.append(Step(f"+{proposal.effect}", found.evidence.rms, held.rms))
+    return kept, replace(proposal, fit=found, heldout=held, estimate=estimate, se=se), steps
 
 
 def _verdict(effects, ties, rounds, proposal) -> str:

@@ -1,0 +1,47 @@
+# The doors of the project; continuous integration uses the same ones.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: help setup demo test lint bench clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make setup   a virtual environment in $(VENV) with everything to run and test"
+	@echo "make demo    build the FMU, simulate a turn, check the sample campaign"
+	@echo "make test    all tests"
+	@echo "make lint    ruff, mypy, import-linter"
+	@echo "make bench   speed and accuracy beside CVODES and LSODA; writes out/bench.json"
+	@echo "make clean   remove what the others made, but for $(VENV)"
+
+setup: $(VENV)/.ready
+
+# Without a C compiler on PATH, PyPI's ziglang serves as one.
+$(VENV)/.ready: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python %d.%d is too old: give 3.11 or newer, as in make setup PYTHON=python3.12" % sys.version_info[:2])'
+	$(PYTHON) -m venv $(VENV)
+	@extras=dev; \
+	if [ -z "$$CC" ] && ! { command -v cc || command -v gcc || command -v clang; } >/dev/null; then extras=dev,zig; fi; \
+	echo "installing the package with [$$extras]"; \
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[$$extras]"
+	@touch $@
+
+demo: setup
+	$(BIN)/python build_fmu.py
+	$(BIN)/wheelchair simulate steady-turn --speed 1 --delta-force 10 -o out/demo
+	$(BIN)/wheelchair check examples/sample-campaign
+
+test: setup
+	$(BIN)/python -m pytest -n 2
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: setup
+	$(BIN)/python -m benchmarks.bench
+
+clean:
+	rm -rf dist out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	find wheelchair_fmu fmu_src tests benchmarks -name __pycache__ -prune -exec rm -rf {} +

@@ -1,0 +1,57 @@
+"""What one step of the native FMU costs a host without Python: set two inputs, doStep(1 ms), get eight outputs.
+
+The host is the one of the tests, compiled here. It times each of 2 000 steps in five repeats, keeps each step's least, and
+prints median and worst of these; it is run five times.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import fmpy
+
+from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.fmu.native import headers
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.studies import fmu_of
+
+from .rows import Row
+
+HOST = Path(__file__).parent.parent / "tests" / "fmu" / "host.c"
+INPUTS = ("push.F_rl", "push.F_rr")
+OUTPUTS = ("chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_dot", "slip.rl", "slip.rr")
+STEPS, LENGTH, RUNS = 2000, 1e-3, 5
+MEDIAN_TARGETS = {"default": 2.0, "all": 4.0}  # µs
+WORST_TARGET = 10.0  # µs
+
+
+def rows() -> Iterator[Row]:
+    with TemporaryDirectory() as folder:
+        host = _host(Path(folder))
+        for effects, target in MEDIAN_TARGETS.items():
+            medians, worsts = zip(*(_run(host, Path(folder), effects) for _ in range(RUNS)), strict=True)
+            yield Row(f"FMU step, --effects {effects}: median", "µs", medians, target)
+            yield Row(f"FMU step, --effects {effects}: worst", "µs", worsts, WORST_TARGET)
+
+
+def _host(folder: Path) -> Path:
+    program = folder / "host"
+    words = [*compiler.command(), "-O2", f"-I{headers()}", str(HOST), "-o", str(program), "-ldl", "-lm"]
+    subprocess.run(words, check=True)
+    return program
+
+
+def _run(host: Path, folder: Path, effects: str) -> tuple[float, float]:
+    """Median and worst of the steps' costs [µs]."""
+    archive, place = fmu_of(Variant(), effects), folder / effects
+    if not place.exists():
+        fmpy.extract(str(archive), str(place))
+    description = fmpy.read_model_description(str(archive))
+    at = {v.name: str(v.valueReference) for v in description.modelVariables}
+    library = next((place / "binaries").glob(f"*/*{compiler.SUFFIX}"))
+    words = [str(host), str(library), description.guid, "time", str(STEPS), str(LENGTH), *(at[n] for n in INPUTS + OUTPUTS)]
+    median, worst = subprocess.run(words, check=True, capture_output=True, text=True).stdout.split()
+    return float(median) / 1e3, float(worst) / 1e3

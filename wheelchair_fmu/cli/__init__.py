@@ -1,0 +1,1 @@
+"""The `wheelchair` command: one file per command group."""

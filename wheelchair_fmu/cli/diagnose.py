@@ -1,0 +1,109 @@
+"""`wheelchair diagnose`: which effect is missing, what cannot be told apart, and what to measure next."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich import box
+from rich.table import Table
+
+from ..campaign import read
+from ..loop.verdict import Diagnosis, as_json
+from ..loop.verdict import diagnose as run_diagnosis
+from ..model.effects import bundled, load
+from ..model.generic import library, terms
+from ..model.variant import Variant, read_variant
+from ..report.figures import staircase_figure
+from ..report.saving import save
+from .check import known_parameters
+from .files import written
+from .group import console
+from .settings import parse
+
+SENTENCES = {
+    "missing": "Missing: {effects}.",
+    "tie": "One of these is missing, and this campaign cannot tell which: {effects}.",
+    "small": "There, but too small to matter: {effects}. The model is adequate without.",
+    "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
+    "cannot_see": "Nothing was found, but these runs could not have shown most effects of interesting size.",
+    "outside": "Something is left that no effect in the catalogue explains.",
+}
+
+
+def register(app: typer.Typer) -> None:
+    app.command()(diagnose)
+
+
+def diagnose(
+    campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
+    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="For figures and proposals.")] = None,
+) -> None:
+    """Say which physical effect is missing from the model, with the evidence."""
+    catalogue = {**bundled(), **(load(effects) if effects else {})}
+    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
+    chair = chair.with_values(parse(settings or ()))
+    measured = read(campaign, known_parameters())
+    with console(stderr=True).status("reading") as status:
+        found = run_diagnosis(measured, chair, library(), progress=status.update)
+    content = as_json(found)
+    if json_file:
+        with written(json_file) as beside:
+            beside.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    _show(found, content)
+    if output:
+        for file in _files(found, content, output):
+            print(file)
+
+
+def _show(d: Diagnosis, content: dict[str, Any]) -> None:
+    out = console()
+    for note in d.notes:
+        out.print(f"note: {note}")
+    out.print(f"{d.campaign}: {SENTENCES[d.verdict].format(effects=', '.join(d.effects))}")
+    if d.proposal:
+        term = terms()[d.proposal.effect]
+        size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"
+        out.print(f"What would explain it: {term.words}, {size}.")
+    steps = Table(box=box.SIMPLE, title="whitened RMS error, 1.0 is the noise floor", title_justify="left")
+    for title, side in (("step", "left"), ("fitted runs", "right"), ("held-out runs", "right")):
+        steps.add_column(title, justify=side)
+    for s in d.ladder:
+        steps.add_row(s.name, f"{s.fit:.3f}", f"{s.heldout:.3f}")
+    out.print(steps)
+    out.print(_ranking(content))
+    out.print(f"{d.seconds:.1f} s")
+
+
+def _ranking(content: dict[str, Any]) -> Table:
+    table = Table(box=box.SIMPLE)
+    for title in ("effect", "estimate ± standard error", "of interest", "p", "power", "gain in −2 log L", "verdict"):
+        table.add_column(title)
+    for row in content["ranking"][:8]:
+        values = "  ".join(f"{name} {v['estimate']:.3g} ± {v['se'] or float('nan'):.2g} {v['unit']}"
+                           for name, v in row["parameters"].items())  # fmt: skip
+        sizes = ", ".join(f"{v['smallest_interesting']:g}" for v in row["parameters"].values())
+        figures = (f"{row['p']:.2g}", f"{row['power']:.2f}", f"{row['lr']:.0f}")
+        table.add_row(row["effect"], values, sizes, *figures, row["verdict"])
+    return table
+
+
+def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
+    files = [folder / "staircase.png", folder / "staircase.svg"]
+    figure = staircase_figure(content["ladder"])
+    for file in files:
+        with written(file) as beside:
+            save(figure, beside)
+    if d.proposal:
+        name = d.proposal.effect.replace("generic_", "proposed_").lower()
+        file = folder / "effects" / f"{name}.py"
+        with written(file) as beside:
+            beside.write_text(terms()[d.proposal.effect].file(name), encoding="utf-8")
+        files.append(file)
+    return files

@@ -1,0 +1,110 @@
+"""`wheelchair simulate`: a manoeuvre through an FMU, by fmpy; a table of results and a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from math import isinf, isnan
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich import box
+from rich.table import Table
+
+from ..errors import UsageError
+from ..fmu.build import with_chosen_effects
+from ..handling.key_numbers import KeyNumber, key_numbers
+from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
+from ..model.variant import Variant, read_variant
+from ..report.figures import manoeuvre_figure
+from ..report.saving import save
+from ..studies import Fmu, Result, fmu_of
+from .files import write_table, written
+from .group import console
+from .settings import parse
+
+
+def register(app: typer.Typer) -> None:
+    app.command()(simulate)
+
+
+def simulate(
+    name: Annotated[str, typer.Argument(metavar="MANOEUVRE", help=f"One of {', '.join(MANOEUVRES)}.")],
+    speed: Annotated[float | None, typer.Option(help="Forward speed [m/s]: held, or at the start of a coast-down.")] = None,
+    delta_force: Annotated[float | None, typer.Option(help="ΔF [N]; F_rl − F_rr = 2ΔF, positive turns right.")] = None,
+    period: Annotated[float | None, typer.Option(help="Period T of the slalom [s].")] = None,
+    time: Annotated[float | None, typer.Option(help="Length [s].")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
+    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, or ids with commas.")] = None,
+    equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
+    fmu: Annotated[Path | None, typer.Option(metavar="PATH", help="Drive this FMU instead of building one.")] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out"),
+) -> None:
+    """Put the chair through a manoeuvre of the paper, or into standstill, spin and reverse."""
+    course = manoeuvre(name, speed=speed, delta_force=delta_force, period=period, time=time)
+    given = parse(settings or ())
+    if fmu and (variant or effects or equations):
+        raise UsageError("--fmu gives a finished FMU; leave out --variant, --effects and --equations, or --fmu")
+    chair = _chair(variant, equations, given) if fmu is None else None
+    path = fmu if chair is None else _built(chair, effects or "default")
+    assert path is not None
+    with Fmu(path) as driven:
+        own = {} if chair is None else {n: v for n, v in chair.values.items() if n in driven.parameters}
+        values = driven.checked({**own, **course.values, **given})
+        result = driven.run(course.time, course.inputs, values)
+    held = values.get("speed.mode") == 2
+    _tell(result.warnings)
+    for file in _write(course, result, output):
+        print(file)
+    console().print(_table(key_numbers(result.columns, held=held)))
+
+
+def _chair(file: Path | None, equations: str | None, given: dict[str, str]) -> Variant:
+    """The variant asked for, with the effects that --set names; their values are checked on the way."""
+    start = read_variant(file) if file else Variant()
+    if equations:
+        start = replace(start, choice=replace(start.choice, equations=equations))
+    named = dict.fromkeys(name.split(".")[1] for name in given if name.startswith("effect.") and name.count(".") > 1)
+    return with_chosen_effects(start, named).with_values(given)
+
+
+def _built(chair: Variant, effects: str) -> Path:
+    with console(stderr=True).status("building the FMU"):
+        return fmu_of(chair, effects)
+
+
+def _tell(warnings: Iterable[str]) -> None:
+    for warning in warnings:
+        console(stderr=True).print(f"warning: {warning}")
+
+
+def _write(course: Manoeuvre, result: Result, folder: Path) -> list[Path]:
+    """The CSV, PNG and SVG."""
+    units = result.units
+    columns = {"time [s]": result.time}
+    columns |= {f"{name} [{units[name]}]": values for name, values in (*course.inputs.items(), *result.columns.items())}
+    files = [folder / f"{course.name}{ending}" for ending in (".csv", ".png", ".svg")]
+    write_table(files[0], columns)
+    figure = manoeuvre_figure(course.title, result.time, result.columns, course.watch)
+    for file in files[1:]:
+        with written(file) as beside:
+            save(figure, beside)
+    return files
+
+
+def _table(numbers: list[KeyNumber]) -> Table:
+    table = Table(box=box.SIMPLE)
+    table.add_column("result")
+    for title in ("at the end", "mean", "least", "greatest"):
+        table.add_column(title, justify="right")
+    for n in numbers:
+        table.add_row(f"{n.meaning} [{n.unit}]", *map(_digits, (n.end, n.mean, n.least, n.greatest)))
+    return table
+
+
+def _digits(value: float) -> str:
+    if isnan(value):
+        return ""
+    return "straight" if isinf(value) else f"{value:.4f}"

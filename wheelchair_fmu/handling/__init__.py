@@ -1,0 +1,1 @@
+"""How the chair handles: the manoeuvres it is put through."""

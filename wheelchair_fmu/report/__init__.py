@@ -1,0 +1,1 @@
+"""From data to figures, and figures to files."""

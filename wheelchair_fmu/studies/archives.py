@@ -1,0 +1,56 @@
+"""The FMU of a variant, built once and kept beside the compiled kernels."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import casadi
+
+from .. import __version__
+from ..engine import compiler
+from ..engine.cache import folder
+from ..fmu.build import build, with_chosen_effects
+from ..model.stage import Effect
+from ..model.variant import Variant
+
+PACKAGE = Path(__file__).parent.parent
+MAKERS = ("quantities.py", "model", "engine", "fmu", "../fmu_src")  # what an archive's content comes from
+
+
+def fmu_of(variant: Variant, effects: str | Iterable[str] = "default") -> Path:
+    """The FMU of a variant's laws and effects, and of `effects` as `build_fmu.py` knows them.
+
+    Its start values are the defaults: a variant's values are set when it runs, so one file serves them all.
+
+    Raises UsageError for an unknown effect and BuildError where it cannot be built.
+    """
+    bare = replace(with_chosen_effects(variant, effects), values={}, notes={})
+    words = (_makers(), repr(bare.choice), *(_effect_key(e) for e in bare.active()))
+    key = hashlib.sha256("\n".join(words).encode()).hexdigest()[:24]
+    target = folder() / f"Wheelchair-{key}.fmu"
+    return target if target.exists() else build(bare, target, effects="none")
+
+
+@cache
+def _makers() -> str:
+    """A digest of every file, and the versions, that an archive depends on."""
+    files = (f for name in MAKERS for f in _files(PACKAGE / name))
+    digest = hashlib.sha256(b"\0".join(f.read_bytes() for f in files)).hexdigest()
+    return f"{__version__} {digest} {casadi.__version__} {compiler.version()} {compiler.FLAGS}"
+
+
+def _files(path: Path) -> list[Path]:
+    if path.is_file():
+        return [path]
+    return sorted(f for f in path.rglob("*") if f.is_file() and "__pycache__" not in f.parts)
+
+
+def _effect_key(effect: Effect) -> str:
+    """An effect by its files' content: a user's own may change between two builds."""
+    laws = (*(c.law for c in effect.contributions), *(r.rate for r in effect.rows))
+    files = sorted({law.__code__.co_filename for law in laws})
+    return effect.id + hashlib.sha256(b"".join(Path(f).read_bytes() for f in files)).hexdigest()
