@@ -8,9 +8,9 @@ import os
 import tempfile
 from collections.abc import Iterable
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
-import casadi
 import platformdirs
 
 from ..model.stage import Effect
@@ -75,7 +75,7 @@ def _toolchain() -> str:
                     PACKAGE / "quantities.py"])  # fmt: skip
     files = [f for f in files if "__pycache__" not in f.parts]
     texts = hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{texts} {casadi.__version__} {compiler.version()} {compiler.FLAGS}"
+    return f"{texts} {version('casadi')} {compiler.version()} {compiler.FLAGS}"
 
 
 def _effect_key(effect: Effect) -> str:

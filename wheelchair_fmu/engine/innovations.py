@@ -15,6 +15,7 @@ from functools import cache
 import numpy as np
 
 from .cache import helper
+from .sensitivities import Linearised
 
 MOST = 64  # states, pushes and readings together, as in innovations.c
 
@@ -47,7 +48,7 @@ def _library() -> ctypes.CDLL:
 
 
 def whiten(
-    signals: np.ndarray, run, which: list[int], noise: Noise, start_mean: np.ndarray, *, blind: bool = False
+    signals: np.ndarray, run: Linearised, which: list[int], noise: Noise, start_mean: np.ndarray, *, blind: bool = False
 ) -> tuple[np.ndarray, float]:
     """Innovations (n, nz, m) of signals (n, nz, m), and Σ log of their variances.
 

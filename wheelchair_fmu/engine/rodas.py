@@ -72,5 +72,5 @@ def step(model: Model) -> Step:
             right += model.mass * sum(c_j * U_j for c_j, U_j in zip(c, U, strict=True)) / h
         U.append(factors.solve(right))
     x1 = x + sum(a_j * U_j for a_j, U_j in zip((*A[5], 1.0), U, strict=True))
-    d2, d3 = (sum(d_j * U_j for d_j, U_j in zip(d, U, strict=False)) for d in (DENSE_2, DENSE_3))
+    d2, d3 = (cs.horzcat(*U[:5]) @ cs.DM(d) for d in (DENSE_2, DENSE_3))
     return Step(w1, h, x1, U[5], d2, d3, U)

@@ -1,9 +1,11 @@
 """An accelerometer with constant offsets."""
 
+from typing import Any
+
 from ...quantities import M_S2, Parameter
 from ..stage import Effect, adds
 
-COMMON = dict(off=0.0, smallest_interesting=0.03, lower=-5.0, upper=5.0, source="instrument")
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.03, lower=-5.0, upper=5.0, source="instrument")
 X = Parameter("x", M_S2, "offset of the forward reading", symbol="bias_x", **COMMON)
 Y = Parameter("y", M_S2, "offset of the reading to the right", symbol="bias_y", mirror="-", **COMMON)
 

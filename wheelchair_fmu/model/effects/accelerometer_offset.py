@@ -1,9 +1,11 @@
 """An accelerometer mounted away from the CM: it also feels the turn about it."""
 
+from typing import Any
+
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
 
-COMMON = dict(off=0.0, smallest_interesting=0.03, lower=-2.0, upper=2.0, source="rigid-body kinematics")
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.03, lower=-2.0, upper=2.0, source="rigid-body kinematics")
 X = Parameter("x", M, "how far the sensor lies before the CM", symbol="lever_x", **COMMON)
 Y = Parameter("y", M, "how far the sensor lies to the right of the CM", symbol="lever_y", mirror="-", **COMMON)
 

@@ -3,12 +3,14 @@
 Positive roll lowers the sensor's right side, positive pitch raises its front.
 """
 
+from typing import Any
+
 import casadi as cs
 
 from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
-COMMON = dict(off=0.0, smallest_interesting=0.005, lower=-0.5, upper=0.5, source="rigid-body kinematics")
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.5, upper=0.5, source="rigid-body kinematics")
 ROLL = Parameter("roll", RAD, "roll of the sensor, positive with its right side down", mirror="-", **COMMON)
 PITCH = Parameter("pitch", RAD, "pitch of the sensor, positive with its front up", **COMMON)
 

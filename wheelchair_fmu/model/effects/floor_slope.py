@@ -1,9 +1,11 @@
 """A slope fixed in the room: the floor falls towards +x and +y by the angles x and y."""
 
+from typing import Any
+
 from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
-COMMON = dict(off=0.0, smallest_interesting=0.001, lower=-0.3, upper=0.3, source="Richter2007")
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.001, lower=-0.3, upper=0.3, source="Richter2007")
 X = Parameter("x", RAD, "slope along the room's x, positive where the floor falls towards +x", symbol="tilt_x",
               **COMMON)  # fmt: skip
 Y = Parameter("y", RAD, "slope along the room's y, positive where the floor falls towards +y", symbol="tilt_y",

@@ -1,0 +1,1 @@
+"""The paper: equations, laws, effects. CasADi expressions and records; no files, no plots."""
