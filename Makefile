@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 
 help:
 	@echo "make setup   a virtual environment in $(VENV) with everything to run and test"
-	@echo "make demo    build the FMU, simulate a turn, check the sample campaign"
+	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    all tests"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES and LSODA; writes out/bench.json"
@@ -30,6 +30,10 @@ demo: setup
 	$(BIN)/python build_fmu.py
 	$(BIN)/wheelchair simulate steady-turn --speed 1 --delta-force 10 -o out/demo
 	$(BIN)/wheelchair check examples/sample-campaign
+	$(BIN)/wheelchair compare examples/sample-campaign -o out/demo/compare
+	$(BIN)/wheelchair diagnose examples/sample-campaign --json out/demo/diagnosis.json -o out/demo
+	$(BIN)/wheelchair add rolling_resistance_asymmetry examples/sample-campaign -o out/demo/better.toml
+	$(BIN)/python build_fmu.py --variant out/demo/better.toml -o out/demo/Better.fmu
 
 test: setup
 	$(BIN)/python -m pytest -n 2

@@ -59,6 +59,6 @@ class BuildError(Failure):
 def unknown(kind: str, name: str, known: Iterable[str]) -> UsageError:
     """The error for a misspelt name, with the nearest known names as the cure."""
     known = list(known)
-    close = get_close_matches(name, known, n=3, cutoff=0.5)
+    close = [k for k in known if name and name in k][:3] or get_close_matches(name, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(repr(c) for c in close)}?" if close else f"known: {', '.join(known)}"
     return UsageError(f"no {kind} {name!r}; {hint}")

@@ -40,7 +40,7 @@ def test_equals_the_simulator_with_held_inputs(archive, effects, values, request
     time = np.arange(401) * 0.01
     expected = _simulated(with_chosen_effects(Variant(), effects), values, time, pushed, hold=True)
     with chair(unpacked) as c:
-        c.start(values)
+        c.start({**values, **pushed(0)})  # some effects start where the push is
         for i in range(400):
             c.set(pushed(i))
             c.time = time[i]

@@ -10,7 +10,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import Campaign, read
+from ..campaign import CHANNELS, Campaign, read
 from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of
 from ..loop.evidence import START, Bench, Evidence
@@ -111,10 +111,10 @@ def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate
         out.print(f"calibrated: {name} = {values[name]:.6g}")
     channels = list(dict.fromkeys(ch for r in c.runs for ch in r.channels))
     table = Table(box=box.SIMPLE, title=f"{measured.name}: whitened RMS error, 1.0 is the noise floor", title_justify="left")
-    table.add_column("run")
-    table.add_column("role")
+    table.add_column("run", no_wrap=True)
+    table.add_column("role", no_wrap=True)
     for channel in channels:
-        table.add_column(channel, justify="right")
+        table.add_column(channel.replace("wheel_speed", "wheel"), justify="right", no_wrap=True)
     for r in c.runs:
         table.add_row(r.name, r.role, *(f"{r.rms[ch]:.2f}" if ch in r.rms else "" for ch in channels))
     out.print(table)
@@ -137,7 +137,8 @@ def _figures(measured: Campaign, c: Comparison, evidence: Evidence, folder: Path
     for r, e in zip(c.runs, evidence.runs, strict=True):
         shown = {ch: r.predicted[:, i] for i, ch in enumerate(r.channels)}
         figures[f"run-{r.name}"] = overlay_figure(r.name, e.run.time, {ch: e.run.channels[ch] for ch in r.channels}, shown,
-                                                  {ch: measured.noise[ch] for ch in r.channels})  # fmt: skip
+                                                  {ch: measured.noise[ch] for ch in r.channels},
+                                                  units={c.name: c.unit.name for c in CHANNELS})  # fmt: skip
     files = []
     for name, figure in figures.items():
         for ending in (".png", ".svg"):
