@@ -82,15 +82,17 @@ def _show(d: Diagnosis, content: dict[str, Any]) -> None:
 
 
 def _ranking(content: dict[str, Any]) -> Table:
+    """One line per parameter of the likeliest effects."""
     table = Table(box=box.SIMPLE)
-    for title in ("effect", "estimate ± standard error", "of interest", "p", "power", "gain in −2 log L", "verdict"):
-        table.add_column(title)
+    for title in ("effect", "parameter", "estimate", "of interest", "p", "power", "gain in −2 log L", "verdict"):
+        right = title in ("p", "power", "gain in −2 log L")
+        table.add_column(title, no_wrap=title != "verdict", justify="right" if right else "left")
     for row in content["ranking"][:8]:
-        values = "  ".join(f"{name} {v['estimate']:.3g} ± {v['se'] or float('nan'):.2g} {v['unit']}"
-                           for name, v in row["parameters"].items())  # fmt: skip
-        sizes = ", ".join(f"{v['smallest_interesting']:g}" for v in row["parameters"].values())
-        figures = (f"{row['p']:.2g}", f"{row['power']:.2f}", f"{row['lr']:.0f}")
-        table.add_row(row["effect"], values, sizes, *figures, row["verdict"])
+        figures = (f"{row['p']:.1g}", f"{row['power']:.2f}", f"{row['lr']:.0f}", row["verdict"])
+        for i, (name, v) in enumerate(row["parameters"].items()):
+            se = f"{v['se']:.2g}" if v["se"] is not None else "?"
+            own = (name, f"{v['estimate']:.3g} ± {se} {v['unit']}", f"{v['smallest_interesting']:g}")
+            table.add_row("" if i else row["effect"], *own, *(("",) * 4 if i else figures))
     return table
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import typer
@@ -10,12 +11,15 @@ from typer.core import TyperGroup
 
 from ..errors import WheelchairError
 
+PIPED = 132  # columns where no terminal says how many there are
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
 
 def console(*, stderr: bool = False) -> Console:
     """Made anew each time, so that it writes to where stdout or stderr point now."""
-    return Console(stderr=stderr, highlight=False, soft_wrap=True, markup=False)
+    file = sys.stderr if stderr else sys.stdout
+    width = None if file.isatty() else PIPED
+    return Console(stderr=stderr, highlight=False, soft_wrap=True, markup=False, width=width)
 
 
 class Group(TyperGroup):
