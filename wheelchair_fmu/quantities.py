@@ -137,6 +137,10 @@ class State(Quantity):
     nominal: float = 1.0
 
 
+# Results stay within these, by unit: what lies beyond is no wheelchair. FMI asks for bounds.
+REACH = {"m": 1e6, "rad": 1e5, "m/s": 1e3, "rad/s": 1e4, "m/s2": 1e6, "N": 1e7, "1/m": 1e6, "1": 1e3}
+
+
 @dataclass(frozen=True)
 class Output(Quantity):
     """A result under its FMI name; `symbol` names the quantity it shows, `component` which of a pair."""
@@ -146,6 +150,12 @@ class Output(Quantity):
     lower: float = -inf
     upper: float = inf
     boolean: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        reach = REACH.get(self.unit.name, 1e9)
+        object.__setattr__(self, "lower", max(self.lower, -reach))
+        object.__setattr__(self, "upper", min(self.upper, reach))
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,79 @@
+"""Verdicts on campaigns whose answer is known, from another author's chair."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks.independent.campaigns import make
+from benchmarks.independent.hidden import usual
+from tests.loop.conftest import measured
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.loop.verdict import Diagnosis, as_json, diagnose
+from wheelchair_fmu.model.generic import library, terms
+
+KEYS = {"campaign", "verdict", "effects", "ties", "ranking", "ladder", "leftover", "next_experiment", "seconds"}
+ROW = {"effect", "parameters", "p", "power", "lr", "hidden_in_fit", "heldout_before", "heldout_after", "rivals", "verdict"}
+
+
+@pytest.fixture(scope="module")
+def sampled(sample) -> Diagnosis:
+    return diagnose(sample, generic=library())
+
+
+def test_the_sample_campaign_lacks_what_was_hidden(sampled):
+    """1.6 N more drag on the left wheel; the error falls to the floor on runs held out."""
+    assert sampled.verdict in ("missing", "tie")
+    assert "rolling_resistance_asymmetry" in sampled.effects
+    assert [s.name for s in sampled.ladder][:2] == ["nominal", "calibrated"]
+    assert sampled.ladder[0].heldout > 5 > sampled.ladder[1].heldout > 1.5 > 1.05 > sampled.ladder[-1].heldout
+    first = sampled.rounds[0].candidates[0]
+    assert first.estimate[0] == pytest.approx(1.6, abs=0.1)
+
+
+def test_its_json_has_the_keys_that_are_fixed(sampled):
+    content = json.loads(json.dumps(as_json(sampled), allow_nan=False))
+    assert content.keys() >= KEYS
+    assert all(row.keys() >= ROW for row in content["ranking"])
+    assert content["ranking"][0]["effect"] == content["effects"][0]
+    parameter = content["ranking"][0]["parameters"]["D"]
+    assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting"} and parameter["unit"] == "N"
+    assert {r["effect"] for r in content["ranking"]} >= {"toe_misalignment", "floor_cross_slope", "camber_misalignment"}
+
+
+def test_look_alikes_are_tied_where_nothing_tells_them_apart():
+    """Coasting and pushing straight ahead: air and speed-dependent rolling resistance."""
+    found = diagnose(measured("open-08-straight-only"), generic=library())
+    assert found.verdict == "tie"
+    assert set(found.effects) == {"aerodynamic_drag", "rolling_resistance_speed"}
+
+
+def test_what_no_effect_explains_is_outside_with_a_proposal(tmp_path):
+    """A spring that pulls the casters straight is in nobody's catalogue; the term found brings the error to the floor."""
+    found = diagnose(measured("open-09-outside"), generic=library())
+    assert found.verdict == "outside" and found.proposal is not None
+    assert found.proposal.effect == "generic_M_w_spring"
+    assert found.ladder[-1].heldout < 1.05
+    file = tmp_path / "caster_spring.py"
+    file.write_text(terms()[found.proposal.effect].file("caster_spring"), encoding="utf-8")
+    from wheelchair_fmu.model.effects import load
+
+    assert load(tmp_path)["caster_spring"].parameters[0].unit.name == "N.m"
+
+
+def test_nothing_hidden_nothing_found(tmp_path):
+    campaign = read(make(tmp_path / "null", {}, manoeuvres="straight", seed=11))
+    found = diagnose(campaign, generic=library())
+    assert found.verdict in ("adequate", "cannot_see", "small")
+    assert found.effects == () or found.verdict == "small"
+    assert np.isfinite(found.ladder[-1].fit)
+
+
+def test_drag_hidden_in_straight_runs_is_named_or_tied(tmp_path):
+    hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 3.0)}
+    campaign = read(make(tmp_path / "air", hidden, manoeuvres="straight", seed=12))
+    found = diagnose(campaign, generic=library())
+    assert found.verdict in ("missing", "tie")
+    assert "aerodynamic_drag" in found.effects or any("aerodynamic_drag" in tie for tie in found.ties)
