@@ -11,6 +11,7 @@ from benchmarks.independent.campaigns import make
 from benchmarks.independent.hidden import usual
 from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
+from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.verdict import Diagnosis, as_json, diagnose
 from wheelchair_fmu.model.generic import library, terms
 
@@ -45,8 +46,11 @@ def test_its_json_has_the_keys_that_are_fixed(sampled):
 
 def test_look_alikes_are_tied_where_nothing_tells_them_apart():
     """Coasting and pushing straight ahead: air and speed-dependent rolling resistance."""
-    found = diagnose(measured("open-08-straight-only"), generic=library())
+    found = diagnose(measured("open-08-straight-only"), generic=library(), experiments=experiments())
     assert found.verdict == "tie"
+    assert found.next_experiment is not None
+    assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
+    assert 1 <= found.next_experiment["repeats"] <= 20
     assert set(found.effects) == {"aerodynamic_drag", "rolling_resistance_speed"}
 
 

@@ -11,6 +11,7 @@ from rich import box
 from rich.table import Table
 
 from ..campaign import read
+from ..handling.experiments import experiments
 from ..loop.verdict import Diagnosis, as_json
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled, load
@@ -51,7 +52,7 @@ def diagnose(
     chair = chair.with_values(parse(settings or ()))
     measured = read(campaign, known_parameters())
     with console(stderr=True).status("reading") as status:
-        found = run_diagnosis(measured, chair, library(), progress=status.update)
+        found = run_diagnosis(measured, chair, library(), progress=status.update, experiments=experiments())
     content = as_json(found)
     if json_file:
         with written(json_file) as beside:
@@ -78,6 +79,10 @@ def _show(d: Diagnosis, content: dict[str, Any]) -> None:
         steps.add_row(s.name, f"{s.fit:.3f}", f"{s.heldout:.3f}")
     out.print(steps)
     out.print(_ranking(content))
+    if d.next_experiment:
+        n = d.next_experiment
+        times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
+        out.print(f"Measure next, {times}: {n['manoeuvre']}, for {' and '.join(n['separates'])}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
 
 

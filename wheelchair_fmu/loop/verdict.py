@@ -25,6 +25,7 @@ from .diagnose import (
     sandwich,
 )
 from .evidence import Evidence
+from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .noise import colour_of
 from .workshop import Workshop
@@ -60,6 +61,7 @@ class Diagnosis:
     final: Fit
     search: Search
     notes: tuple[str, ...]
+    next_experiment: dict[str, Any] | None
     seconds: float
 
 
@@ -69,10 +71,12 @@ def diagnose(
     generic: Mapping[str, Effect] | None = None,
     calibrated: Sequence[str] = CALIBRATED,
     progress: Callable[[str], None] = lambda words: None,
+    experiments: Sequence[Experiment] = (),
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
-
-    `generic` are the terms of the leftover test. `progress` is told what is being done, in words.
+    `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what
+    is being done, in words.
+    `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what is being done, in words.
     """
     began = time.monotonic()
     workshop = Workshop(campaign, variant or Variant())
@@ -100,8 +104,27 @@ def diagnose(
     ties = tuple(t for t in (_tied(r) for r in rounds) if len(t) > 1) if proposal is None else ()
     verdict = _verdict(effects, ties, rounds, proposal)
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
+    following = _next(search, verdict, ties, rounds, experiments)
     return Diagnosis(campaign.name, verdict, tuple(named), ties, tuple(ladder), tuple(rounds), leftover, proposal, base,
-                     search, tuple(notes), time.monotonic() - began)  # fmt: skip
+                     search, tuple(notes), following, time.monotonic() - began)  # fmt: skip
+
+
+def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: Sequence[Round],
+          experiments: Sequence[Experiment]) -> dict[str, Any] | None:  # fmt: skip
+    """What to measure next: to break the first tie, or to see what could not be seen."""
+    if not experiments:
+        return None
+    if verdict == "tie":
+        search.say("looking for an experiment that breaks the tie")
+        group = ties[0]
+        found = next(r for r in rounds if any(c.effect == group[0] and c.found for c in r.candidates))
+        fits = {c.effect: c.fit for c in found.candidates}
+        return separate(search, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments)
+    if verdict == "cannot_see":
+        search.say("looking for an experiment that would show more")
+        weak = [s.effect for s in rounds[0].scores if s.power < ENOUGH_POWER]
+        return reveal(search, rounds[0].fit, weak, experiments)
+    return None
 
 
 def _tied(r: Round) -> tuple[str, ...]:
@@ -196,7 +219,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ranking": ranking(d),
         "ladder": [{"step": s.name, "fit": s.fit, "heldout": _number(s.heldout)} for s in d.ladder],
         "leftover": leftover_json(d),
-        "next_experiment": None,
+        "next_experiment": d.next_experiment,
         "notes": list(d.notes),
         "seconds": d.seconds,
     }

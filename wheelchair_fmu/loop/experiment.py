@@ -1,0 +1,123 @@
+"""The next experiment: the run that best tells tied models apart, or shows what could not be seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..campaign import CHANNELS, Run
+from ..errors import SimulationError
+from .diagnose import TIED, Search
+from .evidence import Bench, Colour
+from .fit import Fit, prior_of
+
+MOST_REPEATS = 20
+
+
+class Experiment(Protocol):
+    """What the loop needs to know of a run that could be made."""
+
+    words: str
+    time: np.ndarray
+    inputs: Any
+    speed: float
+    heading: float
+    set: Any
+    more: Any
+    sensors: Any
+
+
+def separate(
+    search: Search, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment]
+) -> dict[str, Any] | None:
+    """The experiment that separates two fitted models with the fewest repeats, or None where none does.
+
+    The first model says what would be read; what the second cannot imitate, within what the campaign already says of
+    its parameters, is −2 log of the odds that one run gives.
+    """
+    bench = search.workshop.bench([e for e in effects if e in search.workshop.catalogue])
+    odds = []
+    for experiment in among:
+        try:
+            run = _imagined(bench, experiment, one)
+            evidence = _with_sensors(bench, experiment).evidence([run], other.everything, other.names)
+        except SimulationError:
+            continue
+        r, S = evidence.r, evidence.S
+        g = S.T @ r
+        known = np.linalg.pinv(other.covariance, hermitian=True)
+        odds.append((float(r @ r - g @ np.linalg.pinv(S.T @ S + known, hermitian=True) @ g), experiment))
+    if not odds:
+        return None
+    gain, best = max(odds, key=lambda o: o[0])
+    repeats = int(np.ceil(TIED / max(gain, 1e-9)))
+    if repeats > MOST_REPEATS:
+        return None
+    return {"manoeuvre": best.words, "separates": list(effects), "repeats": repeats,
+            "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; "
+                   f"{TIED:g} decide"}  # fmt: skip
+
+
+def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
+    """The experiment that would show most of the effects that this campaign could not have shown."""
+    bench = search.workshop.bench()
+    effects = [e for e in hidden if e in search.workshop.light]
+    names = [n for e in effects for n in search.workshop.parameters(e)]
+    best: tuple[int, Any, list[str], float] | None = None
+    for experiment in among:
+        try:
+            run = _imagined(bench, experiment, base)
+            e = _with_sensors(bench, experiment).evidence([run], base.everything, [*base.names, *names])
+        except SimulationError:
+            continue
+        shown, weakest = _shown(search, e.S, base, prior_of(bench, base.names).slopes, effects, names)
+        if shown and (best is None or len(shown) > best[0]):
+            best = (len(shown), experiment, shown, weakest)
+    if best is None:
+        return None
+    repeats = int(np.ceil(TIED / best[3]))
+    return {"manoeuvre": best[1].words, "separates": best[2], "repeats": max(1, min(repeats, MOST_REPEATS)),
+            "why": f"it would show {best[0]} effects of interesting size that these runs could not"}  # fmt: skip
+
+
+def _shown(search: Search, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str],
+           names: Sequence[str]) -> tuple[list[str], float]:  # fmt: skip
+    """Effects that one run would show at δ, and the information of the weakest of them."""
+    k = len(base.names)
+    Z, known = S[:, :k], np.linalg.pinv(base.covariance, hermitian=True) + prior**2
+    inverse = np.linalg.pinv(Z.T @ Z + known, hermitian=True)
+    shown, weakest = [], np.inf
+    for effect in effects:
+        own = search.workshop.parameters(effect)
+        X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
+        information = X.T @ X - X.T @ Z @ inverse @ Z.T @ X
+        size = float(np.linalg.eigvalsh(information)[-1])
+        if size > TIED:
+            shown.append(effect)
+            weakest = min(weakest, size)
+    return shown, weakest
+
+
+def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
+    """The run as a fitted model would have it read, without noise."""
+    known = {**bench.variant.values, **bench.campaign.known}
+    given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
+    measured = {c for r in bench.campaign.runs for c in r.channels} | set(experiment.sensors)
+    blank = Run(experiment.words, Path(experiment.words), experiment.words, "fit", experiment.speed, given,
+                experiment.time, dict(experiment.inputs), {})  # fmt: skip
+    bench.starts[blank.name] = {"start.x": 0.0, "start.y": 0.0, "start.psi": experiment.heading,
+                                "start.u": experiment.speed, "start.v": 0.0, "start.psi_dot": 0.0}  # fmt: skip
+    w = bench._inputs(blank, 0.0)
+    p = bench.variant.vector({**known, **model.everything, **given, **bench.starts[blank.name]})
+    simulated = bench.sensitivities.run(experiment.time, w, p)
+    places = {c.name: bench.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
+    return replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
+
+
+def _with_sensors(bench: Bench, experiment: Experiment) -> Bench:
+    sd = {**{c: s for c, s in experiment.sensors.items()}, **bench.colour.sd}
+    return bench.with_colour(Colour(sd, bench.colour.ar))
