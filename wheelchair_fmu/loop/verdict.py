@@ -76,7 +76,6 @@ def diagnose(
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
     `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what
     is being done, in words.
-    `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what is being done, in words.
     """
     began = time.monotonic()
     workshop = Workshop(campaign, variant or Variant())
