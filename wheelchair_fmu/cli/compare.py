@@ -15,6 +15,7 @@ from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of
 from ..loop.evidence import START, Bench, Evidence
 from ..loop.fit import fit, start_value
+from ..model.effects import bundled, load
 from ..model.variant import Variant, read_variant
 from ..model.wheelchair import REGIMES
 from ..report.figures import overlay_figure, where_figure
@@ -36,13 +37,16 @@ def compare(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     calibrate: Annotated[str, typer.Option(metavar="NAMES", help="Parameters to fit first, with commas.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print the errors as JSON.")] = False,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where figures go.")] = None,
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     measured = read(campaign, known_parameters())
-    chair = (read_variant(variant) if variant else Variant()).with_values(parse(settings or ()))
+    catalogue = {**bundled(), **(load(effects) if effects else {})}
+    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
+    chair = chair.with_values(parse(settings or ()))
     bench = Bench(measured, chair)
     values = dict(chair.values)
     with console(stderr=True).status("simulating"):

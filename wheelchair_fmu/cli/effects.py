@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich import box
 from rich.table import Table
 
-from ..errors import unknown
+from ..errors import UsageError, unknown
 from ..model.effects import bundled
+from ..model.expression import effect_file
 from ..model.stage import Effect
-from ..quantities import Parameter
-from .files import print_json
+from ..quantities import N, Parameter
+from .files import print_json, written
 from .group import console
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
@@ -66,6 +69,24 @@ def show(
         low, high = ("−∞" if p["lower"] is None else f"{p['lower']:g}", "∞" if p["upper"] is None else f"{p['upper']:g}")
         out.print(f"    bounds: {low} to {high} {p['unit']}")
         out.print(f"    source: {p['source']}")
+
+
+@app.command()
+def new(
+    effect: Annotated[str, typer.Argument(metavar="ID", help="A name in small letters and underscores.")],
+    folder: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the file goes.")] = Path("effects"),
+) -> None:
+    """Start an effect of your own: a file to edit, which `--effects DIR` puts into the catalogue."""
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", effect):
+        raise UsageError(f"{effect!r} is no name for an effect; use small letters, digits and underscores, like my_drag")
+    file = folder / f"{effect}.py"
+    if effect in bundled() or file.exists():
+        raise UsageError(f"there is an effect {effect!r} already; choose another name")
+    text = effect_file(effect, "say in a few words what it is", "F_x", N, "-q * u", size=0.5, lower=0.0, upper=100.0,
+                       source="say where its size comes from")  # fmt: skip
+    with written(file) as beside:
+        beside.write_text(text, encoding="utf-8")
+    print(file)
 
 
 def record(effect: Effect) -> dict[str, Any]:

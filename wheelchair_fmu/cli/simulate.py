@@ -16,6 +16,8 @@ from ..errors import UsageError
 from ..fmu.build import with_chosen_effects
 from ..handling.key_numbers import KeyNumber, key_numbers
 from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
+from ..model.effects import catalogue_of
+from ..model.stage import Effect
 from ..model.variant import Variant, read_variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save
@@ -37,7 +39,7 @@ def simulate(
     time: Annotated[float | None, typer.Option(help="Length [s].")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
-    effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, or ids with commas.")] = None,
+    effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, ids, or a folder.")] = None,
     equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
     fmu: Annotated[Path | None, typer.Option(metavar="PATH", help="Drive this FMU instead of building one.")] = None,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out"),
@@ -47,8 +49,9 @@ def simulate(
     given = parse(settings or ())
     if fmu and (variant or effects or equations):
         raise UsageError("--fmu gives a finished FMU; leave out --variant, --effects and --equations, or --fmu")
-    chair = _chair(variant, equations, given) if fmu is None else None
-    path = fmu if chair is None else _built(chair, effects or "default")
+    catalogue, chosen = catalogue_of(effects or "default")
+    chair = _chair(variant, equations, given, catalogue) if fmu is None else None
+    path = fmu if chair is None else _built(chair, chosen)
     assert path is not None
     with Fmu(path) as driven:
         own = {} if chair is None else {n: v for n, v in chair.values.items() if n in driven.parameters}
@@ -61,9 +64,9 @@ def simulate(
     console().print(_table(key_numbers(result.columns, held=held)))
 
 
-def _chair(file: Path | None, equations: str | None, given: dict[str, str]) -> Variant:
+def _chair(file: Path | None, equations: str | None, given: dict[str, str], catalogue: dict[str, Effect]) -> Variant:
     """The variant asked for, with the effects that --set names; their values are checked on the way."""
-    start = read_variant(file) if file else Variant()
+    start = read_variant(file, catalogue) if file else Variant(catalogue=catalogue)
     if equations:
         start = replace(start, choice=replace(start.choice, equations=equations))
     named = dict.fromkeys(name.split(".")[1] for name in given if name.startswith("effect.") and name.count(".") > 1)

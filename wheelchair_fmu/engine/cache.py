@@ -36,7 +36,7 @@ def library(choice: Choice, effects: Iterable[Effect], *, derivatives: bool = Fa
     With `derivatives` also `wc_tangent tangent_tangent` and `tangent.h`'s.
     """
     effects = sorted(effects, key=lambda e: e.id)
-    words = "\n".join((_toolchain(), repr(choice), str(derivatives), *map(_effect_key, effects)))
+    words = "\n".join((_toolchain(), repr(choice), str(derivatives), *map(effect_key, effects)))
     key = hashlib.sha256(words.encode()).hexdigest()[:24]
     target = folder() / f"{key}{compiler.SUFFIX}"
     if not target.exists():
@@ -78,9 +78,12 @@ def _toolchain() -> str:
     return f"{texts} {version('casadi')} {compiler.version()} {compiler.FLAGS}"
 
 
-def _effect_key(effect: Effect) -> str:
-    """An effect by its files' content, so that an edited file is a new effect."""
+def effect_key(effect: Effect) -> str:
+    """An effect by its files' content and its laws' code, so that an edited file is a new effect."""
     laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
-    files = sorted(f for f in {law.__code__.co_filename for law in laws} if Path(f).exists())
-    words = repr([(c.to, c.factor, c.law.__code__.co_names, c.law.__code__.co_consts) for c in effect.contributions])
-    return f"{effect.id} {words} {hashlib.sha256(b''.join(Path(f).read_bytes() for f in files)).hexdigest()}"
+    codes = [law.__code__ for law in laws]
+    files = sorted({c.co_filename for c in codes if Path(c.co_filename).is_file()})
+    words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not Path(c.co_filename).is_file()])
+    targets = repr([(c.to, c.factor) for c in effect.contributions])
+    texts = b"".join(Path(f).read_bytes() for f in files)
+    return f"{effect.id} {targets} {words} {hashlib.sha256(texts).hexdigest()}"

@@ -74,6 +74,7 @@ def diagnose(
     experiments: Sequence[Experiment] = (),
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
+
     `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what
     is being done, in words.
     """

@@ -12,9 +12,8 @@ import casadi
 
 from .. import __version__
 from ..engine import compiler
-from ..engine.cache import folder
+from ..engine.cache import effect_key, folder
 from ..fmu.build import build, with_chosen_effects
-from ..model.stage import Effect
 from ..model.variant import Variant
 
 PACKAGE = Path(__file__).parent.parent
@@ -29,7 +28,7 @@ def fmu_of(variant: Variant, effects: str | Iterable[str] = "default") -> Path:
     Raises UsageError for an unknown effect and BuildError where it cannot be built.
     """
     bare = replace(with_chosen_effects(variant, effects), values={}, notes={})
-    words = (_makers(), repr(bare.choice), *(_effect_key(e) for e in bare.active()))
+    words = (_makers(), repr(bare.choice), *(effect_key(e) for e in bare.active()))
     key = hashlib.sha256("\n".join(words).encode()).hexdigest()[:24]
     target = folder() / f"Wheelchair-{key}.fmu"
     return target if target.exists() else build(bare, target, effects="none")
@@ -47,10 +46,3 @@ def _files(path: Path) -> list[Path]:
     if path.is_file():
         return [path]
     return sorted(f for f in path.rglob("*") if f.is_file() and "__pycache__" not in f.parts)
-
-
-def _effect_key(effect: Effect) -> str:
-    """An effect by its files' content: a user's own may change between two builds."""
-    laws = (*(c.law for c in effect.contributions), *(r.rate for r in effect.rows))
-    files = sorted({law.__code__.co_filename for law in laws})
-    return effect.id + hashlib.sha256(b"".join(Path(f).read_bytes() for f in files)).hexdigest()

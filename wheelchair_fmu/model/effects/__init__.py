@@ -22,8 +22,11 @@ def bundled() -> dict[str, Effect]:
 def load(folder: Path) -> dict[str, Effect]:
     """The effects in a user's folder, by id.
 
-    Raises ModelError for a file without a record `EFFECT`, or whose record's id is not its file name.
+    Raises ModelError for a folder that is not there, a file without a record `EFFECT`, or one whose id is not its
+    file's name.
     """
+    if not Path(folder).is_dir():
+        raise ModelError(f"{folder}: no such folder; `wheelchair effects new ID` starts one")
     found = {}
     for file in sorted(Path(folder).glob("*.py")):
         if file.name.startswith("_"):
@@ -42,3 +45,10 @@ def load(folder: Path) -> dict[str, Effect]:
             raise ModelError(f"{file}: its effect is called {effect.id!r}; call it {file.stem!r} like its file")
         found[effect.id] = effect
     return found
+
+
+def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:
+    """What `--effects WORD` means: a folder joins its effects to the catalogue, anything else chooses from it."""
+    if Path(word).is_dir():
+        return {**bundled(), **load(Path(word))}, "default"
+    return bundled(), word

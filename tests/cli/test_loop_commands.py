@@ -1,0 +1,97 @@
+"""compare, add and effects of one's own, as a user types them."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from wheelchair_fmu.cli.main import app
+
+SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")
+
+
+def run(*words: str):
+    return CliRunner().invoke(app, list(words), catch_exceptions=False)
+
+
+def test_compare_says_where_the_error_is():
+    done = run("compare", SAMPLE, "--json")
+    assert done.exit_code == 0
+    told = json.loads(done.stdout)
+    assert told["rms"]["fit"] == pytest.approx(12.4, abs=0.3)
+    assert told["runs"][0].keys() == {"run", "role", "rms"}
+    for bins in told["excess"].values():
+        assert sum(b["share"] for b in bins) == pytest.approx(1.0)
+
+
+def test_compare_with_what_was_hidden_comes_near_the_floor():
+    values = {"tyre.C_lambda": 4790.8, "resistance.f_r": 0.018145, "resistance.f_f": 0.017922, "chair.I_z": 3.0931,
+              "effect.rolling_resistance_asymmetry.D": 1.6066}  # fmt: skip
+    settings = [word for n, v in values.items() for word in ("--set", f"{n}={v}")]
+    told = json.loads(run("compare", SAMPLE, "--json", *settings).stdout)
+    # chair.I_z and the like go before what the campaign file says
+    assert told["rms"]["holdout"] < 1.05
+
+
+def test_add_writes_a_variant_that_everything_reads(tmp_path):
+    better = tmp_path / "better.toml"
+    done = run("add", "rolling_resistance_asymmetry", SAMPLE, "-o", str(better), "--json")
+    assert done.exit_code == 0
+    told = json.loads(done.stdout)
+    assert [s["step"] for s in told["ladder"]] == ["nominal", "calibrated", "+rolling_resistance_asymmetry"]
+    assert told["ladder"][0]["heldout"] > told["ladder"][1]["heldout"] > 1.05 > told["ladder"][2]["heldout"]
+    table = tomllib.loads(better.read_text())
+    assert table["values"]["effect.rolling_resistance_asymmetry.D"] == pytest.approx(1.6, abs=0.1)
+    assert len(table["origin"]["fingerprint"]) == 64
+    assert better.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    again = json.loads(run("compare", SAMPLE, "--variant", str(better), "--json").stdout)
+    assert again["rms"]["holdout"] < 1.05
+
+
+@pytest.mark.parametrize(("words", "code", "sentence"), [
+    (("add", "relaxation", SAMPLE, "-o", "x.toml"), 2, "no effect 'relaxation'; did you mean 'relaxation_length'?"),
+    (("compare", SAMPLE, "--calibrate", "tyre.law"), 2, "tyre.law cannot be calibrated"),
+    (("compare", SAMPLE, "--set", "chair.m=-1"), 2, "chair.m = -1 is outside its bounds 1 to 1000 kg"),
+    (("compare", "nowhere"), 1, "nowhere"),
+    (("diagnose", SAMPLE, "--effects", "nowhere"), 1, "nowhere: no such folder"),
+    (("effects", "new", "MyDrag"), 2, "'MyDrag' is no name for an effect"),
+    (("effects", "new", "toe_misalignment"), 2, "there is an effect 'toe_misalignment' already"),
+])  # fmt: skip
+def test_bad_words_get_one_sentence(words, code, sentence, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = run(*words)
+    assert done.exit_code == code
+    assert sentence in done.stderr
+    assert "Traceback" not in done.output
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_effect_of_ones_own(tmp_path):
+    """A stub, edited, simulated: with F = −5 N u |u| the chair stops sooner."""
+    folder = tmp_path / "effects"
+    assert run("effects", "new", "my_drag", "-o", str(folder)).exit_code == 0
+    file = folder / "my_drag.py"
+    file.write_text(file.read_text().replace("-q * u", "-q * u * magnitude(u, v_eps)"))
+    done = run("simulate", "coast-down", "--effects", str(folder), "--set", "effect.my_drag.q=5", "-o", str(tmp_path / "out"))
+    assert done.exit_code == 0, done.output
+    last = (tmp_path / "out" / "coast-down.csv").read_text().splitlines()
+    x = float(last[-1].split(",")[last[0].split(",").index("chair.x [m]")])
+    drag = 9.81 * (0.012 * 0.25 + 0.020 * 0.20) / 0.45 * 80
+    # closed form of m u u' = −D − q u² from 1 m/s to rest
+    import math
+
+    assert x == pytest.approx(80 / (2 * 5) * math.log(1 + 5 / drag), rel=1e-3)
+
+
+def test_a_law_must_be_arithmetic():
+    from wheelchair_fmu.errors import UsageError
+    from wheelchair_fmu.model.expression import law
+
+    assert law("-q * u")(2.0, 3.0) == -6.0
+    for text, why in (("u.__class__", "Attribute is not allowed"), ("open(u)", "no function 'open'"), ("u +", "no expression")):
+        with pytest.raises(UsageError, match=why):
+            law(text)
