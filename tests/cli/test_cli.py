@@ -219,7 +219,9 @@ def test_version_help_and_unknown_commands():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
 def test_an_interrupt_ends_with_one_line_and_130(tmp_path):
-    script = ("import wheelchair_fmu.cli.simulate as s, time, sys\n"
+    # where the tests run in the background SIGINT is ignored, and children inherit that
+    script = ("import wheelchair_fmu.cli.simulate as s, signal, time, sys\n"
+              "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
               "def wait(*a, **k): print('waiting', flush=True); time.sleep(60)\n"
               "s.fmu_of = wait\n"
               "from wheelchair_fmu.cli.main import main\n"
