@@ -68,6 +68,8 @@ def _show(d: Diagnosis, content: dict[str, Any]) -> None:
     for note in d.notes:
         out.print(f"note: {note}")
     out.print(f"{d.campaign}: {SENTENCES[d.verdict].format(effects=', '.join(d.effects))}")
+    if d.verdict == "outside" and d.effects:
+        out.print(f"These help but do not suffice: {', '.join(d.effects)}.")
     if d.proposal:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"

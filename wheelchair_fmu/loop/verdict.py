@@ -35,6 +35,7 @@ WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they we
 NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
+UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,8 @@ def diagnose(
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic or {})
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic or {}, effects, proposal, ladder)
-    ties = tuple(t for t in (_tied(r) for r in rounds) if len(t) > 1) if proposal is None else ()
-    verdict = _verdict(effects, ties, rounds, proposal)
+    ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
+    verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
     return Diagnosis(campaign.name, verdict, tuple(named), ties, tuple(ladder), tuple(rounds), leftover, proposal, base,
@@ -190,8 +191,9 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
     return kept, replace(proposal, fit=found, heldout=held, estimate=estimate, se=se), steps
 
 
-def _verdict(effects, ties, rounds, proposal) -> str:
-    if proposal is not None:
+def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,
+             last: Step) -> str:  # fmt: skip
+    if proposal is not None or min(last.fit, last.heldout if np.isfinite(last.heldout) else np.inf) > UNEXPLAINED:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
