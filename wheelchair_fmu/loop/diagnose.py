@@ -83,9 +83,9 @@ class Search:
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
         bench = self.workshop.bench(effects)
-        bench.evidence(self.workshop.campaign.fit, found.everything, (), tune_start=2)
+        bench.evidence(self.workshop.campaign.runs, found.everything, (), tune_start=2)
+        self.workshop.remember(bench)
         again, bench = self.refit(effects, found.values)
-        bench.evidence(self.workshop.campaign.holdout, found.everything, (), tune_start=2)
         held = self.heldout(bench, again.everything)
         self.workshop.remember(bench)
         return again, held
