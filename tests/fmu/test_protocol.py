@@ -171,7 +171,9 @@ def test_a_gentle_ride_warns_of_nothing(native, in_python):
 
 # ---- saved states
 
+# Ends without the interpreter's own shutdown, which pythonfmu's library has been seen not to survive.
 CONTINUE = """
+import os
 import sys
 from pathlib import Path
 from tests.fmu.chair import Unpacked, chair, pushed
@@ -179,12 +181,15 @@ import fmpy
 unpacked = Unpacked(Path(sys.argv[1]), Path(sys.argv[2]), fmpy.read_model_description(sys.argv[1]))
 with chair(unpacked) as c:
     c.start()
-    c.fmu.setFMUstate(c.fmu.deSerializeFMUstate(Path(sys.argv[3]).read_bytes()))
+    state = c.fmu.deSerializeFMUstate(Path(sys.argv[3]).read_bytes())
+    c.fmu.setFMUstate(state)
+    c.fmu.freeFMUstate(state)
     c.time = float(sys.argv[4])
     for i in range(137, 260):
         c.set(pushed(i))
         c.step(0.01)
-    print(*(v.hex() for v in c.outputs()))
+    print(*(v.hex() for v in c.outputs()), flush=True)
+os._exit(0)
 """
 
 
