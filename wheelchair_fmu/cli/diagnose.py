@@ -12,7 +12,7 @@ from rich.table import Table
 
 from ..campaign import read
 from ..handling.experiments import experiments
-from ..loop.verdict import Diagnosis, as_json
+from ..loop.verdict import UNEXPLAINED, Diagnosis, as_json
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled, load
 from ..model.generic import library, terms
@@ -73,7 +73,9 @@ def _show(d: Diagnosis, content: dict[str, Any]) -> None:
     if d.proposal:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"
-        out.print(f"What would explain it: {term.words}, {size}.")
+        enough = min(d.ladder[-1].fit, d.ladder[-1].heldout) <= UNEXPLAINED
+        lead = "What would explain it" if enough else "The term that helps most, and does not suffice either"
+        out.print(f"{lead}: {term.words}, {size}.")
     steps = Table(box=box.SIMPLE, title="whitened RMS error, 1.0 is the noise floor", title_justify="left")
     for title, side in (("step", "left"), ("fitted runs", "right"), ("held-out runs", "right")):
         steps.add_column(title, justify=side)
