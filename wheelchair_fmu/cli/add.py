@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,10 +12,8 @@ from rich.table import Table
 
 from ..campaign import Campaign, read
 from ..errors import unknown
-from ..loop.diagnose import Search
+from ..loop.diagnose import Search, Step, begin
 from ..loop.fit import Fit
-from ..loop.noise import colour_of
-from ..loop.verdict import Step
 from ..loop.workshop import Workshop
 from ..model.effects import bundled, load
 from ..model.variant import Variant, read_variant, variant_text
@@ -63,10 +62,7 @@ def add(
 def _staircase(measured: Campaign, chair: Variant, effect: str, say: Any) -> tuple[Fit, list[Step]]:
     """Nominal, calibrated, each effect that was there already, and the new one."""
     search = Search(Workshop(measured, chair), progress=say)
-    base, held, nominal, nominal_held = search.calibrate()
-    search.workshop.colour, _ = colour_of(base.evidence, measured.noise)
-    base, held, nominal, nominal_held = search.calibrate()
-    ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+    base, held, ladder, _ = begin(search, say)
     on: tuple[str, ...] = ()
     for one in (*(e for e in chair.effects if e != effect), effect):
         say(f"refitting with {one}")
@@ -75,15 +71,13 @@ def _staircase(measured: Campaign, chair: Variant, effect: str, say: Any) -> tup
         assert candidate is not None
         on = (*on, one)
         base, bench = search.refit(on, candidate.fit.values)
-        held = search.heldout(bench, base.everything)
+        held = search.heldout(bench, base.values)
         ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
     return base, ladder
 
 
 def _improved(chair: Variant, effect: str, found: Fit, measured: Campaign) -> Variant:
     """The variant with the estimates, their standard errors and where they come from."""
-    from dataclasses import replace
-
     better = chair.with_effects([effect])
     errors = {name: found.se(name) for name in found.names}
     notes = {"standard_errors": errors, "origin": {"campaign": measured.name, "fingerprint": measured.fingerprint}}

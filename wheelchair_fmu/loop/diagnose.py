@@ -11,6 +11,7 @@ from scipy import stats
 from ..errors import SimulationError
 from .evidence import Bench, Evidence, block_length
 from .fit import Fit, fit, prior_of
+from .noise import colour_of
 from .screen import SEEN, Score, projector, robust_variance, score
 from .workshop import Workshop
 
@@ -26,6 +27,15 @@ PROMISING = 6.0  # expected fall below which no refit could pass the corrected t
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 RESAMPLES = 400
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the staircase: whitened RMS on fitted and on held-out runs."""
+
+    name: str
+    fit: float
+    heldout: float
 
 
 @dataclass(frozen=True)
@@ -83,10 +93,10 @@ class Search:
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
         bench = self.workshop.bench(effects)
-        bench.evidence(self.workshop.campaign.runs, found.everything, (), tune_start=2)
+        bench.evidence(self.workshop.campaign.runs, found.values, (), tune_start=2)
         self.workshop.remember(bench)
         again, bench = self.refit(effects, found.values)
-        held = self.heldout(bench, again.everything)
+        held = self.heldout(bench, again.values)
         self.workshop.remember(bench)
         return again, held
 
@@ -121,7 +131,7 @@ class Search:
         w = self.workshop
         names = [n for e in here for n in w.parameters(e)]
         try:
-            evidence = bench.evidence(w.campaign.fit, base.everything, [*base.names, *names])
+            evidence = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
         except SimulationError:
             return []
         S, k = evidence.S, len(base.names)
@@ -143,7 +153,7 @@ class Search:
             return None
         columns = []
         for name, size in zip(own, delta, strict=True):
-            values = {**base.everything, name: size}
+            values = {**base.values, name: size}
             try:
                 there = bench.evidence(self.workshop.campaign.fit, values)
             except SimulationError:
@@ -166,7 +176,7 @@ class Search:
         try:
             start = self._start(bench, base, s, names)
             found, bench = self.refit((*effects, effect), start, precision=1e-5, most=6)
-            held = self.heldout(bench, found.everything) if w.campaign.holdout else None
+            held = self.heldout(bench, found.values) if w.campaign.holdout else None
         except SimulationError:
             return None
         return self._judge(base, base_held, found, held, effect, names, tests)
@@ -258,11 +268,23 @@ class Search:
         nominal = bench.evidence(w.campaign.fit, start, (), tune_start=1)
         nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
         found = fit(bench, self.calibrated, start)
-        bench.evidence(w.campaign.fit, found.everything, (), tune_start=1)
+        bench.evidence(w.campaign.fit, found.values, (), tune_start=1)
         found = fit(bench, self.calibrated, found.values)
-        held = self.heldout(bench, found.everything)
+        held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
+
+
+def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step], list[str]]:
+    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps, notes)."""
+    say("calibrating")
+    base, held, nominal, nominal_held = search.calibrate()
+    w = search.workshop
+    w.colour, notes = colour_of(base.evidence, w.campaign.noise)
+    if w.colour.ar or notes:
+        base, held, nominal, nominal_held = search.calibrate()
+    ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+    return base, held, ladder, notes
 
 
 def shortlist(scores: Sequence[Score], most: int) -> list[Score]:
@@ -311,12 +333,17 @@ def correlation_time(evidence: Evidence) -> float:
 
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
     """Fall of the summed squared innovations on held-out runs, with a 95 % interval by a block bootstrap."""
-    blocks, rng = difference_blocks(before, after), np.random.default_rng(0)
+    blocks = difference_blocks(before, after)
     if not len(blocks):
         return 0.0, 0.0, 0.0
-    totals = blocks[rng.integers(0, len(blocks), (RESAMPLES, len(blocks)))].sum(axis=1)
-    low, high = np.quantile(totals, (0.025, 0.975))
+    low, high = np.quantile(resampled_totals(blocks), (0.025, 0.975))
     return float(blocks.sum()), float(low), float(high)
+
+
+def resampled_totals(blocks: np.ndarray) -> np.ndarray:
+    """Bootstrap totals (RESAMPLES,) of blocks drawn with replacement, the same draws each time."""
+    draws = np.random.default_rng(0).integers(0, len(blocks), (RESAMPLES, len(blocks)))
+    return blocks[draws].sum(axis=1)
 
 
 def difference_blocks(one: Evidence, other: Evidence) -> np.ndarray:

@@ -30,7 +30,7 @@ FIRST = 0.2  # s of samples that say where a run starts
 
 @dataclass(frozen=True)
 class Colour:
-    """Noise of each channel: standard deviation (SI) and AR(1) coefficient per second of correlation time."""
+    """Noise of each channel: standard deviation (SI) and AR(1) coefficient from sample to sample."""
 
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample

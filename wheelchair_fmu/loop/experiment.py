@@ -44,7 +44,7 @@ def separate(
     for experiment in among:
         try:
             run = _imagined(bench, experiment, one)
-            evidence = _with_sensors(bench, experiment).evidence([run], other.everything, other.names)
+            evidence = _with_sensors(bench, experiment).evidence([run], other.values, other.names)
         except SimulationError:
             continue
         r, S = evidence.r, evidence.S
@@ -71,7 +71,7 @@ def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Exp
     for experiment in among:
         try:
             run = _imagined(bench, experiment, base)
-            e = _with_sensors(bench, experiment).evidence([run], base.everything, [*base.names, *names])
+            e = _with_sensors(bench, experiment).evidence([run], base.values, [*base.names, *names])
         except SimulationError:
             continue
         shown, weakest = _shown(search, e.S, base, prior_of(bench, base.names).slopes, effects, names)
@@ -112,12 +112,12 @@ def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
     bench.starts[blank.name] = {"start.x": 0.0, "start.y": 0.0, "start.psi": experiment.heading,
                                 "start.u": experiment.speed, "start.v": 0.0, "start.psi_dot": 0.0}  # fmt: skip
     w = bench._inputs(blank, 0.0)
-    p = bench.variant.vector({**known, **model.everything, **given, **bench.starts[blank.name]})
+    p = bench.variant.vector({**known, **model.values, **given, **bench.starts[blank.name]})
     simulated = bench.sensitivities.run(experiment.time, w, p)
     places = {c.name: bench.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
     return replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
 
 
 def _with_sensors(bench: Bench, experiment: Experiment) -> Bench:
-    sd = {**{c: s for c, s in experiment.sensors.items()}, **bench.colour.sd}
+    sd = {**experiment.sensors, **bench.colour.sd}
     return bench.with_colour(Colour(sd, bench.colour.ar))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -25,11 +25,6 @@ class Fit:
     evidence: Evidence
     misfit: float  # −2 log likelihood and prior
     prior_slopes: np.ndarray
-    fixed: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def everything(self) -> dict[str, float]:
-        return {**self.fixed, **self.values}
 
     def se(self, name: str) -> float:
         i = self.names.index(name)
@@ -70,16 +65,15 @@ def fit(
     bench: Bench,
     names: Sequence[str],
     start: Mapping[str, float],
-    fixed: Mapping[str, float] | None = None,
     *,
     precision: float = 1e-6,
     most: int = 12,
 ) -> Fit:
-    """The most likely values of `names`, from `start`, with `fixed` values of others.
+    """The most likely values of `names`, from `start`.
 
     Raises SimulationError where the model cannot be simulated at the start.
     """
-    names, fixed = tuple(names), dict(fixed or {})
+    names = tuple(names)
     records = {p.name: p for p in bench.variant.parameters()}
     prior = prior_of(bench, names)
     lower = np.maximum([records[n].lower for n in names], prior.mean - REACH * prior.sd)
@@ -91,7 +85,7 @@ def fit(
     def at(theta: np.ndarray) -> Evidence:
         key = theta.tobytes()
         if key not in memory:
-            memory[key] = bench.evidence(runs, {**fixed, **dict(zip(names, theta, strict=True))}, names)
+            memory[key] = bench.evidence(runs, dict(zip(names, theta, strict=True)), names)
         return memory[key]
 
     worst: list[float] = []
@@ -122,4 +116,4 @@ def fit(
     A = evidence.S.T @ evidence.S + prior.slopes**2
     covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
     misfit = evidence.misfit + float(np.sum(prior.rows(theta) ** 2))
-    return Fit(names, values, covariance, evidence, misfit, prior.slopes, fixed)
+    return Fit(names, values, covariance, evidence, misfit, prior.slopes)

@@ -15,19 +15,20 @@ from ..model.variant import Variant
 from .diagnose import (
     CALIBRATED,
     MOST_EFFECTS,
-    RESAMPLES,
     TIED,
     Candidate,
     Round,
     Search,
+    Step,
+    begin,
     correlation_time,
     difference_blocks,
+    resampled_totals,
     sandwich,
 )
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
-from .noise import colour_of
 from .workshop import Workshop
 
 ENOUGH_POWER = 0.8
@@ -36,15 +37,6 @@ NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
-
-
-@dataclass(frozen=True)
-class Step:
-    """One step of the staircase: whitened RMS on fitted and on held-out runs."""
-
-    name: str
-    fit: float
-    heldout: float
 
 
 @dataclass(frozen=True)
@@ -82,12 +74,7 @@ def diagnose(
     began = time.monotonic()
     workshop = Workshop(campaign, variant or Variant())
     search = Search(workshop, calibrated, progress)
-    progress("calibrating")
-    base, held, nominal, nominal_held = search.calibrate()
-    workshop.colour, notes = colour_of(base.evidence, campaign.noise)
-    if workshop.colour.ar or notes:
-        base, held, nominal, nominal_held = search.calibrate()
-    ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+    base, held, ladder, notes = begin(search, progress)
     rounds, effects = [], ()
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
@@ -147,9 +134,8 @@ def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
     """Do both predict the held-out runs equally well, but for the bootstrap's standard error?"""
     if one.heldout is None or other.heldout is None or not one.heldout.runs:
         return False
-    blocks, rng = difference_blocks(one.heldout, other.heldout), np.random.default_rng(0)
-    totals = blocks[rng.integers(0, len(blocks), (RESAMPLES, len(blocks)))].sum(axis=1)
-    return abs(float(blocks.sum())) < float(totals.std())
+    blocks = difference_blocks(one.heldout, other.heldout)
+    return abs(float(blocks.sum())) < float(resampled_totals(blocks).std())
 
 
 def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidence, rounds: Sequence[Round],

@@ -21,7 +21,6 @@ class Workshop:
     def __init__(self, campaign: Campaign, variant: Variant):
         self.campaign, self.variant = campaign, variant
         self.catalogue: dict[str, Effect] = dict(variant.catalogue)
-        self._plain = {p.name for p in variant.parameters()}
         base = replace(variant, effects=(), values={})
         size = base.model().x.numel()
         self.light = [e for e in self.catalogue if not self.catalogue[e].needs
