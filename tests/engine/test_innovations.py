@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from wheelchair_fmu.engine.innovations import Noise, whiten
+from wheelchair_fmu.engine.innovations import Noise, Whitener
 
 
 @pytest.mark.parametrize("colour", [0.0, 0.8])
@@ -23,7 +24,8 @@ def test_innovations_are_generalised_least_squares(colour):
     signals = rng.normal(size=(n, nz, 4))
     signals[4, 1, 0] = np.nan
     mean = rng.normal(size=nx)
-    white, logdet = whiten(signals, run, which, noise, mean)
+    whitener = Whitener(run, which, noise, ~np.isnan(signals[:, :, 0]))
+    white, logdet = whitener(signals, mean), whitener.logdet
 
     V, offset = dense(run, which, noise, n, nx, nq, nz, mean)
     keep = ~np.isnan(signals[:, :, 0].ravel())
@@ -67,7 +69,7 @@ def respond(run, source, H, D, n, nx, nq):
     return np.concatenate(out)
 
 
-def test_blind_gives_each_reading_in_its_own_standard_deviation():
+def test_spread_is_each_readings_own_standard_deviation():
     rng = np.random.default_rng(1)
     n, nx, nq, nz = 8, 2, 1, 2
     run = SimpleNamespace(
@@ -75,7 +77,6 @@ def test_blind_gives_each_reading_in_its_own_standard_deviation():
         push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
         by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
     noise = Noise(np.array([0.3]), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.2]) ** 2)
-    signals, mean = rng.normal(size=(n, nz, 1)), np.zeros(nx)
-    V, _ = dense(run, [0, 1], noise, n, nx, nq, nz, mean)
-    out, _ = whiten(signals, run, [0, 1], noise, mean, blind=True)
-    np.testing.assert_allclose(out.ravel(), signals.ravel() / np.sqrt(np.diag(V)), rtol=1e-10)
+    V, _ = dense(run, [0, 1], replace(noise, start=0 * noise.start), n, nx, nq, nz, np.zeros(nx))
+    spread = Whitener(run, [0, 1], noise, np.ones((n, nz), bool)).spread
+    np.testing.assert_allclose(spread.ravel(), 1 / np.sqrt(np.diag(V)), rtol=1e-10)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -22,10 +22,9 @@ MOST = 64  # states, pushes and readings together, as in innovations.c
 
 class _Filter(ctypes.Structure):
     _fields_ = (
-        *((name, ctypes.c_int) for name in ("nx", "nq", "nz", "m")),
+        *((name, ctypes.c_int) for name in ("nx", "nq", "nz")),
         *((name, ctypes.c_void_p)
-          for name in ("A", "B", "C", "H", "D", "input_sd", "sd", "phi", "start_cov", "start_mean")),
-        ("blind", ctypes.c_int),
+          for name in ("A", "B", "C", "H", "D", "input_sd", "sd", "phi", "start_cov", "present")),
     )  # fmt: skip
 
 
@@ -43,34 +42,55 @@ class Noise:
 @cache
 def _library() -> ctypes.CDLL:
     library = helper("innovations")
-    library.wc_innovations.restype = ctypes.c_double
+    library.wc_design.restype = ctypes.c_double
     return library
 
 
-def whiten(
-    signals: np.ndarray, run: Linearised, which: list[int], noise: Noise, start_mean: np.ndarray, *, blind: bool = False
-) -> tuple[np.ndarray, float]:
-    """Innovations (n, nz, m) of signals (n, nz, m), and Σ log of their variances.
+class Whitener:
+    """The filter of one run: `run` its linearisation, `which` the places of its readings that were measured,
+    `present` (n, nz) False in gaps. `logdet` is Σ log of the innovations' variances."""
 
-    `run` is a `Linearised` run, `which` the places of its readings that were measured. The first signal is the
-    residual, measured less simulated, NaN in gaps; the others are sensitivities. `start_mean` (nx,) is where the
-    true start is expected, less the simulated one. `blind`: nothing is learnt from the readings, so that what comes out is
-    each reading's own deviation in units of its standard deviation, far from the start as near it. Gaps
-    come out as NaN in the first signal and 0 in the others.
-    """
-    n, nz, m = signals.shape
-    nx, nq = run.transition.shape[1], len(noise.pushes)
-    arrays = {"A": run.transition, "B": run.push_before[:, :, :nq], "C": run.push_after[:, :, :nq],
-              "H": run.by_state[:, which], "D": run.by_push[:, which, :nq], "input_sd": noise.pushes,
-              "sd": noise.readings, "phi": noise.colour, "start_cov": noise.start, "start_mean": start_mean}  # fmt: skip
-    arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
-    if nx + nq + nz > MOST:
-        raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
-    out = np.array(signals, float, order="C")
-    gaps = np.isnan(out[:, :, 0])
-    out[gaps, 1:] = 0
-    work = np.empty(MOST * m)
-    given = _Filter(nx, nq, nz, m, *(a.ctypes.data for a in arrays.values()), int(blind))
-    total = _library().wc_innovations(ctypes.byref(given), ctypes.c_long(n), ctypes.c_void_p(out.ctypes.data),
-                                      ctypes.c_void_p(work.ctypes.data))  # fmt: skip
-    return out, total
+    def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray):
+        self.present, self.noise = present, noise
+        n, nz = present.shape
+        nx, nq = run.transition.shape[1], len(noise.pushes)
+        if nx + nq + nz > MOST:
+            raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
+        arrays = {"A": run.transition, "B": run.push_before[:, :, :nq], "C": run.push_after[:, :, :nq],
+                  "H": run.by_state[:, which], "D": run.by_push[:, which, :nq], "input_sd": noise.pushes,
+                  "sd": noise.readings, "phi": noise.colour, "start_cov": noise.start}  # fmt: skip
+        self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
+        self._arrays["present"] = np.ascontiguousarray(present, np.int8)
+        self._filter = _Filter(nx, nq, nz, *(a.ctypes.data for a in self._arrays.values()))
+        self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
+        self.logdet: float = _library().wc_design(ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain),
+                                                  _of(self._scale))  # fmt: skip
+
+    def __call__(self, signals: np.ndarray, start_mean: np.ndarray) -> np.ndarray:
+        """Innovations (n, nz, m) of signals (n, nz, m).
+
+        The first signal is the residual, measured less simulated, and comes out NaN in gaps; the others are
+        sensitivities, 0 there. `start_mean` (nx,) is where the true start is expected, less the simulated one.
+        """
+        out = np.array(signals, float, order="C")
+        out[~self.present] = 0
+        m = out.shape[2]
+        mean, work = np.ascontiguousarray(start_mean, float), np.empty(2 * self._gain.shape[2] * m)
+        _library().wc_whiten(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(self._gain), _of(self._scale),
+                             _of(mean), ctypes.c_int(m), _of(out), _of(work))  # fmt: skip
+        out[~self.present, 0] = np.nan
+        return out
+
+    @cached_property
+    def spread(self) -> np.ndarray:
+        """(n, nz) one over the standard deviation of each reading round a simulation from the right start: sensor noise,
+        and push noise as it adds up."""
+        certain, scale = np.zeros_like(self.noise.start), np.empty(self.present.shape)
+        from_there = _Filter.from_buffer_copy(self._filter)
+        from_there.start_cov = certain.ctypes.data
+        _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
+        return scale
+
+
+def _of(array: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)

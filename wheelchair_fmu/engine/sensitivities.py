@@ -11,12 +11,12 @@ import numpy as np
 from ..errors import SimulationError
 from ..model.variant import Variant
 from . import cache
-from .simulate import WHY
+from .simulate import WHY, Simulator
 from .tangent import PUSHES, differentiable, sensed
 
 
 class _Wanted(ctypes.Structure):
-    _fields_ = (("active", ctypes.c_int), ("which", ctypes.c_void_p),
+    _fields_ = (("active", ctypes.c_int), ("which", ctypes.c_void_p), ("forced", ctypes.c_int),
                 *((name, ctypes.c_void_p) for name in ("transition", "push_before", "push_after", "by_state",
                                                        "by_push", "start", "by_parameter")))  # fmt: skip
 
@@ -49,7 +49,8 @@ class Sensitivities:
 
     def __init__(self, variant: Variant):
         self.variant = variant
-        self.model = variant.model()
+        self.simulator = Simulator(variant, derivatives=True)
+        self.model = self.simulator.model
         self._library = cache.library(variant.choice, variant.active(), derivatives=True)
         self._library.wc_tangent_work.restype = ctypes.c_long
         self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
@@ -80,7 +81,8 @@ class Sensitivities:
                "push_after": np.empty((n - 1, nx, PUSHES)), "by_state": np.empty((n, ns, nx)),
                "by_push": np.empty((n, ns, PUSHES)), "start": np.empty((nx, k)),
                "by_parameter": np.empty((n, ns, k))}  # fmt: skip
-        wanted = _Wanted(k, which.ctypes.data, *(a.ctypes.data for a in out.values()))
+        forced = any(not name.startswith("start.") for name in by)
+        wanted = _Wanted(k, which.ctypes.data, forced, *(a.ctypes.data for a in out.values()))
         work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()
         status = self._library.wc_tangent_run(

@@ -40,11 +40,14 @@ class Trajectory:
 
 
 class Simulator:
-    """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads."""
+    """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
 
-    def __init__(self, variant: Variant = Variant()):
+    `derivatives`: use the library that also has the model's derivatives, where that is at hand anyway.
+    """
+
+    def __init__(self, variant: Variant = Variant(), *, derivatives: bool = False):
         self.variant = variant
-        self._library = cache.library(variant.choice, variant.active())
+        self._library = cache.library(variant.choice, variant.active(), derivatives=derivatives)
         self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
 
     @cached_property

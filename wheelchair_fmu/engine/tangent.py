@@ -9,8 +9,10 @@ for every direction at once. These are the functions it needs; `csrc/tangent.c` 
 with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
 
     stages(x, w0, w1, h, p)    → U (nx, 6), W (nx, nx)
-    slopes(x, w, p)            → F (nx, nx + 4 + nc)           columns: states, pushes, parameters
-    bend(x, w, p, U, dw)       → d[J U + F_w dw] (nx, nx + 4 + nc)
+    slopes(x, w, p)            → F (nx, nx + 4)                by states and pushes
+    bend(x, w, p, U, dw)       → d[J U + F_w dw] (nx, nx + 4)
+    slopes_p(x, w, p)          → F_p (nx, nc)                  by parameters, not run where nobody asks for any
+    bend_p(x, w, p, U, dw)     → d[J U + F_w dw] (nx, nc)
     readout(x, w, p)           → dy of the sensors (ns, nx + 4 + nc)
     masses(p)                  → M (nx), dM (nx, nc)
     begin(x, w, p)             → derivative of the consistent start x (nx, nc)
@@ -27,7 +29,7 @@ from ..quantities import Parameter
 from .kernel import _algebraic_change
 from .rodas import GAMMA, step
 
-NAMES = ("stages", "slopes", "bend", "readout", "masses", "begin")
+NAMES = ("stages", "slopes", "bend", "slopes_p", "bend_p", "readout", "masses", "begin")
 SENSORS = "sensor."
 SENSED = ("chair.u", "chair.v")  # results that are also measured directly
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
@@ -62,20 +64,24 @@ def tangent(model: Model) -> Tangent:
     places = [model.parameters.index(c) for c in columns]
     at = [x, w, p]
 
-    def by_columns(e: cs.SX) -> cs.SX:
-        return cs.densify(cs.horzcat(cs.jacobian(e, x), cs.jacobian(e, w)[:, :PUSHES], cs.jacobian(e, p)[:, places]))
+    def by_motion(e: cs.SX) -> cs.SX:
+        return cs.densify(cs.horzcat(cs.jacobian(e, x), cs.jacobian(e, w)[:, :PUSHES]))
 
-    s = step(model)
+    def by_columns(e: cs.SX) -> cs.SX:
+        return cs.densify(cs.jacobian(e, p)[:, places])
+
+    s, y = step(model), model.y[list(rows)]
     W = cs.diag(model.mass) / (s.h * GAMMA) - cs.jacobian(model.f, x)
     U, dw = cs.SX.sym("U", x.numel()), cs.SX.sym("dw", w.numel())
     directional = cs.jtimes(model.f, cs.vertcat(x, w), cs.vertcat(U, dw))
     functions = {
         "stages": cs.Function("stages", [x, w, s.w1, s.h, p], cs.cse([cs.horzcat(*s.U), _rows(cs.densify(W))])),
-        "slopes": cs.Function("slopes", at, cs.cse([_rows(by_columns(model.f))])),
-        "bend": cs.Function("bend", [*at, U, dw], cs.cse([_rows(by_columns(directional))])),
-        "readout": cs.Function("readout", at, cs.cse([_rows(by_columns(model.y[list(rows)]))])),
-        "masses": cs.Function("masses", [p], [cs.densify(model.mass),
-                                              _rows(cs.densify(cs.jacobian(model.mass, p)[:, places]))]),
+        "slopes": cs.Function("slopes", at, cs.cse([_rows(by_motion(model.f))])),
+        "bend": cs.Function("bend", [*at, U, dw], cs.cse([_rows(by_motion(directional))])),
+        "slopes_p": cs.Function("slopes_p", at, cs.cse([_rows(by_columns(model.f))])),
+        "bend_p": cs.Function("bend_p", [*at, U, dw], cs.cse([_rows(by_columns(directional))])),
+        "readout": cs.Function("readout", at, cs.cse([_rows(cs.horzcat(by_motion(y), by_columns(y)))])),
+        "masses": cs.Function("masses", [p], [cs.densify(model.mass), _rows(by_columns(model.mass))]),
         "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
     }  # fmt: skip
     return Tangent(columns, rows, functions)

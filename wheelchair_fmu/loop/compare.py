@@ -62,9 +62,9 @@ def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None,
     """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
     own = evidence.predicted
     there = np.stack([predicted[c] for c in evidence.channels], axis=1) if predicted is not None else own
-    measured = np.stack([evidence.run.channels[c] for c in evidence.channels], axis=1)
-    where = {name: evidence.simulated.results[:, results.index(output)] for name, output in regimes.items()}
+    where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
     pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
     if pushes:
         where["push"] = np.sum(pushes, axis=0)
-    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, (measured - there) * evidence.scale, there, where)
+    e = (evidence.measured - there) * evidence.scale
+    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where)

@@ -26,6 +26,7 @@ BENT = 1.0  # standard deviations of its prior by which a calibrated value count
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
+SIZES = (1.0, 3.0, 10.0, -1.0, -3.0, -10.0)  # of δ, from which a refit may start
 RESAMPLES = 400
 
 
@@ -72,6 +73,14 @@ class Round:
     candidates: tuple[Candidate, ...]
 
 
+@dataclass(frozen=True)
+class Screened:
+    """An effect's score, and the evidence it rests on, with sensitivities by what is fitted, by this effect and by others."""
+
+    score: Score
+    evidence: Evidence
+
+
 class Search:
     """The state of a diagnosis: a workshop, what is calibrated, and the rounds so far."""
 
@@ -82,13 +91,14 @@ class Search:
 
     # -- models ---------------------------------------------------------------------------------------------
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], precision: float = 1e-6,
-              most: int = 12) -> tuple[Fit, Bench]:  # fmt: skip
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> tuple[Fit, Bench]:
         """The campaign's best values of the calibrated and these effects' parameters."""
         bench = self.workshop.bench(effects)
-        names = [*self.calibrated, *(n for e in effects for n in self.workshop.parameters(e))]
-        found = fit(bench, names, start, precision=precision, most=most)
-        return found, bench
+        return fit(bench, self.names(effects), start, here), bench
+
+    def names(self, effects: Sequence[str]) -> list[str]:
+        """What a model with these effects has to be fitted by."""
+        return [*self.calibrated, *(n for e in effects for n in self.workshop.parameters(e))]
 
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
@@ -116,50 +126,52 @@ class Search:
 
     # -- screen ---------------------------------------------------------------------------------------------
 
-    def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Score]:
+    def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
         """Score tests of every effect not yet in the model, by slope at zero and, where that may mislead, by secant."""
         w = self.workshop
         free = [e for e in (among if among is not None else w.catalogue) if e not in effects]
-        scores: list[Score] = []
+        found: list[Screened] = []
         for group in (w.light, w.heavy, w.demanding):
             here = [e for e in free if e in group]
             if here:
-                scores += self._screen_on(w.bench((*effects, *(e for e in here if group is not w.light))), base, here)
-        return sorted(scores, key=lambda s: -s.drop)
+                found += self._screen_on(w.bench((*effects, *(e for e in here if group is not w.light))), base, here)
+        return sorted(found, key=lambda s: -s.score.drop)
 
-    def _screen_on(self, bench: Bench, base: Fit, here: list[str]) -> list[Score]:
+    def _screen_on(self, bench: Bench, base: Fit, here: list[str]) -> list[Screened]:
         w = self.workshop
         names = [n for e in here for n in w.parameters(e)]
         try:
             evidence = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
         except SimulationError:
             return []
-        S, k = evidence.S, len(base.names)
-        off = projector(S[:, :k], prior_of(bench, base.names).slopes)
+        off = projector(evidence.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
         found = []
         for effect in here:
-            own = w.parameters(effect)
-            delta = np.array([self.records[n].smallest_interesting for n in own])
-            one_sided = np.array([self.records[n].lower == 0 for n in own])
-            slopes = S[:, [k + names.index(n) for n in own]]
-            tangent = score(evidence, off, effect, own, slopes, delta, one_sided)
-            secant = self._secant(bench, base, evidence, off, effect, own, delta, one_sided)
-            found.append(tangent if secant is None or secant.drop < tangent.drop else replace(secant, p=tangent.p))
+            own = [evidence.by.index(n) for n in w.parameters(effect)]
+            tangent = self._score(evidence, off, effect, evidence.S[:, own])
+            secants = [self._score(evidence, off, effect, S) for S in self._secants(bench, base, evidence, effect)]
+            best = max(secants, key=lambda s: s.drop, default=tangent)
+            found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence))
         return found
 
-    def _secant(self, bench, base, evidence, off, effect, own, delta, one_sided) -> Score | None:
-        """The score along what the effect really does at its smallest interesting size."""
-        if self._linear(effect):
-            return None
-        columns = []
-        for name, size in zip(own, delta, strict=True):
-            values = {**base.values, name: size}
+    def _score(self, evidence: Evidence, off: Callable[[np.ndarray], np.ndarray], effect: str, S: np.ndarray) -> Score:
+        records = [self.records[n] for n in self.workshop.parameters(effect)]
+        delta = np.array([r.smallest_interesting for r in records])
+        return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))
+
+    def _secants(self, bench: Bench, base: Fit, known: Evidence, effect: str) -> list[np.ndarray]:
+        """What the effect really does at its smallest interesting size, and at minus that: (N, k) per unit, each."""
+        records = [] if self._linear(effect) else [self.records[n] for n in self.workshop.parameters(effect)]
+        found = []
+        for sign in (1.0, -1.0):
+            sizes = {r.name: sign * r.smallest_interesting for r in records if r.lower <= sign * r.smallest_interesting}
             try:
-                there = bench.evidence(self.workshop.campaign.fit, values)
+                columns = [(known.r - bench.again(known, {**base.values, n: size}).r) / size for n, size in sizes.items()]
             except SimulationError:
-                return None
-            columns.append((evidence.r - there.r) / size)
-        return score(evidence, off, effect, own, np.stack(columns, axis=1), delta, one_sided)
+                continue
+            if columns and len(columns) == len(records):
+                found.append(np.stack(columns, axis=1))
+        return found
 
     def _linear(self, effect: str) -> bool:
         """Does the slope at zero tell what the effect does at the size it has?"""
@@ -168,48 +180,51 @@ class Search:
 
     # -- refits ---------------------------------------------------------------------------------------------
 
-    def candidate(self, base: Fit, base_held: Evidence, effects: tuple[str, ...], s: Score, tests: int) -> Candidate | None:
+    def candidate(self, base: Fit, base_held: Evidence, effects: tuple[str, ...], s: Screened, tests: int) -> Candidate | None:
         """Refit with one more effect, from the expected change and from sizes of interest."""
-        w, effect = self.workshop, s.effect
+        w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
-        names = w.parameters(effect)
         try:
-            start = self._start(bench, base, s, names)
-            found, bench = self.refit((*effects, effect), start, precision=1e-5, most=6)
+            start, here = self._start(bench, base, s)
+            found, bench = self.refit((*effects, effect), start, here)
             held = self.heldout(bench, found.values) if w.campaign.holdout else None
         except SimulationError:
             return None
-        return self._judge(base, base_held, found, held, effect, names, tests)
+        return self._judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
-    def _start(self, bench: Bench, base: Fit, s: Score, names: Sequence[str]) -> dict[str, float]:
-        """The best of several starts: the expected change, both signs of δ, and larger ones."""
-        records = [self.records[n] for n in names]
+    def _start(self, bench: Bench, base: Fit, s: Screened) -> tuple[dict[str, float], Evidence | None]:
+        """Where to start a refit, and what is known there: a linear effect from zero, others from the best of several
+        sizes: the expected change, both signs of δ, and larger ones."""
+        names = [*base.names, *self.workshop.parameters(s.score.effect)]
+        records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
+        prior, k = prior_of(bench, names), len(base.names)
+        calibrated = np.array([base.values[n] for n in base.names])
+        bent = np.abs(calibrated - prior.mean[:k]) / prior.sd[:k]
+        straight = np.where(np.isfinite(bent), prior.mean[:k], calibrated)
+        # a fit without the effect may have bent what it could to imitate it
+        calibrations = [calibrated, straight] if bent.max(initial=0) > BENT else [calibrated]
+        if self._linear(s.score.effect) and len(calibrations) == 1:
+            return {n: base.values.get(n, 0.0) for n in names}, s.evidence.only(names)
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
-        expected = np.clip(np.where(np.isfinite(s.estimate), s.estimate, 0), lower, upper)
-        sizes = [expected]
-        if not self._linear(s.effect):
-            sizes += [np.clip(f * delta, lower, upper) for f in (1.0, 3.0, *((-1.0, -3.0) if lower[0] < 0 else ()))]
-        prior = prior_of(bench, [*base.names, *names])
-        calibrations = [np.array([base.values[n] for n in base.names])]
-        off = np.abs(calibrations[0] - prior.mean[: len(base.names)]) / prior.sd[: len(base.names)]
-        if off.max(initial=0) > BENT:  # a fit without the effect may have bent what it could to imitate it
-            calibrations.append(np.where(np.isfinite(off), prior.mean[: len(base.names)], calibrations[0]))
-        tries = [np.concatenate([c, size]) for c in calibrations for size in sizes]
-        best = min(tries, key=lambda t: self._promise(bench, [*base.names, *names], t)) if len(tries) > 1 else tries[0]
-        return dict(zip([*base.names, *names], map(float, best), strict=True))
+        expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
+        sizes = [expected, *(f * delta for f in SIZES if f > 0 or (lower < 0).all())]
+        tries = [np.concatenate([c, np.clip(size, lower, upper)]) for c in calibrations for size in sizes]
+        known = s.evidence.only(base.names)
+        best = min(tries, key=lambda theta: self._promise(bench, known, names, theta))
+        return dict(zip(names, map(float, best), strict=True)), None
 
-    def _promise(self, bench: Bench, names: list[str], theta: np.ndarray) -> float:
-        """The misfit that one linear step from here would reach."""
+    def _promise(self, bench: Bench, known: Evidence, names: list[str], theta: np.ndarray) -> float:
+        """The misfit that one linear step of all but the effect would reach from here."""
         try:
-            e = bench.evidence(self.workshop.campaign.fit, dict(zip(names, theta, strict=True)), names)
+            r = bench.again(known, dict(zip(names, theta, strict=True))).r
         except SimulationError:
             return float("inf")
         prior = prior_of(bench, names)
         rows = prior.rows(theta)
-        g = e.S.T @ e.r + prior.slopes @ rows
-        reached = e.misfit + rows @ rows - g @ np.linalg.pinv(e.S.T @ e.S + prior.slopes**2, hermitian=True) @ g
-        return float(max(reached, e.misfit - 0.9 * e.r @ e.r))
+        Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
+        g = Z.T @ r + (prior.slopes @ rows)[:k]
+        return float(r @ r + rows @ rows - g @ np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g)
 
     def _judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
                names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
@@ -245,19 +260,18 @@ class Search:
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
               most: int = SHORTLIST) -> Round:  # fmt: skip
         """Screen, refit the shortlist, and rank."""
-        scores = self.screen(base, effects, among)
-        short = shortlist(scores, most)
+        screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
-        for s in short:
+        for s in shortlist(screened, most):
             leader = max((c.drop for c in candidates), default=0.0)
-            if self._linear(s.effect) and s.drop < HOPELESS * leader:
+            if self._linear(s.score.effect) and s.score.drop < HOPELESS * leader:
                 continue
-            self.say(f"refitting {s.effect}")
-            c = self.candidate(base, base_held, effects, s, len(scores))
+            self.say(f"refitting {s.score.effect}")
+            c = self.candidate(base, base_held, effects, s, len(screened))
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)
-        return Round(effects, base, base_held, tuple(scores), tuple(candidates))
+        return Round(effects, base, base_held, tuple(s.score for s in screened), tuple(candidates))
 
     def calibrate(self) -> tuple[Fit, Evidence, Evidence, Evidence]:
         """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
@@ -287,16 +301,17 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
     return base, held, ladder, notes
 
 
-def shortlist(scores: Sequence[Score], most: int) -> list[Score]:
+def shortlist(screened: Sequence[Screened], most: int) -> list[Screened]:
     """The best by expected drop, and whatever looks like the leader."""
-    promising = [s for s in scores if s.drop > PROMISING]
-    first = promising[:most]
-    if not first:
-        return []
-    leader = first[0]
-    alike = [s for s in promising[most:] if len(s.signature) == len(leader.signature)
-             and abs(float(s.signature @ leader.signature)) > ALIKE]  # fmt: skip
-    return [*first, *alike]
+    promising = [s for s in screened if s.score.drop > PROMISING]
+    first, rest = promising[:most], promising[most:]
+    return [*first, *(s for s in rest if alike(s.score, first[0].score) > ALIKE)]
+
+
+def alike(one: Score, other: Score) -> float:
+    """Cosine between two effects' signatures; 0 where either has none."""
+    comparable = len(one.signature) == len(other.signature) > 0
+    return abs(float(one.signature @ other.signature)) if comparable else 0.0
 
 
 def sandwich(found: Fit) -> np.ndarray:

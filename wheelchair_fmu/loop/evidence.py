@@ -7,15 +7,17 @@ uncertainty (see `innovations`); where the simulation is best started is found o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
 from os import cpu_count
+from typing import Any
 
 import numpy as np
 
 from ..campaign import CHANNELS, Campaign, Run
-from ..engine.innovations import Noise, whiten
+from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..model.variant import Variant
 
@@ -38,22 +40,32 @@ class Colour:
 
 @dataclass(frozen=True)
 class RunEvidence:
-    """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k), and errors e (n, nz):
-    measured less simulated, each in units of its standard deviation (sensor noise, and push noise added up)."""
+    """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k) by parameters and start_S
+    (n, nz, 6) by the start, and the filter that they went through."""
 
     run: Run
     channels: tuple[str, ...]
     r: np.ndarray
     S: np.ndarray
     start_S: np.ndarray
-    e: np.ndarray
-    scale: np.ndarray  # (n, nz) one over the standard deviation that e is measured in
-    logdet: float
-    simulated: Linearised
     start: Mapping[str, float]
+    results: np.ndarray  # (n, ny) all outputs of the simulation
     predicted: np.ndarray  # (n, nz) simulated readings
+    measured: np.ndarray  # (n, nz)
+    whitener: Whitener
+    offset: np.ndarray  # (nx,) where the true start is expected, less the simulated one
 
     @property
+    def scale(self) -> np.ndarray:
+        """(n, nz) one over the standard deviation of each reading: sensor noise, and push noise added up."""
+        return self.whitener.spread
+
+    @cached_property
+    def e(self) -> np.ndarray:
+        """(n, nz) measured less simulated, in those standard deviations; NaN in gaps."""
+        return (self.measured - self.predicted) * self.scale
+
+    @cached_property
     def rms(self) -> dict[str, float]:
         """Whitened RMS error of each channel: 1.0 is the noise floor."""
         return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2))) for i, c in enumerate(self.channels)}
@@ -61,25 +73,25 @@ class RunEvidence:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Some runs together: r (N,), S (N, k) of the finite innovations, and which run and channel each belongs to."""
+    """Some runs together: r (N,), S (N, k) of the finite innovations, and the parameters that S is by."""
 
     runs: tuple[RunEvidence, ...]
     by: tuple[str, ...]
 
-    @property
+    @cached_property
     def r(self) -> np.ndarray:
-        return np.concatenate([e.r[np.isfinite(e.r)] for e in self.runs])
+        return np.concatenate([e.r[np.isfinite(e.r)] for e in self.runs] or [np.empty(0)])
 
-    @property
+    @cached_property
     def S(self) -> np.ndarray:
-        return np.concatenate([e.S[np.isfinite(e.r)] for e in self.runs])
+        return np.concatenate([e.S[np.isfinite(e.r)] for e in self.runs] or [np.empty((0, len(self.by)))])
 
-    @property
+    @cached_property
     def misfit(self) -> float:
         """−2 log likelihood, but for a constant."""
-        return float(sum(np.nansum(e.r**2) + e.logdet for e in self.runs))
+        return float(self.r @ self.r + sum(e.whitener.logdet for e in self.runs))
 
-    @property
+    @cached_property
     def rms(self) -> float:
         """Whitened RMS error over all runs and channels: 1.0 is the noise floor."""
         e = np.concatenate([e.e[np.isfinite(e.e)] for e in self.runs] or [np.empty(0)])
@@ -88,6 +100,11 @@ class Evidence:
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
         return {e.run.name: e.rms for e in self.runs}
+
+    def only(self, names: Sequence[str]) -> Evidence:
+        """The same evidence with sensitivities by some of its parameters."""
+        at = [self.by.index(n) for n in names]
+        return Evidence(tuple(replace(e, S=e.S[:, :, at]) for e in self.runs), tuple(names))
 
 
 class Bench:
@@ -113,10 +130,20 @@ class Bench:
 
         `tune_start`: how often to move the simulated start to where the readings want it.
         """
-        runs = list(runs)
-        with ThreadPoolExecutor(cpu_count()) as pool:
-            found = list(pool.map(lambda run: self._tuned(run, values, tuple(by), tune_start), runs))
+        found = _each(lambda run: self._tuned(run, values, tuple(by), tune_start), runs)
         return Evidence(tuple(found), tuple(by))
+
+    def again(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
+        """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
+
+        def one(e: RunEvidence) -> RunEvidence:
+            given, w = self._given(e.run, values, e.start)
+            results = self.sensitivities.simulator.run(e.run.time, w, given, tolerance=TOLERANCE).results
+            predicted = results[:, [self.sensitivities.rows[i] for i in self._which(e.run)]]
+            r = e.whitener((e.measured - predicted)[:, :, None], e.offset)[:, :, 0]
+            return replace(e, r=r, results=results, predicted=predicted)
+
+        return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         for _ in range(rounds):
@@ -131,30 +158,34 @@ class Bench:
         return {n: prior[n] + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(START, step, strict=True)}
 
     def _one(self, run: Run, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
-        channels = tuple(c.name for c in CHANNELS if c.name in run.channels)
-        which = [self.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in run.channels]
+        channels, which = self._channels(run), self._which(run)
         start = self.starts[run.name]
-        given = {**self.variant.values, **self.known(run), **values, **run.set, **start}
-        delay = sum(values.get(d, 0.0) for d in self._delays)
-        w = self._inputs(run, delay)
+        given, w = self._given(run, values, start)
         columns = [n for n in (*by, *START) if n not in self._delays]
-        # a run's own setting of a parameter stands, so that parameter moves nothing in this run
-        simulated = self.sensitivities.run(run.time, w, self.variant.vector(given), columns, tolerance=TOLERANCE)
-        measured = np.stack([run.channels[c] for c in channels], axis=1)
-        S = self._columns(run, simulated, w, by, columns, which)
-        signals = np.concatenate([(measured - simulated.readings[:, which])[:, :, None], S], axis=2)
+        simulated = self.sensitivities.run(run.time, w, given, columns, tolerance=TOLERANCE)
+        measured, predicted = np.stack([run.channels[c] for c in channels], axis=1), simulated.readings[:, which]
         prior, sd = prior_start(run, self.known(run)), start_sd(run)
         to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
         spread = to_state * [sd[n] for n in START]
         offset = to_state @ [prior[n] - start[n] for n in START]
-        noise = self._noise(channels, spread @ spread.T)
-        white, logdet = whiten(signals, simulated, which, noise, offset)
-        ones = np.concatenate([signals[:, :, :1], np.ones_like(signals[:, :, :1])], axis=2)
-        plain, _ = whiten(ones, simulated, which, self._noise(channels, 0 * noise.start), 0 * offset, blind=True)
+        whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured))
+        S = self._columns(run, simulated, w, by, columns, which)
+        white = whitener(np.concatenate([(measured - predicted)[:, :, None], S], axis=2), offset)
         k = len(by)
-        return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], plain[:, :, 0],
-                           plain[:, :, 1],
-                           logdet, simulated, start, simulated.readings[:, which])  # fmt: skip
+        return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], start,
+                           simulated.results, predicted, measured, whitener, offset)  # fmt: skip
+
+    def _channels(self, run: Run) -> tuple[str, ...]:
+        return tuple(c.name for c in CHANNELS if c.name in run.channels)
+
+    def _which(self, run: Run) -> list[int]:
+        return [self.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in run.channels]
+
+    def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (np,) and inputs (n, nw) of a run; what the run itself sets stands."""
+        given = {**self.variant.values, **self.known(run), **values, **run.set, **start}
+        delay = sum(values.get(d, 0.0) for d in self._delays)
+        return self.variant.vector(given), self._inputs(run, delay)
 
     def _inputs(self, run: Run, delay: float) -> np.ndarray:
         """Recorded inputs (n, nw); a record that is early by `delay` is read that much later."""
@@ -197,6 +228,16 @@ class Bench:
         other = object.__new__(Bench)
         other.__dict__ = {**self.__dict__, "colour": colour}
         return other
+
+
+def _each(do: Callable[[Any], Any], things: Iterable[Any]) -> list[Any]:
+    """`do` of each thing, on all cores: the work is C's, which other threads do not wait for."""
+    return list(_pool().map(do, things))
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(cpu_count())
 
 
 def block_length(run: Run) -> int:

@@ -1,4 +1,8 @@
-"""Fit parameters to the evidence: `scipy.optimize.least_squares` on innovations, with priors as further rows."""
+"""Fit parameters to the evidence: `scipy.optimize.least_squares` on innovations, with priors as further rows.
+
+Each descent keeps the sensitivities and filters of where it began, so that a trial costs no more than a
+simulation; where it ends everything is linearised anew, until a descent gains nothing that matters.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,8 @@ from ..errors import SimulationError
 from ..quantities import Parameter
 from .evidence import Bench, Evidence
 
+STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
+MOST = 8  # linearisations
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -61,59 +67,84 @@ def start_value(bench: Bench, record: Parameter) -> float:
     return bench.campaign.known.get(record.name, bench.variant.values.get(record.name, record.default))
 
 
-def fit(
-    bench: Bench,
-    names: Sequence[str],
-    start: Mapping[str, float],
-    *,
-    precision: float = 1e-6,
-    most: int = 12,
-) -> Fit:
-    """The most likely values of `names`, from `start`.
+class _Problem:
+    """Parameters to fit on a bench: their bounds, scale and prior."""
+
+    def __init__(self, bench: Bench, names: Sequence[str]):
+        records = {p.name: p for p in bench.variant.parameters()}
+        self.bench, self.names, self.prior = bench, tuple(names), prior_of(bench, names)
+        self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - REACH * self.prior.sd)
+        self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + REACH * self.prior.sd)
+        self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
+
+    def inside(self, start: Mapping[str, float]) -> np.ndarray:
+        records = {p.name: p for p in self.bench.variant.parameters()}
+        return np.clip([start.get(n, records[n].default) for n in self.names], self.lower, self.upper)
+
+    def values(self, theta: np.ndarray) -> dict[str, float]:
+        return dict(zip(self.names, map(float, theta), strict=True))
+
+    def linearised(self, theta: np.ndarray) -> Evidence:
+        return self.bench.evidence(self.bench.campaign.fit, self.values(theta), self.names)
+
+    def misfit(self, here: Evidence, theta: np.ndarray) -> float:
+        return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
+
+    def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
+        """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
+        slopes = -np.concatenate([here.S, self.prior.slopes])
+        Q, R = np.linalg.qr(slopes)
+        inside = np.clip(theta, self.lower + 1e-12 * self.scale, self.upper - 1e-12 * self.scale)
+        latest = {inside.tobytes(): here}
+        wall = 10 * float(np.sqrt(here.r @ here.r))
+
+        def residuals(q: np.ndarray) -> np.ndarray:
+            """As long as all innovations and as steep, in few numbers: their part along the slopes, and the rest's size."""
+            if q.tobytes() not in latest:
+                try:
+                    latest[q.tobytes()] = self.bench.again(here, self.values(q))
+                except SimulationError:
+                    return np.full(len(q) + 1, wall)  # the search turns back where the model cannot run
+            r = np.concatenate([latest[q.tobytes()].r, self.prior.rows(q)])
+            along = Q.T @ r
+            return np.append(along, np.sqrt(max(0.0, float(r @ r - along @ along))))
+
+        found = least_squares(residuals, inside, jac=lambda q: np.vstack([R, np.zeros(len(q))]),
+                              bounds=(self.lower, self.upper), x_scale=self.scale, ftol=1e-7, xtol=1e-6, gtol=1e-10,
+                              max_nfev=10)  # fmt: skip
+        return found.x, latest[found.x.tobytes()]
+
+
+def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, *,
+        most: int = MOST) -> Fit:  # fmt: skip
+    """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
     Raises SimulationError where the model cannot be simulated at the start.
     """
-    names = tuple(names)
-    records = {p.name: p for p in bench.variant.parameters()}
-    prior = prior_of(bench, names)
-    lower = np.maximum([records[n].lower for n in names], prior.mean - REACH * prior.sd)
-    upper = np.minimum([records[n].upper for n in names], prior.mean + REACH * prior.sd)
-    scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
-    runs = bench.campaign.fit
-    memory: dict[bytes, Evidence] = {}
-
-    def at(theta: np.ndarray) -> Evidence:
-        key = theta.tobytes()
-        if key not in memory:
-            memory[key] = bench.evidence(runs, dict(zip(names, theta, strict=True)), names)
-        return memory[key]
-
-    worst: list[float] = []
-
-    def residuals(theta: np.ndarray) -> np.ndarray:
-        try:
-            e = at(theta)
-        except SimulationError:
-            if not worst:
-                raise
-            return np.full(size, 10 * worst[0])  # a wall: the search turns back where the model cannot run
-        return np.concatenate([e.r, prior.rows(theta)])
-
-    def slopes(theta: np.ndarray) -> np.ndarray:
-        return -np.concatenate([at(theta).S, prior.slopes])
-
-    theta = np.clip([start.get(n, records[n].default) for n in names], lower, upper)
-    first = residuals(theta)
-    size = len(first)
-    worst.append(float(np.sqrt(np.mean(first**2))))
-    if names:
-        inside = np.clip(theta, lower + 1e-12 * scale, upper - 1e-12 * scale)
-        found = least_squares(residuals, inside, jac=slopes, bounds=(lower, upper), x_scale=scale, ftol=precision,
-                              xtol=1e-5, gtol=1e-10, max_nfev=most)  # fmt: skip
-        theta = found.x
-    values = dict(zip(names, map(float, theta), strict=True))
-    evidence = at(theta)
-    A = evidence.S.T @ evidence.S + prior.slopes**2
+    problem = _Problem(bench, names)
+    theta = problem.inside(start)
+    here = here or problem.linearised(theta)
+    for _ in range(most if names else 0):
+        to, there = problem.descend(here, theta)
+        fall = problem.misfit(here, theta) - problem.misfit(there, to)
+        if fall < STRAIGHT:
+            theta, here = to, there
+            break
+        theta, here = _taken(problem, theta, here, to)
+    A = here.S.T @ here.S + problem.prior.slopes**2
     covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
-    misfit = evidence.misfit + float(np.sum(prior.rows(theta) ** 2))
-    return Fit(names, values, covariance, evidence, misfit, prior.slopes)
+    return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
+
+
+def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, there: np.ndarray) -> tuple[np.ndarray, Evidence]:
+    """The step from `theta` to `there`, or the half, the quarter … of it that really lowers the misfit."""
+    before = problem.misfit(here, theta)
+    for shrink in (1.0, 0.5, 0.25, 0.125):
+        trial = theta + shrink * (there - theta)
+        try:
+            found = problem.linearised(trial)
+        except SimulationError:
+            continue
+        if problem.misfit(found, trial) <= before:
+            return trial, found
+    return theta, here

@@ -42,30 +42,25 @@ def projector(Z: np.ndarray, prior_slopes: np.ndarray):
     return lambda X: X - Z @ (inverse @ (Z.T @ X))
 
 
-def blocks(evidence: Evidence) -> list[tuple[np.ndarray, int, float]]:
-    """For each run: the sample of every finite innovation (n_i,), how many samples, and the sample interval."""
-    out = []
-    for e in evidence.runs:
-        good = np.isfinite(e.r)
-        sample = np.broadcast_to(np.arange(e.r.shape[0])[:, None], e.r.shape)[good]
-        out.append((sample, e.r.shape[0], float(np.median(np.diff(e.run.time)))))
-    return out
-
-
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
     """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
     total, at = np.zeros((s.shape[1], s.shape[1])), 0
-    for sample, n, dt in blocks(evidence):
-        part = slice(at, at + len(sample))
-        at += len(sample)
-        q = np.zeros((n, s.shape[1]))
-        np.add.at(q, sample, s[part] * r[part, None])
-        lags = max(1, min(n // 4, round(LAG / dt)))
-        total += q.T @ q
-        for lag in range(1, lags + 1):
-            c = q[lag:].T @ q[:-lag]
-            total += (1 - lag / (lags + 1)) * (c + c.T)
+    for e in evidence.runs:
+        good = np.isfinite(e.r)
+        part = slice(at, at + int(good.sum()))
+        at = part.stop
+        terms = np.zeros((*e.r.shape, s.shape[1]))
+        terms[good] = s[part] * r[part, None]
+        total += _long_run_variance(terms.sum(axis=1), max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
     return total
+
+
+def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
+    """Σ over lags of the autocovariance (k, k) of q (n, k), by Bartlett's weights: that is the power of its moving sums."""
+    width = min(lags, len(q) // 4) + 1
+    sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), q, np.zeros((width - 1, q.shape[1]))]), axis=0)
+    moving = sums[width:] - sums[:-width]
+    return moving.T @ moving / width
 
 
 def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,

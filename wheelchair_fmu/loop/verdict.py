@@ -20,6 +20,7 @@ from .diagnose import (
     Round,
     Search,
     Step,
+    alike,
     begin,
     correlation_time,
     difference_blocks,
@@ -252,9 +253,8 @@ def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
 
 def _rivals(s: Any, scores: Sequence[Any]) -> list[dict[str, Any]]:
     """The effects whose signature is most like this one's."""
-    alike = [(o.effect, abs(float(o.signature @ s.signature))) for o in scores
-             if o.effect != s.effect and len(o.signature) == len(s.signature) > 0]  # fmt: skip
-    return [{"effect": e, "cosine": round(c, 4)} for e, c in sorted(alike, key=lambda a: -a[1])[:4] if c > 0.5]
+    rivals = sorted(((alike(o, s), o.effect) for o in scores if o.effect != s.effect), reverse=True)
+    return [{"effect": effect, "cosine": round(cosine, 4)} for cosine, effect in rivals[:4] if cosine > 0.5]
 
 
 def _row_verdict(d: Diagnosis, s: Any, c: Candidate | None) -> str:

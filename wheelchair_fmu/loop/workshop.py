@@ -12,6 +12,7 @@ from dataclasses import replace
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
+from ..model.wheelchair import adds_state
 from .evidence import Bench, Colour
 
 
@@ -21,12 +22,9 @@ class Workshop:
     def __init__(self, campaign: Campaign, variant: Variant):
         self.campaign, self.variant = campaign, variant
         self.catalogue: dict[str, Effect] = dict(variant.catalogue)
-        base = replace(variant, effects=(), values={})
-        size = base.model().x.numel()
-        self.light = [e for e in self.catalogue if not self.catalogue[e].needs
-                      and base.with_effects([e]).model().x.numel() == size]  # fmt: skip
-        self.heavy = [e for e in self.catalogue if e not in self.light and not self.catalogue[e].needs]
         self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
+        self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
+        self.light = [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
         self.colour = Colour(campaign.noise)
         self._benches: dict[frozenset[str], Bench] = {}
         self.starts: dict[str, dict[str, float]] = {}

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from inspect import signature
 from typing import Any
 
@@ -113,7 +114,7 @@ class Effect:
     even: bool = False  # the response is (nearly) even in the parameters: the slope at zero says little
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
 
-    @property
+    @cached_property
     def owned(self) -> tuple[Parameter, ...]:
         """All its parameters under their full names `effect.<id>.<name>`."""
         constants = tuple(replace(c, estimated=False) for c in self.constants)

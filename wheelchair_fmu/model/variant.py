@@ -19,6 +19,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -84,6 +85,10 @@ class Variant:
 
     def parameters(self) -> tuple[Parameter, ...]:
         """The records of every parameter this chair has."""
+        return self._parameters
+
+    @cached_property
+    def _parameters(self) -> tuple[Parameter, ...]:
         own = (p for e in sorted(self.effects) for p in self.catalogue[e].owned)
         return (*base_parameters(self.choice), *own)
 

@@ -102,6 +102,13 @@ def assemble(choice: Choice = Choice(), effects: Iterable[Effect] = ()) -> Model
     return _Assembly(choice, tuple(sorted(effects, key=lambda e: e.id))).model()
 
 
+def adds_state(choice: Choice, effect: Effect) -> bool:
+    """Does this effect bring an unknown of its own, or need one: what it reads before it is known?"""
+    if not any(symbol in FORESEEN for c in effect.contributions for symbol in reads(c.law)):
+        return bool(effect.rows)
+    return assemble(choice, [effect]).x.numel() > assemble(choice).x.numel()
+
+
 def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
     """The parameters of a model without effects."""
     laws = (_law("tyre", tyre.LAWS, choice.tyre), _law("caster", caster.LAWS, choice.caster))

@@ -4,7 +4,10 @@
  *     e(i+1) = A(i) e(i) + B(i) q(i) + C(i) q(i+1),    z(i) = H(i) e(i) + D(i) q(i) + a(i),
  * with q the noise of the recorded inputs, white over samples, and a the noise of the readings, one
  * AR(1) process each. The filter turns z into independent innovations of variance 1; being linear it
- * does the same to any signal that may hide in z, so residuals and sensitivities go through together.
+ * does the same to any signal that may hide in z, so residuals and sensitivities go through alike.
+ * Its gains depend on the variances only: they are designed once and applied to as many signals as come.
+ *
+ * The filter's own state is s = (e, q, a), of size nx + nq + nz.
  */
 #include <math.h>
 #include <string.h>
@@ -12,104 +15,134 @@
 #define MOST 64 /* states, inputs and readings together */
 
 typedef struct {
-    int nx, nq, nz, m;        /* states, noisy inputs, readings, signals to whiten */
+    int nx, nq, nz;
     const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
     const double *H, *D;      /* n x nz x nx, n x nz x nq */
     const double *input_sd;   /* nq */
     const double *sd, *phi;   /* nz: standard deviation and AR(1) coefficient of each reading */
     const double *start_cov;  /* nx x nx */
-    const double *start_mean; /* nx: of the first signal only */
-    int blind;                /* learn nothing from the readings: then only variances are right, not their independence */
+    const char *present;      /* n x nz: 0 in a gap */
 } filter;
 
-static void predict(const filter *f, long i, int n, double *P, double *S) {
-    int nx = f->nx, nq = f->nq, m = f->m;
-    double F[MOST * MOST], T[MOST * MOST];
-    memset(F, 0, sizeof F);
+static void add_row(int m, double factor, const double *restrict from, double *restrict to) {
+    if (factor == 0) return;
+    for (int c = 0; c < m; c++) to[c] += factor * from[c];
+}
+
+/* to = F from, where both have m columns: F takes s from sample i to i+1, but for fresh noise. */
+static void carry(const filter *f, long i, int m, const double *restrict from, double *restrict to) {
+    int nx = f->nx, nq = f->nq;
+    memset(to, 0, sizeof(double) * (size_t)((nx + nq + f->nz) * m));
     for (int r = 0; r < nx; r++) {
-        memcpy(F + r * n, f->A + (i * nx + r) * nx, sizeof(double) * (size_t)nx);
-        memcpy(F + r * n + nx, f->B + (i * nx + r) * nq, sizeof(double) * (size_t)nq);
+        for (int k = 0; k < nx; k++) add_row(m, f->A[(i * nx + r) * nx + k], from + k * m, to + r * m);
+        for (int q = 0; q < nq; q++) add_row(m, f->B[(i * nx + r) * nq + q], from + (nx + q) * m, to + r * m);
     }
-    for (int z = 0; z < f->nz; z++) F[(nx + nq + z) * n + nx + nq + z] = f->phi[z];
-    for (int r = 0; r < n; r++) { /* T = F P and F S, row by row; inputs' rows are empty */
-        double row[MOST] = {0};
-        for (int k = 0; k < n; k++) {
-            double factor = F[r * n + k];
-            for (int c = 0; factor != 0 && c < n; c++) row[c] += factor * P[k * n + c];
-        }
-        memcpy(T + r * n, row, sizeof(double) * (size_t)n);
-    }
+    for (int z = nx + nq; z < nx + nq + f->nz; z++) add_row(m, f->phi[z - nx - nq], from + z * m, to + z * m);
+}
+
+static void transpose(int n, const double *from, double *to) {
     for (int r = 0; r < n; r++) {
-        for (int c = 0; c < n; c++) {
-            double sum = 0;
-            for (int k = 0; k < n; k++) sum += T[r * n + k] * F[c * n + k];
-            P[r * n + c] = sum;
-        }
+        for (int c = 0; c < n; c++) to[c * n + r] = from[r * n + c];
     }
+}
+
+/* P at sample i+1 from P at i. */
+static void predict(const filter *f, long i, double *P) {
+    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
+    double T[MOST * MOST], U[MOST * MOST];
+    carry(f, i, n, P, T);
+    transpose(n, T, U);
+    carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
     for (int q = 0; q < nq; q++) { /* fresh noise of the inputs at i+1 */
         double G[MOST] = {0}, variance = f->input_sd[q] * f->input_sd[q];
         for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + q];
         G[nx + q] = 1;
-        for (int r = 0; r < n; r++) {
-            for (int c = 0; c < n; c++) P[r * n + c] += G[r] * variance * G[c];
-        }
+        for (int r = 0; r < nx + nq; r++) add_row(nx + nq, variance * G[r], G, P + r * n);
     }
     for (int z = 0; z < f->nz; z++) {
         int k = nx + nq + z;
         P[k * n + k] += (1 - f->phi[z] * f->phi[z]) * f->sd[z] * f->sd[z];
     }
-    double next[MOST]; /* signal by signal, S is n x m */
-    for (int j = 0; j < m; j++) {
-        for (int r = 0; r < n; r++) {
-            double sum = 0;
-            for (int k = 0; k < n; k++) sum += F[r * n + k] * S[k * m + j];
-            next[r] = sum;
-        }
-        for (int r = 0; r < n; r++) S[r * m + j] = next[r];
-    }
 }
 
-/* signals: n x nz x m, turned into innovations in place; NaN in the first signal marks a gap, left NaN.
- * work: MOST * m doubles. Returns Σ log of the innovations' variances. */
-double wc_innovations(const filter *f, long n, double *signals, double *work) {
-    int nx = f->nx, nq = f->nq, nz = f->nz, m = f->m, size = nx + nq + nz;
-    double P[MOST * MOST], *S = work, total = 0;
+static void begin(const filter *f, double *P) {
+    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
+    memset(P, 0, sizeof(double) * (size_t)(n * n));
+    for (int r = 0; r < nx; r++) memcpy(P + r * n, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
+    for (int q = 0; q < nq; q++) P[(nx + q) * (n + 1)] = f->input_sd[q] * f->input_sd[q];
+    for (int z = 0; z < f->nz; z++) P[(nx + nq + z) * (n + 1)] = f->sd[z] * f->sd[z];
+}
+
+/* Variance of reading z at sample i, and Ph, its covariance with s. */
+static double expect(const filter *f, long i, int z, const double *P, double *Ph) {
+    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz, own = nx + nq + z;
+    const double *H = f->H + (i * f->nz + z) * nx, *D = f->D + (i * f->nz + z) * nq;
+    memcpy(Ph, P + own * n, sizeof(double) * (size_t)n);
+    for (int k = 0; k < nx; k++) add_row(n, H[k], P + k * n, Ph);
+    for (int q = 0; q < nq; q++) add_row(n, D[q], P + (nx + q) * n, Ph);
+    double variance = Ph[own];
+    for (int k = 0; k < nx; k++) variance += H[k] * Ph[k];
+    for (int q = 0; q < nq; q++) variance += D[q] * Ph[nx + q];
+    return variance;
+}
+
+/* gain: n x nz x size, scale: n x nz, one over the standard deviation of each innovation.
+ * Returns Σ log of the innovations' variances; NaN where there is no room. */
+double wc_design(const filter *f, long n, double *gain, double *scale) {
+    int size = f->nx + f->nq + f->nz;
+    double P[MOST * MOST], Ph[MOST], total = 0;
     if (size > MOST) return NAN;
-    memset(P, 0, sizeof P);
-    memset(S, 0, sizeof(double) * (size_t)(size * m));
-    for (int r = 0; r < nx; r++) {
-        memcpy(P + r * size, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
-        S[r * m] = f->start_mean[r];
-    }
-    for (int q = 0; q < nq; q++) P[(nx + q) * (size + 1)] = f->input_sd[q] * f->input_sd[q];
-    for (int z = 0; z < nz; z++) P[(nx + nq + z) * (size + 1)] = f->sd[z] * f->sd[z];
+    begin(f, P);
     for (long i = 0; i < n; i++) {
-        if (i) predict(f, i - 1, size, P, S);
-        for (int z = 0; z < nz; z++) {
-            double h[MOST] = {0}, Ph[MOST], variance = 0, *signal = signals + (i * nz + z) * m;
-            if (isnan(signal[0])) continue;
-            memcpy(h, f->H + (i * nz + z) * nx, sizeof(double) * (size_t)nx);
-            memcpy(h + nx, f->D + (i * nz + z) * nq, sizeof(double) * (size_t)nq);
-            h[nx + nq + z] = 1;
-            for (int r = 0; r < size; r++) {
-                double sum = 0;
-                for (int c = 0; c < size; c++) sum += P[r * size + c] * h[c];
-                Ph[r] = sum;
-            }
-            for (int r = 0; r < size; r++) variance += h[r] * Ph[r];
-            double inverse = 1 / variance, scale = sqrt(inverse);
+        if (i) predict(f, i - 1, P);
+        for (int z = 0; z < f->nz; z++) {
+            double *K = gain + (i * f->nz + z) * size;
+            scale[i * f->nz + z] = 0;
+            if (!f->present[i * f->nz + z]) continue;
+            double variance = expect(f, i, z, P, Ph);
+            scale[i * f->nz + z] = 1 / sqrt(variance);
             total += log(variance);
-            for (int r = 0; r < size; r++) {
-                if (h[r] == 0) continue;
-                for (int j = 0; j < m; j++) signal[j] -= h[r] * S[r * m + j];
-            }
-            for (int r = 0; r < size && !f->blind; r++) {
-                double gain = Ph[r] * inverse;
-                for (int j = 0; j < m; j++) S[r * m + j] += gain * signal[j];
-                for (int c = 0; c < size; c++) P[r * size + c] -= gain * Ph[c];
-            }
-            for (int j = 0; j < m; j++) signal[j] *= scale;
+            for (int r = 0; r < size; r++) K[r] = Ph[r] / variance;
+            for (int r = 0; r < size; r++) add_row(size, -K[r], Ph, P + r * size);
         }
     }
     return total;
+}
+
+/* signals: n x nz x m, turned into innovations in place; gaps are left as they are.
+ * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
+void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
+               double *signals, double *work) {
+    int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
+    double *S = work, *next = work + size * m;
+    memset(S, 0, sizeof(double) * (size_t)(size * m));
+    for (int r = 0; r < nx; r++) S[r * m] = start_mean[r];
+    for (long i = 0; i < n; i++) {
+        if (i) {
+            carry(f, i - 1, m, S, next);
+            double *kept = S;
+            S = next;
+            next = kept;
+        }
+        for (int z = 0; z < nz; z++) {
+            long at = i * nz + z;
+            double *signal = signals + at * m;
+            if (!f->present[at]) continue;
+            for (int k = 0; k < nx; k++) add_row(m, -f->H[at * nx + k], S + k * m, signal);
+            for (int q = 0; q < nq; q++) add_row(m, -f->D[at * nq + q], S + (nx + q) * m, signal);
+            add_row(m, -1, S + (nx + nq + z) * m, signal);
+            for (int r = 0; r < size; r++) add_row(m, gain[at * size + r], signal, S + r * m);
+            for (int j = 0; j < m; j++) signal[j] *= scale[at];
+        }
+    }
+}
+
+/* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */
+void wc_spread(const filter *f, long n, double *scale) {
+    double P[MOST * MOST], Ph[MOST];
+    begin(f, P);
+    for (long i = 0; i < n; i++) {
+        if (i) predict(f, i - 1, P);
+        for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, P, Ph));
+    }
 }

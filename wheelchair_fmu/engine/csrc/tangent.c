@@ -9,11 +9,13 @@ typedef struct {
     const wc_tangent *g;
     const wc_derivatives *out;
     const double *p;
-    int nx, m, span; /* states, directions carried, and columns of slopes */
+    int nx, m; /* states, and directions carried */
     double length;   /* of the interval between samples */
     double *D;       /* nx x m: [x(i) | pushes at i | pushes at i+1 | parameters] -> x now */
     double *dU;      /* STAGES x nx x m */
-    double *at, *slopes, *first, *bend, *dM;
+    double *at, *dM;
+    double *slopes, *first, *bend; /* nx x (nx + pushes) */
+    double *slopes_p, *bend_p;     /* nx x columns */
     double mass[WC_MAX_STATES];
 } carrier;
 
@@ -75,8 +77,9 @@ static void add_stages(int rows, const double *a, int stages, const double *U, d
 
 /* Right side of stage i in all directions. */
 static void stage_right(carrier *c, int i, double h, const double *V, const double *part,
-                        const double *first, const double *slopes, const double *bend, double *right) {
-    int nx = c->nx, m = c->m, span = c->span;
+                        const double *slopes, double *right) {
+    int nx = c->nx, m = c->m, span = nx + WC_PUSHES;
+    const double *first = c->first, *bend = c->bend;
     const double *D = c->D;
     for (int r = 0; r < nx; r++) {
         double *row = right + r * m;
@@ -94,10 +97,9 @@ static void stage_right(carrier *c, int i, double h, const double *V, const doub
                     F * (wa + wc_ALPHA[i] * (wb - wa)) + B * wa + wc_GAMMA_I[i] * F0 * (wb - wa);
             }
         }
-        for (int a = 0; a < c->out->active; a++) {
-            int column = nx + WC_PUSHES + c->out->which[a];
-            row[nx + 2 * WC_PUSHES + a] += slopes[r * span + column] + bend[r * span + column]
-                                           + c->dM[r * c->g->columns + c->out->which[a]] * V[r];
+        for (int a = 0; c->out->forced && a < c->out->active; a++) {
+            int at = r * c->g->columns + c->out->which[a];
+            row[nx + 2 * WC_PUSHES + a] += c->slopes_p[at] + c->bend_p[at] + c->dM[at] * V[r];
         }
     }
 }
@@ -123,13 +125,17 @@ static void carry(void *context, const double *x, const double *wa, const double
             ws[q] = wa[q] + wc_ALPHA[i] * (wb[q] - wa[q]);
             dw[q] = wc_GAMMA_I[i] * (wb[q] - wa[q]);
         }
-        call(c->g->slopes, xs, ws, c->p, slopes);
         const double *bend_arg[] = {x, wa, c->p, U + i * nx, dw};
-        double *bend_res[] = {c->bend};
+        double *bend_res[] = {c->bend}, *bend_p_res[] = {c->bend_p};
+        call(c->g->slopes, xs, ws, c->p, slopes);
         c->g->bend(bend_arg, bend_res, 0, 0, 0);
+        if (c->out->forced) {
+            call(c->g->slopes_p, xs, ws, c->p, c->slopes_p);
+            c->g->bend_p(bend_arg, bend_p_res, 0, 0, 0);
+        }
         memcpy(c->at, c->D, sizeof(double) * (size_t)(nx * m));
         add_stages(nx * m, wc_A[i], i, c->dU, c->at);
-        stage_right(c, i, h, V, part, c->first, slopes, c->bend, dU);
+        stage_right(c, i, h, V, part, slopes, dU);
         solve(nx, m, W, exchange, dU);
     }
     add_stages(nx * m, wc_A[STAGES - 1], STAGES - 1, c->dU, c->D);
@@ -151,7 +157,7 @@ static void hand_over(carrier *c, long i) {
 }
 
 static void read_out(carrier *c, long i, const double *x, const double *w, double *readout) {
-    int nx = c->nx, ns = c->g->sensors, span = c->span, active = c->out->active;
+    int nx = c->nx, ns = c->g->sensors, span = nx + WC_PUSHES + c->g->columns, active = c->out->active;
     call(c->g->readout, x, w, c->p, readout);
     for (int s = 0; s < ns; s++) {
         const double *row = readout + s * span;
@@ -164,36 +170,39 @@ static void read_out(carrier *c, long i, const double *x, const double *w, doubl
 }
 
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
-    long nx = k->states, m = nx + 2 * WC_PUSHES + active, span = nx + WC_PUSHES + g->columns;
-    return (STAGES + 2) * nx * m + 4 * nx * span + g->sensors * span;
+    long nx = k->states, m = nx + 2 * WC_PUSHES + active, motion = nx + WC_PUSHES, nc = g->columns;
+    return (STAGES + 2) * nx * m + 3 * nx * motion + 3 * nx * nc + g->sensors * (motion + nc);
 }
 
 wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
                          const double *t, const double *w, double *x, double *y, const wc_derivatives *out,
                          double *work, long *reached) {
-    int nx = k->states, nw = k->inputs, m = nx + 2 * WC_PUSHES + out->active, span = nx + WC_PUSHES + g->columns;
-    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m, .span = span};
+    int nx = k->states, nw = k->inputs, m = nx + 2 * WC_PUSHES + out->active, motion = nx + WC_PUSHES;
+    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m};
     c.D = work;
     c.dU = c.D + nx * m;
     c.at = c.dU + STAGES * nx * m;
     c.slopes = c.at + nx * m;
-    c.first = c.slopes + nx * span;
-    c.bend = c.first + nx * span;
-    c.dM = c.bend + nx * span;
-    double *readout = c.dM + nx * span, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
+    c.first = c.slopes + nx * motion;
+    c.bend = c.first + nx * motion;
+    c.slopes_p = c.bend + nx * motion;
+    c.bend_p = c.slopes_p + nx * g->columns;
+    c.dM = c.bend_p + nx * g->columns;
+    double *readout = c.dM + nx * g->columns, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
     *reached = 0;
     wc_status status = wc_start(k, p, w, x);
     if (status != WC_OK) return status;
     const double *mass_arg[] = {p};
     double *mass_res[] = {c.mass, c.dM};
     g->masses(mass_arg, mass_res, 0, 0, 0);
-    call(g->begin, x, w, p, c.slopes);
+    double *begin = c.slopes_p; /* free until the first step */
+    call(g->begin, x, w, p, begin);
     memset(c.D, 0, sizeof(double) * (size_t)(nx * m));
     for (int r = 0; r < nx; r++) {
         c.D[r * m + r] = 1;
         for (int a = 0; a < out->active; a++)
             c.D[r * m + nx + 2 * WC_PUSHES + a] = out->start[r * out->active + a] =
-                c.slopes[r * g->columns + out->which[a]];
+                begin[r * g->columns + out->which[a]];
     }
     memcpy(now, x, sizeof(double) * (size_t)nx);
     for (long i = 0;; i++) {

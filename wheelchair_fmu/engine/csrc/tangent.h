@@ -9,13 +9,14 @@
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
     const int *rows;      /* places of those results */
-    wc_function stages, slopes, bend, readout, masses, begin;
+    wc_function stages, slopes, bend, slopes_p, bend_p, readout, masses, begin;
 } wc_tangent;
 
 /* What is wanted of a run, and where it goes. All matrices are stored by rows. */
 typedef struct {
     int active;           /* parameters in this run */
     const int *which;     /* their columns */
+    int forced;           /* does any of them enter the equations, not only the start? */
     double *transition;   /* n-1 x states x states: x(i+1) by x(i) */
     double *push_before;  /* n-1 x states x pushes: x(i+1) by the pushes at i */
     double *push_after;   /* n-1 x states x pushes: x(i+1) by the pushes at i+1 */
