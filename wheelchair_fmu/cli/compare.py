@@ -24,7 +24,7 @@ from ..studies import Fmu, fmu_of, run_campaign_run
 from .check import known_parameters
 from .files import print_json, written
 from .group import console
-from .settings import parse
+from .settings import applied
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
 
@@ -43,15 +43,13 @@ def compare(
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where figures go.")] = None,
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
-    measured = read(campaign, known_parameters())
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair = chair.with_values(parse(settings or ()))
+    chair, measured, _ = applied(settings or (), chair, read(campaign, known_parameters()))
     bench = Bench(measured, chair)
     values = dict(chair.values)
     with console(stderr=True).status("simulating"):
-        if calibrate:
-            values |= _calibrated(bench, calibrate)
+        values |= _calibrated(bench, calibrate)
         evidence = bench.evidence(measured.runs, values, (), tune_start=TUNING)
         comparison = Comparison(tuple(_through_fmu(measured, chair, values, evidence)))
     for note in _notes(measured):
@@ -73,7 +71,8 @@ def _calibrated(bench: Bench, names: str) -> dict[str, float]:
             raise unknown("parameter", name, records)
         if name not in bench.sensitivities.columns:
             raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(bench.sensitivities.columns)}")
-    return dict(fit(bench, wanted, {n: start_value(bench, records[n]) for n in wanted}).values)
+    wanted += bench.offsets  # sensors' offsets, where the campaign names them, are nobody's error
+    return dict(fit(bench, wanted, {n: start_value(bench, bench.records[n]) for n in wanted}).values) if wanted else {}
 
 
 def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float], evidence: Evidence) -> list[RunErrors]:

@@ -22,7 +22,7 @@ from ..report.saving import save
 from .check import known_parameters
 from .files import written
 from .group import console
-from .settings import parse
+from .settings import applied
 
 SENTENCES = {
     "missing": "Missing: {effects}.",
@@ -49,10 +49,9 @@ def diagnose(
     """Say which physical effect is missing from the model, with the evidence."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair = chair.with_values(parse(settings or ()))
-    measured = read(campaign, known_parameters())
+    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
     with console(stderr=True).status("reading") as status:
-        found = run_diagnosis(measured, chair, library(), progress=status.update, experiments=experiments())
+        found = run_diagnosis(measured, chair, library(), progress=status.update, experiments=experiments(), fixed=fixed)
     content = as_json(found)
     if json_file:
         with written(json_file) as beside:

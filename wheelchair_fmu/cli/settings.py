@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
+from ..campaign import Campaign
 from ..errors import UsageError
+from ..model.variant import Variant
 
 
 def parse(settings: Iterable[str]) -> dict[str, str]:
@@ -19,3 +22,14 @@ def parse(settings: Iterable[str]) -> dict[str, str]:
             raise UsageError(f"--set {word!r} is not NAME=VALUE; write for example --set chair.m=90")
         found[name] = value
     return found
+
+
+def applied(settings: Iterable[str], chair: Variant, measured: Campaign) -> tuple[Variant, Campaign, tuple[str, ...]]:
+    """The chair and the campaign with these values, which go before the campaign file's own; and their names.
+
+    Raises UsageError as `parse` and `Variant.with_values` do.
+    """
+    names = tuple(parse(settings))
+    chair = chair.with_values(parse(settings))
+    known = {n: chair.values[n] for n in names if n in chair.values and not n.startswith("effect.")}
+    return chair, replace(measured, known={**measured.known, **known}), names

@@ -63,7 +63,7 @@ def _compile(choice: Choice, effects: list[Effect], derivatives: bool, place: Pa
     for name, text in sources.items():
         (place / name).write_text(text)
     hand_written = CSRC / ("tangent.c" if derivatives else "advance.c")
-    first = ["-include", str(place / "coefficients.h"), "-O2"] if derivatives else []
+    first = ["-include", str(place / "coefficients.h"), "-O3"] if derivatives else []
     c_files = [place / name for name in sources if name.endswith(".c")]
     compiler.compile_shared([*c_files, hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
 

@@ -9,10 +9,11 @@ import numpy as np
 from scipy import stats
 
 from ..errors import SimulationError
-from .evidence import Bench, Evidence, block_length
-from .fit import Fit, fit, prior_of
+from .evidence import Bench, Evidence
+from .fit import Fit, fit, prior_of, start_value
 from .noise import colour_of
-from .screen import SEEN, Score, projector, robust_variance, score
+from .screen import Score, projector, score
+from .statistics import alike, correlation_time, held_out_gain, sandwich, seen_directions
 from .workshop import Workshop
 
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
@@ -26,8 +27,8 @@ BENT = 1.0  # standard deviations of its prior by which a calibrated value count
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
-SIZES = (1.0, 3.0, 10.0, -1.0, -3.0, -10.0)  # of δ, from which a refit may start
-RESAMPLES = 400
+SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
+STARTS = 2  # of these, for an effect whose slope at zero says little
 
 
 @dataclass(frozen=True)
@@ -86,8 +87,12 @@ class Search:
 
     def __init__(self, workshop: Workshop, calibrated: Sequence[str] = CALIBRATED,
                  progress: Callable[[str], None] = lambda words: None):  # fmt: skip
-        self.workshop, self.calibrated, self.say = workshop, tuple(calibrated), progress
+        self.workshop, self.say = workshop, progress
+        self.offsets = tuple(workshop.bench().offsets)
+        self.calibrated = tuple(n for n in calibrated if n not in workshop.fixed)
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
+        self._twins: dict[str, frozenset[str]] = {}
+        self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
 
     # -- models ---------------------------------------------------------------------------------------------
 
@@ -98,7 +103,14 @@ class Search:
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""
-        return [*self.calibrated, *(n for e in effects for n in self.workshop.parameters(e))]
+        twins = frozenset().union(*(self._twins.get(e, ()) for e in effects))
+        offsets = (n for n in self.offsets if n not in twins)
+        return [*self.calibrated, *offsets, *(n for e in effects for n in self.workshop.parameters(e))]
+
+    def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
+        """The model with these effects, which the variant has already, estimated anew."""
+        found, _ = self.refit(effects, {**self.workshop.given, **base.values})
+        return self.settled(effects, found)
 
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
@@ -129,15 +141,16 @@ class Search:
     def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
         """Score tests of every effect not yet in the model, by slope at zero and, where that may mislead, by secant."""
         w = self.workshop
-        free = [e for e in (among if among is not None else w.catalogue) if e not in effects]
+        free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
         found: list[Screened] = []
         for group in (w.light, w.heavy, w.demanding):
             here = [e for e in free if e in group]
             if here:
-                found += self._screen_on(w.bench((*effects, *(e for e in here if group is not w.light))), base, here)
+                bench = w.bench((*effects, *(e for e in here if group is not w.light)))
+                found += self._screen_on(bench, effects, base, here)
         return sorted(found, key=lambda s: -s.score.drop)
 
-    def _screen_on(self, bench: Bench, base: Fit, here: list[str]) -> list[Screened]:
+    def _screen_on(self, bench: Bench, effects: Sequence[str], base: Fit, here: list[str]) -> list[Screened]:
         w = self.workshop
         names = [n for e in here for n in w.parameters(e)]
         try:
@@ -147,12 +160,39 @@ class Search:
         off = projector(evidence.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
         found = []
         for effect in here:
+            if self._is_an_offset(effect, evidence):
+                fewer, _ = self._base(effect, effects, base, None)
+                found += self._screen_on(bench, effects, fewer, [effect])
+                continue
             own = [evidence.by.index(n) for n in w.parameters(effect)]
             tangent = self._score(evidence, off, effect, evidence.S[:, own])
             secants = [self._score(evidence, off, effect, S) for S in self._secants(bench, base, evidence, effect)]
             best = max(secants, key=lambda s: s.drop, default=tangent)
             found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence))
         return found
+
+    def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
+        """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
+        own = evidence.S[:, [evidence.by.index(n) for n in self.workshop.parameters(effect)]]
+        offsets = [n for n in self.offsets if n in evidence.by]
+        columns = evidence.S[:, [evidence.by.index(n) for n in offsets]]
+        rest = columns - own @ np.linalg.lstsq(own, columns, rcond=None)[0]
+        same = np.linalg.norm(rest, axis=0) < 1e-6 * np.linalg.norm(columns, axis=0)
+        if same.any():
+            self._twins[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
+        return bool(same.any())
+
+    def _base(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
+        """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
+        if not self._twins.get(effect):
+            return base, held
+        key = (effect, *effects)
+        if key not in self._without:
+            names = [n for n in self.names(effects) if n not in self._twins[effect]]
+            bench = self.workshop.bench(effects)
+            fewer = fit(bench, names, base.values)
+            self._without[key] = fewer, self.heldout(bench, fewer.values)
+        return self._without[key]
 
     def _score(self, evidence: Evidence, off: Callable[[np.ndarray], np.ndarray], effect: str, S: np.ndarray) -> Score:
         records = [self.records[n] for n in self.workshop.parameters(effect)]
@@ -180,21 +220,27 @@ class Search:
 
     # -- refits ---------------------------------------------------------------------------------------------
 
-    def candidate(self, base: Fit, base_held: Evidence, effects: tuple[str, ...], s: Screened, tests: int) -> Candidate | None:
+    def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
+                  tests: int) -> Candidate | None:  # fmt: skip
         """Refit with one more effect, from the expected change and from sizes of interest."""
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
-        try:
-            start, here = self._start(bench, base, s)
-            found, bench = self.refit((*effects, effect), start, here)
-            held = self.heldout(bench, found.values) if w.campaign.holdout else None
-        except SimulationError:
+        base, base_held = self._base(effect, effects, base, base_held)
+        fits = []
+        for start, here in self._starts(bench, base, s):
+            try:
+                fits.append(self.refit((*effects, effect), start, here)[0])
+            except SimulationError:
+                continue
+        if not fits:
             return None
+        found = min(fits, key=lambda f: f.misfit)
+        held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
         return self._judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
-    def _start(self, bench: Bench, base: Fit, s: Screened) -> tuple[dict[str, float], Evidence | None]:
-        """Where to start a refit, and what is known there: a linear effect from zero, others from the best of several
-        sizes: the expected change, both signs of δ, and larger ones."""
+    def _starts(self, bench: Bench, base: Fit, s: Screened) -> list[tuple[dict[str, float], Evidence | None]]:
+        """Where to start refits, and what is known there: a linear effect from zero, others from the most promising of
+        several sizes: the expected change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         prior, k = prior_of(bench, names), len(base.names)
@@ -203,16 +249,17 @@ class Search:
         straight = np.where(np.isfinite(bent), prior.mean[:k], calibrated)
         # a fit without the effect may have bent what it could to imitate it
         calibrations = [calibrated, straight] if bent.max(initial=0) > BENT else [calibrated]
-        if self._linear(s.score.effect) and len(calibrations) == 1:
-            return {n: base.values.get(n, 0.0) for n in names}, s.evidence.only(names)
+        linear = self._linear(s.score.effect)
+        if linear and len(calibrations) == 1:
+            return [({n: base.values.get(n, 0.0) for n in names}, s.evidence.only(names))]
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
         sizes = [expected, *(f * delta for f in SIZES if f > 0 or (lower < 0).all())]
-        tries = [np.concatenate([c, np.clip(size, lower, upper)]) for c in calibrations for size in sizes]
+        tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
-        best = min(tries, key=lambda theta: self._promise(bench, known, names, theta))
-        return dict(zip(names, map(float, best), strict=True)), None
+        best = sorted(tries, key=lambda theta: (self._promise(bench, known, names, np.array(theta)), theta))
+        return [(dict(zip(names, map(float, theta), strict=True)), None) for theta in best[: 1 if linear else STARTS]]
 
     def _promise(self, bench: Bench, known: Evidence, names: list[str], theta: np.ndarray) -> float:
         """The misfit that one linear step of all but the effect would reach from here."""
@@ -277,13 +324,13 @@ class Search:
         """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
         w = self.workshop
         bench = w.bench()
-        start = {n: bench.campaign.known.get(n, next(p.default for p in bench.variant.parameters() if p.name == n))
-                 for n in self.calibrated}  # fmt: skip
+        names = self.names(())
+        start = {n: start_value(bench, bench.records[n]) for n in names}
         nominal = bench.evidence(w.campaign.fit, start, (), tune_start=1)
         nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
-        found = fit(bench, self.calibrated, start)
+        found = fit(bench, names, start)
         bench.evidence(w.campaign.fit, found.values, (), tune_start=1)
-        found = fit(bench, self.calibrated, found.values)
+        found = fit(bench, names, found.values)
         held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
@@ -306,66 +353,3 @@ def shortlist(screened: Sequence[Screened], most: int) -> list[Screened]:
     promising = [s for s in screened if s.score.drop > PROMISING]
     first, rest = promising[:most], promising[most:]
     return [*first, *(s for s in rest if alike(s.score, first[0].score) > ALIKE)]
-
-
-def alike(one: Score, other: Score) -> float:
-    """Cosine between two effects' signatures; 0 where either has none."""
-    comparable = len(one.signature) == len(other.signature) > 0
-    return abs(float(one.signature @ other.signature)) if comparable else 0.0
-
-
-def sandwich(found: Fit) -> np.ndarray:
-    """Covariance (k, k) of the estimates that allows for correlated residuals."""
-    S, r = found.evidence.S, found.evidence.r
-    prior = found.prior_slopes**2
-    inverse = np.linalg.pinv(S.T @ S + prior, hermitian=True)
-    return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
-
-
-def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sizes and variances, in units of δ, along the directions that the data can see at all (one at least)."""
-    spread, axes = np.linalg.eigh(covariance)
-    spread = np.maximum(spread, 1e-12)
-    seen = (spread < 1 / SEEN) | (spread == spread.min())
-    return axes[:, seen].T @ size, spread[seen]
-
-
-def correlation_time(evidence: Evidence) -> float:
-    """Samples per independent one: 1 + 2 Σ ρ_k of the innovations until ρ falls below noise, at least 1."""
-    time, weight = 0.0, 0
-    for e in evidence.runs:
-        for i in range(e.r.shape[1]):
-            r = np.nan_to_num(e.r[:, i])
-            n = len(r)
-            power = float(r @ r)
-            if power == 0:
-                continue
-            rho = [float(r[k:] @ r[:-k]) / power for k in range(1, min(n // 4, 100))]
-            stop = next((k for k, value in enumerate(rho) if value < 2 / np.sqrt(n)), len(rho))
-            time, weight = time + n * (1 + 2 * sum(rho[:stop])), weight + n
-    return max(1.0, time / max(weight, 1))
-
-
-def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
-    """Fall of the summed squared innovations on held-out runs, with a 95 % interval by a block bootstrap."""
-    blocks = difference_blocks(before, after)
-    if not len(blocks):
-        return 0.0, 0.0, 0.0
-    low, high = np.quantile(resampled_totals(blocks), (0.025, 0.975))
-    return float(blocks.sum()), float(low), float(high)
-
-
-def resampled_totals(blocks: np.ndarray) -> np.ndarray:
-    """Bootstrap totals (RESAMPLES,) of blocks drawn with replacement, the same draws each time."""
-    draws = np.random.default_rng(0).integers(0, len(blocks), (RESAMPLES, len(blocks)))
-    return blocks[draws].sum(axis=1)
-
-
-def difference_blocks(one: Evidence, other: Evidence) -> np.ndarray:
-    """Summed differences of squared innovations, by blocks of time."""
-    out = []
-    for a, b in zip(one.runs, other.runs, strict=True):
-        d = np.nansum(a.r**2 - b.r**2, axis=1)
-        length = block_length(a.run)
-        out += [d[i : i + length].sum() for i in range(0, len(d), length)]
-    return np.array(out)

@@ -20,6 +20,7 @@ from ..campaign import CHANNELS, Campaign, Run
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..model.variant import Variant
+from ..quantities import Parameter
 
 TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
@@ -51,7 +52,7 @@ class RunEvidence:
     start: Mapping[str, float]
     results: np.ndarray  # (n, ny) all outputs of the simulation
     predicted: np.ndarray  # (n, nz) simulated readings
-    measured: np.ndarray  # (n, nz)
+    measured: np.ndarray  # (n, nz), less offsets
     whitener: Whitener
     offset: np.ndarray  # (nx,) where the true start is expected, less the simulated one
 
@@ -110,7 +111,8 @@ class Evidence:
 class Bench:
     """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
 
-    `variant` has every effect that may be asked for; effects at zero change nothing. `colour` is the noise.
+    `variant` has every effect that may be asked for; effects at zero change nothing. `colour` is the noise. Sensor offsets
+    that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name.
     """
 
     def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None):
@@ -118,6 +120,10 @@ class Bench:
         self.sensitivities = Sensitivities(variant)
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
+        channels = {c.name: c for c in CHANNELS if any(c.name in r.channels for r in campaign.runs)}
+        self.offsets = {f"offset.{c}": c for c in campaign.nuisance if c in channels}
+        offsets = (Parameter(name, channels[c].unit, f"offset of {c}") for name, c in self.offsets.items())
+        self.records: dict[str, Parameter] = {p.name: p for p in (*variant.parameters(), *offsets)}
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
     def known(self, run: Run) -> dict[str, float]:
@@ -140,8 +146,9 @@ class Bench:
             given, w = self._given(e.run, values, e.start)
             results = self.sensitivities.simulator.run(e.run.time, w, given, tolerance=TOLERANCE).results
             predicted = results[:, [self.sensitivities.rows[i] for i in self._which(e.run)]]
-            r = e.whitener((e.measured - predicted)[:, :, None], e.offset)[:, :, 0]
-            return replace(e, r=r, results=results, predicted=predicted)
+            measured = self._measured(e.run, values)
+            r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
+            return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
         return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
 
@@ -161,9 +168,9 @@ class Bench:
         channels, which = self._channels(run), self._which(run)
         start = self.starts[run.name]
         given, w = self._given(run, values, start)
-        columns = [n for n in (*by, *START) if n not in self._delays]
+        columns = [n for n in (*by, *START) if n not in self._delays and n not in self.offsets]
         simulated = self.sensitivities.run(run.time, w, given, columns, tolerance=TOLERANCE)
-        measured, predicted = np.stack([run.channels[c] for c in channels], axis=1), simulated.readings[:, which]
+        measured, predicted = self._measured(run, values), simulated.readings[:, which]
         prior, sd = prior_start(run, self.known(run)), start_sd(run)
         to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
         spread = to_state * [sd[n] for n in START]
@@ -174,6 +181,10 @@ class Bench:
         k = len(by)
         return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], start,
                            simulated.results, predicted, measured, whitener, offset)  # fmt: skip
+
+    def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
+        """What was measured (n, nz), less the sensors' offsets."""
+        return np.stack([run.channels[c] - values.get(f"offset.{c}", 0.0) for c in self._channels(run)], axis=1)
 
     def _channels(self, run: Run) -> tuple[str, ...]:
         return tuple(c.name for c in CHANNELS if c.name in run.channels)
@@ -201,6 +212,9 @@ class Bench:
         out = np.zeros((len(run.time), len(which), len(by) + len(START)))
         for j, name in enumerate((*by, *START)):
             if name in run.set:
+                continue
+            if name in self.offsets:
+                out[:, :, j] = [c == self.offsets[name] for c in self._channels(run)]
                 continue
             out[:, :, j] = (self._by_delay(run, simulated, w, which) if name in self._delays
                             else simulated.by_parameter[:, which, place[name]])  # fmt: skip

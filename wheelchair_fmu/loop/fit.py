@@ -6,6 +6,7 @@ simulation; where it ends everything is linearised anew, until a descent gains n
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,7 @@ from .evidence import Bench, Evidence
 
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 MOST = 8  # linearisations
+GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -54,13 +56,21 @@ class Prior:
 
 
 def prior_of(bench: Bench, names: Sequence[str]) -> Prior:
-    """Calibrated values have the campaign's word; effects have none."""
-    records = {p.name: p for p in bench.variant.parameters()}
-    mean = np.array([start_value(bench, records[n]) for n in names])
-    stated = bench.campaign.priors
-    sd = [stated.get(n, np.inf if n.startswith("effect.") else records[n].uncertainty * (abs(m) or 1.0))
-          for n, m in zip(names, mean, strict=True)]  # fmt: skip
-    return Prior(mean, np.array(sd))
+    """Calibrated values have the campaign's word; effects have none, but that of several parameters which the data
+    cannot tell apart each is taken to be no larger than it must be."""
+    mean = np.array([start_value(bench, bench.records[n]) for n in names])
+    groups = Counter(n.rpartition(".")[0] for n in names)
+
+    def sd(name: str, mean: float) -> float:
+        if name in bench.campaign.priors:
+            return bench.campaign.priors[name]
+        if name.startswith("effect."):
+            return GROUPED * bench.records[name].smallest_interesting if groups[name.rpartition(".")[0]] > 1 else np.inf
+        if name in bench.offsets:
+            return bench.campaign.nuisance_sd.get(bench.offsets[name], np.inf)
+        return bench.records[name].uncertainty * (abs(mean) or 1.0)
+
+    return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
 
 
 def start_value(bench: Bench, record: Parameter) -> float:
@@ -71,15 +81,15 @@ class _Problem:
     """Parameters to fit on a bench: their bounds, scale and prior."""
 
     def __init__(self, bench: Bench, names: Sequence[str]):
-        records = {p.name: p for p in bench.variant.parameters()}
+        records = bench.records
         self.bench, self.names, self.prior = bench, tuple(names), prior_of(bench, names)
-        self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - REACH * self.prior.sd)
-        self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + REACH * self.prior.sd)
+        reach = np.where([n.startswith("effect.") for n in names], np.inf, REACH * self.prior.sd)
+        self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - reach)
+        self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + reach)
         self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
 
     def inside(self, start: Mapping[str, float]) -> np.ndarray:
-        records = {p.name: p for p in self.bench.variant.parameters()}
-        return np.clip([start.get(n, records[n].default) for n in self.names], self.lower, self.upper)
+        return np.clip([start.get(n, self.bench.records[n].default) for n in self.names], self.lower, self.upper)
 
     def values(self, theta: np.ndarray) -> dict[str, float]:
         return dict(zip(self.names, map(float, theta), strict=True))
@@ -87,8 +97,9 @@ class _Problem:
     def linearised(self, theta: np.ndarray) -> Evidence:
         return self.bench.evidence(self.bench.campaign.fit, self.values(theta), self.names)
 
-    def misfit(self, here: Evidence, theta: np.ndarray) -> float:
-        return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
+    def squares(self, here: Evidence, theta: np.ndarray) -> float:
+        """What a descent makes small: squared innovations, and the prior's."""
+        return float(here.r @ here.r + np.sum(self.prior.rows(theta) ** 2))
 
     def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
         """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
@@ -126,25 +137,29 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     here = here or problem.linearised(theta)
     for _ in range(most if names else 0):
         to, there = problem.descend(here, theta)
-        fall = problem.misfit(here, theta) - problem.misfit(there, to)
+        fall = problem.squares(here, theta) - problem.squares(there, to)
         if fall < STRAIGHT:
             theta, here = to, there
             break
-        theta, here = _taken(problem, theta, here, to)
+        further = _taken(problem, theta, here, to)
+        if further is None:
+            break
+        theta, here = further
     A = here.S.T @ here.S + problem.prior.slopes**2
     covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
-    return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
+    misfit = here.misfit + float(np.sum(problem.prior.rows(theta) ** 2))
+    return Fit(problem.names, problem.values(theta), covariance, here, misfit, problem.prior.slopes)
 
 
-def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, there: np.ndarray) -> tuple[np.ndarray, Evidence]:
-    """The step from `theta` to `there`, or the half, the quarter … of it that really lowers the misfit."""
-    before = problem.misfit(here, theta)
+def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
+    """The step from `theta`, or the half, the quarter … of it that lowers the squares once all is linearised anew."""
+    before = problem.squares(here, theta)
     for shrink in (1.0, 0.5, 0.25, 0.125):
-        trial = theta + shrink * (there - theta)
+        trial = theta + shrink * (to - theta)
         try:
             found = problem.linearised(trial)
         except SimulationError:
             continue
-        if problem.misfit(found, trial) <= before:
+        if problem.squares(found, trial) < before:
             return trial, found
-    return theta, here
+    return None

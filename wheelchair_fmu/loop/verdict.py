@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import (
-    CALIBRATED,
-    MOST_EFFECTS,
-    TIED,
-    Candidate,
-    Round,
-    Search,
-    Step,
-    alike,
-    begin,
-    correlation_time,
-    difference_blocks,
-    resampled_totals,
-    sandwich,
-)
+from .diagnose import CALIBRATED, MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
+from .statistics import alike, correlation_time, difference_blocks, resampled_totals, sandwich
 from .workshop import Workshop
 
 ENOUGH_POWER = 0.8
@@ -37,16 +25,19 @@ WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they we
 NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
+AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything `diagnose` says. `rounds` are the rounds of the search, `proposal` the generic term of "outside"."""
+    """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
+    `proposal` the generic term of "outside"."""
 
     campaign: str
     verdict: str
     effects: tuple[str, ...]
+    already: tuple[str, ...]
     ties: tuple[tuple[str, ...], ...]
     ladder: tuple[Step, ...]
     rounds: tuple[Round, ...]
@@ -66,17 +57,32 @@ def diagnose(
     calibrated: Sequence[str] = CALIBRATED,
     progress: Callable[[str], None] = lambda words: None,
     experiments: Sequence[Experiment] = (),
+    fixed: Iterable[str] = (),
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
-    `generic` are the terms of the leftover test, `experiments` the runs that could be made next. `progress` is told what
-    is being done, in words.
+    The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
+    test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
+    what is being done, in words.
     """
+    with threadpool_limits(1):  # runs are what is shared among the cores; BLAS threads would only wait for one another
+        return _diagnosed(campaign, variant or Variant(), generic or {}, calibrated, progress, experiments, fixed)
+
+
+def _diagnosed(campaign: Campaign, variant: Variant, generic: Mapping[str, Effect], calibrated: Sequence[str],
+               progress: Callable[[str], None], experiments: Sequence[Experiment],
+               fixed: Iterable[str]) -> Diagnosis:  # fmt: skip
     began = time.monotonic()
-    workshop = Workshop(campaign, variant or Variant())
+    workshop = Workshop(campaign, variant, fixed)
     search = Search(workshop, calibrated, progress)
     base, held, ladder, notes = begin(search, progress)
     rounds, effects = [], ()
+    for effect in variant.effects:
+        if workshop.parameters(effect):
+            effects = (*effects, effect)
+            base, held = search.with_given(effects, base)
+            ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
+    already = effects
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
         now = search.round(effects, base, held)
@@ -87,15 +93,16 @@ def diagnose(
         effects = (*effects, best.effect)
         base, held = search.settled(effects, best.fit)
         ladder.append(Step(f"+{best.effect}", base.evidence.rms, held.rms))
-    leftover, proposal = _leftover(search, effects, base, held, rounds, generic or {})
+    leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
-        effects, proposal, ladder = _settle(search, generic or {}, effects, proposal, ladder)
+        effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
     ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
+    effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
-    return Diagnosis(campaign.name, verdict, tuple(named), ties, tuple(ladder), tuple(rounds), leftover, proposal, base,
-                     search, tuple(notes), following, time.monotonic() - began)  # fmt: skip
+    return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
+                     base, search, tuple(notes), following, time.monotonic() - began)  # fmt: skip
 
 
 def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: Sequence[Round],
@@ -147,9 +154,10 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     search.say("looking for what no effect explains")
     wider = search.workshop.widened(generic)
     generic_search = Search(wider, search.calibrated, search.say)
-    if effects:  # does one term do alone what the effects found were to do?
+    found = effects[len(rounds[0].effects) :]
+    if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        alone = generic_search.round((), first.fit, first.heldout, among=list(generic), most=3)
+        alone = generic_search.round(first.effects, first.fit, first.heldout, among=list(generic), most=3)
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - TIED * correlation_time(base.evidence):
             return alone, lone
@@ -221,7 +229,8 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     candidates: dict[str, tuple[Candidate, Round]] = {}
     for r in d.rounds:
         for c in r.candidates:
-            if c.effect not in candidates or c.effect in d.effects[len(r.effects) : len(r.effects) + 1]:
+            found_here = (*d.already, *d.effects)[len(r.effects) : len(r.effects) + 1]
+            if c.effect not in candidates or c.effect in found_here:
                 candidates[c.effect] = (c, r)
     order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
                                           else scores[e].drop)))  # fmt: skip

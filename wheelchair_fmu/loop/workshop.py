@@ -17,10 +17,17 @@ from .evidence import Bench, Colour
 
 
 class Workshop:
-    """A campaign, the variant it is compared with, and a bench for every question."""
+    """A campaign, the variant it is compared with, and a bench for every question.
 
-    def __init__(self, campaign: Campaign, variant: Variant):
-        self.campaign, self.variant = campaign, variant
+    `fixed` are parameters that nobody estimates. `given` are the values that the variant's own effects have for a start;
+    they are estimated again, unless they are fixed.
+    """
+
+    def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = ()):
+        self.fixed = frozenset(fixed)
+        self.given = {n: v for n, v in variant.values.items() if n.startswith("effect.") and n not in self.fixed}
+        self.campaign = campaign
+        self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
         self.catalogue: dict[str, Effect] = dict(variant.catalogue)
         self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
         self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
@@ -45,10 +52,10 @@ class Workshop:
 
     def widened(self, more: Mapping[str, Effect]) -> Workshop:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
-        other = Workshop(self.campaign, replace(self.variant, catalogue={**self.catalogue, **more}))
+        other = Workshop(self.campaign, replace(self.variant, catalogue={**self.catalogue, **more}), self.fixed)
         other.colour, other.starts = self.colour, dict(self.starts)
         return other
 
     def parameters(self, effect: str) -> tuple[str, ...]:
-        """Full names of an effect's estimated parameters."""
-        return tuple(p.name for p in self.catalogue[effect].owned if p.estimated)
+        """Full names of an effect's parameters that a fit estimates."""
+        return tuple(p.name for p in self.catalogue[effect].owned if p.estimated and p.name not in self.fixed)
