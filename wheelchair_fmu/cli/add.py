@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from rich import box
-from rich.table import Table
 
-from ..campaign import Campaign, read
+from ..campaign import read
 from ..errors import unknown
-from ..loop.diagnose import Search, Step, begin
-from ..loop.fit import Fit
-from ..loop.workshop import Workshop
+from ..loop.improve import add as add_effect
 from ..model.effects import bundled, load
-from ..model.variant import Variant, read_variant, variant_text
-from ..report.figures import staircase_figure
-from ..report.saving import save
+from ..model.variant import Variant, read_variant
 from .check import known_parameters
-from .files import print_json, written
+from .files import print_json
 from .group import console
+from .settings import applied
+from .staircase import finite, staircase_table, write_improved
 
 
 def register(app: typer.Typer) -> None:
@@ -32,6 +27,7 @@ def add(
     effect: Annotated[str, typer.Argument(metavar="ID", help="An effect, as `wheelchair effects list` names it.")],
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="TOML", help="The improved variant.")],
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The variant to improve.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the staircase as JSON.")] = False,
@@ -41,55 +37,16 @@ def add(
     if effect not in catalogue:
         raise unknown("effect", effect, catalogue)
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    measured = read(campaign, known_parameters())
+    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
     with console(stderr=True).status("calibrating") as status:
-        found, ladder = _staircase(measured, chair, effect, status.update)
-    better = _improved(chair, effect, found, measured)
-    with written(output) as beside:
-        beside.write_text(variant_text(better), encoding="utf-8")
-    picture = output.with_suffix(".png")
-    steps = [{"step": s.name, "fit": s.fit, "heldout": s.heldout} for s in ladder]
-    with written(picture) as beside:
-        save(staircase_figure(steps), beside)
+        better = add_effect(measured, chair, effect, fixed, status.update)
+    files = write_improved(output, better.variant, better.ladder)
     if as_json:
-        print_json({"ladder": steps, "values": dict(better.values), "variant": str(output)})
+        steps = [{"step": s.name, "fit": s.fit, "heldout": finite(s.heldout)} for s in better.ladder]
+        print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output)})
         return
-    _show(ladder, found, effect)
-    for file in (output, picture):
+    console().print(staircase_table(better.ladder))
+    for name in better.fit.names:
+        console().print(f"{name} = {better.fit.values[name]:.5g} ± {better.fit.se(name):.2g}")
+    for file in files:
         print(file)
-
-
-def _staircase(measured: Campaign, chair: Variant, effect: str, say: Any) -> tuple[Fit, list[Step]]:
-    """Nominal, calibrated, each effect that was there already, and the new one."""
-    search = Search(Workshop(measured, chair), progress=say)
-    base, held, ladder, _ = begin(search, say)
-    on: tuple[str, ...] = ()
-    for one in (*(e for e in chair.effects if e != effect), effect):
-        say(f"refitting with {one}")
-        score = next(s for s in search.screen(base, on, [one]))
-        candidate = search.candidate(base, held, on, score, 1)
-        assert candidate is not None
-        on = (*on, one)
-        base, bench = search.refit(on, candidate.fit.values)
-        held = search.heldout(bench, base.values)
-        ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
-    return base, ladder
-
-
-def _improved(chair: Variant, effect: str, found: Fit, measured: Campaign) -> Variant:
-    """The variant with the estimates, their standard errors and where they come from."""
-    better = chair.with_effects([effect])
-    errors = {name: found.se(name) for name in found.names}
-    notes = {"standard_errors": errors, "origin": {"campaign": measured.name, "fingerprint": measured.fingerprint}}
-    return replace(better, values={**chair.values, **measured.known, **found.values}, notes=notes)
-
-
-def _show(ladder: list[Step], found: Fit, effect: str) -> None:
-    table = Table(box=box.SIMPLE, title="whitened RMS error, 1.0 is the noise floor", title_justify="left")
-    for title, side in (("step", "left"), ("fitted runs", "right"), ("held-out runs", "right")):
-        table.add_column(title, justify=side)
-    for s in ladder:
-        table.add_row(s.name, f"{s.fit:.3f}", f"{s.heldout:.3f}")
-    console().print(table)
-    for name in found.names:
-        console().print(f"{name} = {found.values[name]:.5g} ± {found.se(name):.2g}")

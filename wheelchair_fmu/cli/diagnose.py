@@ -23,6 +23,7 @@ from .check import known_parameters
 from .files import written
 from .group import console
 from .settings import applied
+from .staircase import staircase_table
 
 SENTENCES = {
     "missing": "Missing: {effects}.",
@@ -56,13 +57,14 @@ def diagnose(
     if json_file:
         with written(json_file) as beside:
             beside.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-    _show(found, content)
+    show(found, content)
     if output:
         for file in _files(found, content, output):
             print(file)
 
 
-def _show(d: Diagnosis, content: dict[str, Any]) -> None:
+def show(d: Diagnosis, content: dict[str, Any]) -> None:
+    """The verdict and its evidence, for a person."""
     out = console()
     for note in d.notes:
         out.print(f"note: {note}")
@@ -75,12 +77,7 @@ def _show(d: Diagnosis, content: dict[str, Any]) -> None:
         enough = min(d.ladder[-1].fit, d.ladder[-1].heldout) <= UNEXPLAINED
         lead = "What would explain it" if enough else "The term that helps most, and does not suffice either"
         out.print(f"{lead}: {term.words}, {size}.")
-    steps = Table(box=box.SIMPLE, title="whitened RMS error, 1.0 is the noise floor", title_justify="left")
-    for title, side in (("step", "left"), ("fitted runs", "right"), ("held-out runs", "right")):
-        steps.add_column(title, justify=side)
-    for s in d.ladder:
-        steps.add_row(s.name, f"{s.fit:.3f}", f"{s.heldout:.3f}")
-    out.print(steps)
+    out.print(staircase_table(d.ladder))
     out.print(_ranking(content))
     if d.next_experiment:
         n = d.next_experiment
@@ -111,9 +108,15 @@ def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
         with written(file) as beside:
             save(figure, beside)
     if d.proposal:
-        name = d.proposal.effect.replace("generic_", "proposed_").lower()
-        file = folder / "effects" / f"{name}.py"
-        with written(file) as beside:
-            beside.write_text(terms()[d.proposal.effect].file(name), encoding="utf-8")
-        files.append(file)
+        files.append(write_proposal(d, folder / "effects")[1])
     return files
+
+
+def write_proposal(d: Diagnosis, folder: Path) -> tuple[str, Path]:
+    """The proposed term as an effect file that a user may edit: its id and place."""
+    assert d.proposal is not None
+    name = d.proposal.effect.replace("generic_", "proposed_").lower()
+    file = folder / f"{name}.py"
+    with written(file) as beside:
+        beside.write_text(terms()[d.proposal.effect].file(name), encoding="utf-8")
+    return name, file

@@ -25,6 +25,7 @@ SHORTLIST = 5
 HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less is not refitted
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
+NEGLIGIBLE = 0.3  # of δ
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
@@ -80,6 +81,12 @@ class Screened:
 
     score: Score
     evidence: Evidence
+    delta: np.ndarray
+
+    @property
+    def negligible(self) -> bool:
+        """Is it surely a small part of its smallest interesting size, whatever a refit would say?"""
+        return bool(np.all(np.abs(self.score.estimate) + 3 * self.score.se < NEGLIGIBLE * self.delta))
 
 
 class Search:
@@ -168,7 +175,8 @@ class Search:
             tangent = self._score(evidence, off, effect, evidence.S[:, own])
             secants = [self._score(evidence, off, effect, S) for S in self._secants(bench, base, evidence, effect)]
             best = max(secants, key=lambda s: s.drop, default=tangent)
-            found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence))
+            delta = np.array([self.records[n].smallest_interesting for n in w.parameters(effect)])
+            found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence, delta))
         return found
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
@@ -349,7 +357,7 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
 
 
 def shortlist(screened: Sequence[Screened], most: int) -> list[Screened]:
-    """The best by expected drop, and whatever looks like the leader."""
-    promising = [s for s in screened if s.score.drop > PROMISING]
+    """The best by expected drop, and whatever looks like the leader; not what is surely far too small to matter."""
+    promising = [s for s in screened if s.score.drop > PROMISING and not s.negligible]
     first, rest = promising[:most], promising[most:]
     return [*first, *(s for s in rest if alike(s.score, first[0].score) > ALIKE)]

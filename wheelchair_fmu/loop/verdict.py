@@ -49,6 +49,12 @@ class Diagnosis:
     next_experiment: dict[str, Any] | None
     seconds: float
 
+    @property
+    def included(self) -> tuple[str, ...]:
+        """The effects that `final`, or the proposal's fit, has in it."""
+        return tuple(step.name[1:] for step in self.ladder if step.name.startswith("+")
+                     and not (self.proposal and step.name[1:] == self.proposal.effect))  # fmt: skip
+
 
 def diagnose(
     campaign: Campaign,
@@ -58,30 +64,38 @@ def diagnose(
     progress: Callable[[str], None] = lambda words: None,
     experiments: Sequence[Experiment] = (),
     fixed: Iterable[str] = (),
+    climbed: Callable[[Step], None] = lambda step: None,
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words.
+    what is being done, in words, and `climbed` each step of the staircase.
     """
     with threadpool_limits(1):  # runs are what is shared among the cores; BLAS threads would only wait for one another
-        return _diagnosed(campaign, variant or Variant(), generic or {}, calibrated, progress, experiments, fixed)
+        return _diagnosed(campaign, variant or Variant(), generic or {}, calibrated, progress, experiments, fixed, climbed)
 
 
 def _diagnosed(campaign: Campaign, variant: Variant, generic: Mapping[str, Effect], calibrated: Sequence[str],
                progress: Callable[[str], None], experiments: Sequence[Experiment],
-               fixed: Iterable[str]) -> Diagnosis:  # fmt: skip
+               fixed: Iterable[str], climbed: Callable[[Step], None]) -> Diagnosis:  # fmt: skip
     began = time.monotonic()
     workshop = Workshop(campaign, variant, fixed)
     search = Search(workshop, calibrated, progress)
     base, held, ladder, notes = begin(search, progress)
+
+    def climb(effect: str) -> None:
+        ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
+        climbed(ladder[-1])
+
+    for step in ladder:
+        climbed(step)
     rounds, effects = [], ()
     for effect in variant.effects:
         if workshop.parameters(effect):
             effects = (*effects, effect)
             base, held = search.with_given(effects, base)
-            ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
+            climb(effect)
     already = effects
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
@@ -92,10 +106,11 @@ def _diagnosed(campaign: Campaign, variant: Variant, generic: Mapping[str, Effec
             break
         effects = (*effects, best.effect)
         base, held = search.settled(effects, best.fit)
-        ladder.append(Step(f"+{best.effect}", base.evidence.rms, held.rms))
+        climb(best.effect)
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
+        climbed(ladder[-1])
     ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
