@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo test lint bench clean
+.PHONY: help setup demo test lint bench bench-diagnosis clean
 .DEFAULT_GOAL := help
 
 help:
@@ -12,6 +12,7 @@ help:
 	@echo "make test    all tests"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES and LSODA; writes out/bench.json"
+	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready
@@ -42,6 +43,9 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+bench-diagnosis: setup
+	$(BIN)/python -m benchmarks.diagnosis --baselines $(TRIALS)
 
 bench: setup
 	$(BIN)/python -m benchmarks.bench

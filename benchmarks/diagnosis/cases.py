@@ -1,0 +1,65 @@
+"""What is hidden in the benchmark's campaigns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, usual
+
+SIZES = (0.25, 1.0, 3.0)  # of δ
+PAIRS = (
+    ("caster_friction", "floor_cross_slope"), ("relaxation_length", "rolling_resistance_speed"),
+    ("scrub_torque", "gyro_scale"), ("trunk_motion", "rolling_resistance_asymmetry"),
+    ("cm_lateral_offset", "wheel_radius_error"), ("gyro_bias", "aerodynamic_drag"),
+)  # fmt: skip
+NEAR_TIES = ("aerodynamic_drag", "rolling_resistance_speed")  # on straight runs, where nobody can tell them apart
+
+
+@dataclass(frozen=True)
+class Case:
+    """One campaign. `left_out` are effects that the catalogue is not to have."""
+
+    kind: str
+    effects: tuple[str, ...] = ()
+    times: float = 1.0
+    noise: str = "white"
+    manoeuvres: str = "everyday"
+    left_out: tuple[str, ...] = ()
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        what = "+".join(self.effects) or "none"
+        return f"{self.kind}-{what}-{self.times:g}-{self.noise}-{self.manoeuvres}-{self.seed}"
+
+    @property
+    def hidden(self) -> Mapping[str, Mapping[str, float]]:
+        return {e: usual(e, self.times) for e in self.effects}
+
+
+@dataclass
+class Plan:
+    """All cases of a benchmark with so many seeds."""
+
+    seeds: int = 1
+    cases: list[Case] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        for seed in range(self.seeds):
+            for noise in ("white", "ar1"):
+                self._add("null", (), (0.0,), noise, seed)
+                for effect in CATALOGUE:
+                    self._add("effect", (effect,), SIZES, noise, seed, EFFECTS[effect].sees)
+            for effect in CATALOGUE:
+                self._add("left-out", (effect,), (3.0,), "white", seed, EFFECTS[effect].sees, (effect,))
+            for effect in OUTSIDE:
+                self._add("outside", (effect,), (1.0, 3.0), "white", seed)
+            for pair in PAIRS:
+                self._add("pair", pair, (3.0,), "white", seed)
+            for effect in NEAR_TIES:
+                self._add("near-tie", (effect,), (2.0,), "white", seed, "straight")
+
+    def _add(self, kind: str, effects: tuple[str, ...], sizes: tuple[float, ...], noise: str, seed: int,
+             manoeuvres: str = "everyday", left_out: tuple[str, ...] = ()) -> None:  # fmt: skip
+        self.cases += [Case(kind, effects, times, noise, manoeuvres, left_out, seed) for times in sizes]

@@ -1,0 +1,110 @@
+"""The table that says how well the loop diagnoses, from the trials."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.table import Table
+
+Trial = dict[str, Any]
+QUIET = ("adequate", "cannot_see", "small")
+ALIASES = (
+    {"aerodynamic_drag", "rolling_resistance_speed"}, {"push_force_gain", "wheel_radius_error"},
+    {"scrub_torque", "scrub_torque_viscous"}, {"accelerometer_tilt", "accelerometer_bias"},
+    {"toe_misalignment", "rolling_resistance_asymmetry", "floor_cross_slope", "camber_misalignment", "cm_lateral_offset"},
+)  # fmt: skip
+"""Effects that are known to look alike unless the data separate them."""
+
+
+def detectable(t: Trial) -> bool:
+    """Large enough, and the data could have shown it: the power of its own test is good."""
+    return t["times"] >= 1 and all(t["rows"].get(e, {}).get("power", 0) > 0.8 for e in t["effects"])
+
+
+def named(t: Trial) -> set[str]:
+    return set(t["found"]) | {e for group in t["ties"] for e in group}
+
+
+def share(trials: Sequence[Any], true: Callable[[Any], bool]) -> str:
+    hits = sum(map(true, trials))
+    return f"{hits} of {len(trials)} ({hits / len(trials):.0%})" if trials else "none run"
+
+
+def first(t: Trial) -> bool:
+    return t["order"][:1] == list(t["effects"])
+
+
+def alike(t: Trial) -> bool:
+    """Is one that looks like the hidden one named, if not the hidden one itself?"""
+    hidden, said = set(t["effects"]), named(t)
+    return hidden <= said or any(hidden & group and said & group for group in ALIASES)
+
+
+def outside(t: Trial) -> bool:
+    return t["verdict"] == "outside"
+
+
+def covered(t: Trial) -> list[bool]:
+    out = []
+    for effect, values in t["hidden"].items():
+        for name, true in values.items():
+            p = t["rows"].get(effect, {}).get("parameters", {}).get(name)
+            if p and p["se"] is not None and effect in named(t):
+                out.append(abs(p["estimate"] - true) < 1.96 * p["se"])
+    return out
+
+
+def gains(trials: Sequence[Trial]) -> list[float]:
+    """(E0 − E1)/(E0 − 1) of the held-out squared error, where there was something to gain."""
+    out = []
+    for t in trials:
+        before, after = t["ladder"][1]["heldout"] ** 2, t["ladder"][-1]["heldout"] ** 2
+        if before > 1.1:
+            out.append((before - after) / (before - 1))
+    return out
+
+
+def summary(trials: Sequence[Trial]) -> list[tuple[str, str, str]]:
+    """(what, figure, target) by line."""
+    by = {kind: [t for t in trials if t["kind"] == kind] for kind in {t["kind"] for t in trials}}
+    single = [t for t in by.get("effect", []) if detectable(t)]
+    nulls, small = by.get("null", []), [t for t in by.get("effect", []) if t["times"] < 1]
+    missing = [t for t in single if t["verdict"] in ("missing", "tie")]
+    inside = [c for t in missing for c in covered(t)]
+    won = gains(missing)
+    lines = [
+        ("hidden effect first, of those the data can show", share(single, first), ""),
+        ("  among the first three", share(single, lambda t: bool(set(t["order"][:3]) & set(t["effects"]))), ""),
+        ("  named, alone or in a tie", share(single, lambda t: set(t["effects"]) <= named(t)), ""),
+        ("  it or its known double named", share(single, alike), "99 %"),
+        ("  verdict missing or tie", share(single, lambda t: t["verdict"] in ("missing", "tie")), ""),
+        ("  wrongly outside", share(single, outside), "2 %"),
+        ("false alarms where nothing is hidden", share(nulls, lambda t: t["verdict"] not in QUIET), "5 %"),
+        ("of a quarter δ, said to be missing", share(small, lambda t: t["verdict"] == "missing"), ""),
+        ("outside found, truth left out of the catalogue", share(by.get("left-out", []), outside), "85 %"),
+        ("outside found, effect that no catalogue has", share(by.get("outside", []), outside), "85 %"),
+        ("pairs: both found", share(by.get("pair", []), lambda t: set(t["effects"]) <= named(t)), ""),
+        ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),
+        ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),
+        ("held-out gain, median", f"{np.median(won):.2f} of {len(won)}" if won else "none run", ""),
+        ("true value within the 95 % interval", f"{np.mean(inside):.0%} of {len(inside)}" if inside else "none run", "93–97 %"),
+        ("processor seconds, median", f"{np.median([t['cpu'] for t in trials]):.1f}", ""),
+    ]  # fmt: skip
+    for method in next((t["baselines"] for t in trials if t["baselines"]), {}):
+        hits = [t["baselines"][method] in t["effects"] for t in single if t["baselines"]]
+        alarms = [t["baselines"][method] is not None for t in nulls if t["baselines"]]
+        lines.append((f"baseline {method}: hidden effect named", share(hits, bool), ""))
+        lines.append(("  names something where nothing is hidden", share(alarms, bool), ""))
+    return lines
+
+
+def as_table(trials: Sequence[Trial], title: str) -> Table:
+    table = Table(box=box.SIMPLE, title=title, title_justify="left")
+    for head, side in (("what", "left"), ("share", "right"), ("target", "right")):
+        table.add_column(head, justify=side)
+    for line in summary(trials):
+        table.add_row(*line)
+    return table

@@ -1,0 +1,40 @@
+"""One case: write the campaign, run the loop and its baselines on it, and keep what they said."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.loop.verdict import as_json, diagnose
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.generic import library
+from wheelchair_fmu.model.variant import Variant
+
+from ..independent.campaigns import make
+from .baselines import baselines
+from .cases import Case
+
+
+def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
+    """What was hidden, and what the loop and its baselines said."""
+    catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
+    chair = Variant(catalogue=catalogue)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "campaign"
+        campaign = read(make(folder, case.hidden, noise=case.noise, manoeuvres=case.manoeuvres, seed=case.seed))
+        began = time.process_time()
+        found = diagnose(campaign, chair, library())
+        said = as_json(found)
+        seconds = time.process_time() - began
+        others = baselines(found.search) if with_baselines else {}
+    rows = {row["effect"]: row for row in said["ranking"]}
+    return {
+        "case": case.name, "kind": case.kind, "effects": case.effects, "times": case.times, "noise": case.noise,
+        "hidden": {e: dict(v) for e, v in case.hidden.items()}, "verdict": said["verdict"], "found": said["effects"],
+        "ties": said["ties"], "order": [row["effect"] for row in said["ranking"]], "ladder": said["ladder"],
+        "leftover": said["leftover"], "rows": {e: rows[e] for e in case.effects if e in rows}, "cpu": seconds,
+        "seconds": said["seconds"], "baselines": others,
+    }  # fmt: skip
