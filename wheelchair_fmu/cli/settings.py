@@ -1,13 +1,16 @@
-"""`--set NAME=VALUE`: any FMI parameter, for commands that simulate."""
+"""`--set NAME=VALUE`, any FMI parameter, and the chair that it and the other options make."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from ..campaign import Campaign
 from ..errors import UsageError
-from ..model.variant import Variant
+from ..fmu.build import with_chosen_effects
+from ..model.stage import Effect
+from ..model.variant import Variant, read_variant
 
 
 def parse(settings: Iterable[str]) -> dict[str, str]:
@@ -33,3 +36,12 @@ def applied(settings: Iterable[str], chair: Variant, measured: Campaign) -> tupl
     chair = chair.with_values(parse(settings))
     known = {n: chair.values[n] for n in names if n in chair.values and not n.startswith("effect.")}
     return chair, replace(measured, known={**measured.known, **known}), names
+
+
+def chair_of(file: Path | None, equations: str | None, given: Mapping[str, str], catalogue: Mapping[str, Effect]) -> Variant:
+    """The variant asked for, with the effects that --set names; their values are checked on the way."""
+    start = read_variant(file, catalogue) if file else Variant(catalogue=catalogue)
+    if equations:
+        start = replace(start, choice=replace(start.choice, equations=equations))
+    named = dict.fromkeys(name.split(".")[1] for name in given if name.startswith("effect.") and name.count(".") > 1)
+    return with_chosen_effects(start, named).with_values(given)

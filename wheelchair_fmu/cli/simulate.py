@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from math import isinf, isnan
 from pathlib import Path
 from typing import Annotated
@@ -13,18 +12,16 @@ from rich import box
 from rich.table import Table
 
 from ..errors import UsageError
-from ..fmu.build import with_chosen_effects
 from ..handling.key_numbers import KeyNumber, key_numbers
 from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
 from ..model.effects import catalogue_of
-from ..model.stage import Effect
-from ..model.variant import Variant, read_variant
+from ..model.variant import Variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save
 from ..studies import Fmu, Result, fmu_of
 from .files import write_table, written
 from .group import console
-from .settings import parse
+from .settings import chair_of, parse
 
 
 def register(app: typer.Typer) -> None:
@@ -50,7 +47,7 @@ def simulate(
     if fmu and (variant or effects or equations):
         raise UsageError("--fmu gives a finished FMU; leave out --variant, --effects and --equations, or --fmu")
     catalogue, chosen = catalogue_of(effects or "default")
-    chair = _chair(variant, equations, given, catalogue) if fmu is None else None
+    chair = chair_of(variant, equations, given, catalogue) if fmu is None else None
     path = fmu if chair is None else _built(chair, chosen)
     assert path is not None
     with Fmu(path) as driven:
@@ -62,15 +59,6 @@ def simulate(
     for file in _write(course, result, output):
         print(file)
     console().print(_table(key_numbers(result.columns, held=held)))
-
-
-def _chair(file: Path | None, equations: str | None, given: dict[str, str], catalogue: dict[str, Effect]) -> Variant:
-    """The variant asked for, with the effects that --set names; their values are checked on the way."""
-    start = read_variant(file, catalogue) if file else Variant(catalogue=catalogue)
-    if equations:
-        start = replace(start, choice=replace(start.choice, equations=equations))
-    named = dict.fromkeys(name.split(".")[1] for name in given if name.startswith("effect.") and name.count(".") > 1)
-    return with_chosen_effects(start, named).with_values(given)
 
 
 def _built(chair: Variant, effects: str) -> Path:
