@@ -76,3 +76,25 @@ def test_a_mat_file_that_cannot_be_written_leaves_what_was_there(tmp_path):
     (tmp_path / "full").write_text("kept")
     done = wheelchair("linearize", "--mat", tmp_path / "full" / "turn.mat")
     assert done.exit_code == 1 and (tmp_path / "full").read_text() == "kept"
+
+
+def test_paper_writes_every_figure_and_the_table(tmp_path):
+    done = wheelchair("paper", "--no-ranges", "-o", tmp_path)
+    assert done.exit_code == 0 and "25 of 25 hold" in done.output
+    figures = {f"fig-{n}.{ending}" for n in range(12, 20) for ending in ("png", "svg")}
+    assert {f.name for f in tmp_path.iterdir()} == {"statements.md", *figures}
+    told = json.loads(wheelchair("paper", "--no-ranges", "--json", "--delta-force", 60, "-o", tmp_path).output)
+    holds = {s["id"]: s["holds"] for s in told["statements"]}
+    assert not holds["slip-1-degree"] and holds["radius-cornering"]
+
+
+def test_paper_refuses_in_one_sentence(tmp_path):
+    for words, sentence in (
+        (("--set", "tyre.C_lamda=2"), "did you mean 'tyre.C_lambda'"),
+        (("--period", 0), "--period 0 s"),
+        (("--delta-force", 9000), "outside"),
+        (("--equations", "papr"), "did you mean 'paper'"),
+    ):
+        done = wheelchair("paper", "--no-ranges", "-o", tmp_path, *words)
+        assert done.exit_code == 2 and sentence in done.stderr, done.output
+    assert not list(tmp_path.iterdir())

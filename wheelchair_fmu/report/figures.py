@@ -45,7 +45,7 @@ def manoeuvre_figure(title: str, time: np.ndarray, columns: Mapping[str, np.ndar
     axes["watch"].set_ylabel(label)
     axes["watch"].set_xlabel("time [s]")
     for name in ("slip", "radius", "watch"):
-        _tidy(axes[name])
+        tidy(axes[name])
         axes[name].set_xlim(time[0], time[-1])
         _steady_axis(axes[name])
     for name in ("slip", "radius"):
@@ -66,7 +66,7 @@ def _path(ax: Axes, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
     ax.set_xlabel("y of the CM, to the right [m]")
     ax.set_ylabel("x of the CM, forward [m]")
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, ncols=3, columnspacing=1.0, handletextpad=0.2)
-    _tidy(ax)
+    tidy(ax)
 
 
 def _radius(ax: Axes, time: np.ndarray, curvature: np.ndarray) -> None:
@@ -115,7 +115,7 @@ def overlay_figure(
         below.set_ylabel("residual [σ]")
         _at_least(below, 4)
         for ax in (above, below):
-            _tidy(ax)
+            tidy(ax)
     handles = [*grid[0].get_legend_handles_labels()[0], *grid[1].get_legend_handles_labels()[0]]
     grid[0].legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1), frameon=False, ncols=3, markerscale=4)
     grid[-1].set_xlabel("time [s]")
@@ -145,7 +145,7 @@ def staircase_figure(ladder: Sequence[Mapping[str, Any]]) -> Figure:
     ax.set_ylabel("whitened RMS error [1]")
     ax.set_ylim(0, 1.15 * max([FLOOR, *ax.get_ylim()]))
     ax.legend(loc="lower right", bbox_to_anchor=(1, 1), frameon=False, ncols=2)
-    _tidy(ax, grid="y")
+    tidy(ax, grid="y")
     return figure
 
 
@@ -172,7 +172,7 @@ def where_figure(runs: Sequence[str], channels: Sequence[str], rms: np.ndarray) 
     return figure
 
 
-def _tidy(ax: Axes, grid: str = "both") -> None:
+def tidy(ax: Axes, grid: str = "both") -> None:
     ax.grid(axis=grid, color="#E4E4E4", lw=0.6)  # type: ignore[arg-type]
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
