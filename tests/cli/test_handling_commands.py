@@ -98,3 +98,25 @@ def test_paper_refuses_in_one_sentence(tmp_path):
         done = wheelchair("paper", "--no-ranges", "-o", tmp_path, *words)
         assert done.exit_code == 2 and sentence in done.stderr, done.output
     assert not list(tmp_path.iterdir())
+
+
+def test_steady_says_how_the_chair_turns(tmp_path):
+    done = wheelchair("steady", "--set", "effect.lateral_load_transfer.h=0.6", "-o", tmp_path)
+    assert done.exit_code == 0
+    for word in ("understeer", "a rear tyre slips by 1°", "a wheel lifts", "0.375", "no motion grows"):
+        assert word in done.output, word
+    assert {f.name for f in tmp_path.iterdir()} == {"steady-turns.csv", "eigenvalues.csv", "steady.png", "steady.svg"}
+    told = json.loads(wheelchair("steady", "--radius", -2, "--slip-limit", 0.5, "--json", "-o", tmp_path).output)
+    assert told["character"] == "understeer" and told["limits"]["slip"]["slip_rl"] == pytest.approx(np.radians(-0.5))
+    assert len(told["root_locus"]) == 200 and "lift" not in told["limits"]
+
+
+@pytest.mark.parametrize(("words", "code", "sentence"), [
+    (("--delta-force", 0), 2, "no turn to judge"),
+    (("--speed", 0, "--delta-force", 5), 2, "no turn to judge"),
+    (("--slip-limit", 0), 2, "0.001"),
+    (("--delta-force", 900, "--set", "tyre.law=dugoff"), 1, "the nearest has ΔF ="),
+])  # fmt: skip
+def test_steady_refuses_in_one_sentence(tmp_path, words, code, sentence):
+    done = wheelchair("steady", "-o", tmp_path / "new", *words)
+    assert done.exit_code == code and sentence in done.stderr and not (tmp_path / "new").exists()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from copy import copy
 
 import fmpy
 import numpy as np
@@ -139,11 +140,19 @@ def test_the_radius_moves_as_trims_on_either_side_say():
             continue
         h = 1e-5 * p.nominal
         middle = max(s.chair.value(p.name), p.lower + h)
-        ends = [trim(Chair(variant.with_values({p.name: middle + sign * h})), 1.0, 10.0).radius for sign in (1, -1)]
+        ends = [trim(with_value(s.chair, p.name, middle + sign * h), 1.0, 10.0).radius for sign in (1, -1)]
         by_differences = np.log(ends[0] / ends[1]) / (2 * h)
         assert slopes[p.name] == pytest.approx(by_differences, rel=1e-3, abs=1e-7 / p.nominal), p.name
     relative = radius_sensitivities(s, slopes)
     assert relative["chair.m"] == pytest.approx(80 * slopes["chair.m"]) and relative["effect.scrub_torque.M"] == 0
+
+
+def with_value(chair, name, value):
+    """The same equations at another value; assembling them anew for each would take long."""
+    other = copy(chair)
+    other.p = chair.p.copy()
+    other.p[chair.parameters.index(name)] = value
+    return other
 
 
 def test_sensitivities_are_without_dimension():
@@ -160,12 +169,12 @@ def test_straight_on_there_is_no_radius_to_move():
 
 
 def test_two_hundred_speeds_with_all_sensitivities_in_a_second():
-    begin = time.perf_counter()
+    begin = time.process_time()  # others may be at work here
     chair, near = Chair(with_chosen_effects(Variant())), None
     for speed in np.linspace(0.1, 4, 200):
         near = trim(chair, speed, 10.0, near=near)
         assert linearize(near).eigenvalues.real.max() < 0 and len(radius_slopes(near)) > 40
-    assert time.perf_counter() - begin < 2.0  # 0.4 s where nothing else runs; the target is 1 s
+    assert time.process_time() - begin < 1.5  # about 0.5 s; the target is 1 s
 
 
 def test_python_control_takes_it():
