@@ -60,40 +60,48 @@ def test_in_a_turn_it_is_the_papers_equations_by_differences(u, delta_force, fre
     assert found.states == ("u", "v", "psi_dot")[first:]
 
 
-def test_the_fmus_directional_derivatives_are_the_same():
-    """C and D of every output; and v' = a_y − u ψ' gives the row of A and B."""
+@pytest.mark.parametrize("free", [False, True])
+def test_the_fmus_directional_derivatives_are_the_same(free, tmp_path):
+    """C and D of every output. An accelerometer feels u' − v ψ' and v' + u ψ', and 1 m before the CM ψ'' more: A and B."""
     variant = with_chosen_effects(Variant()).with_values({"effect.lateral_load_transfer.h": 0.5, "tyre.law": "magic_formula"})
     s = trim(Chair(variant), 1.2, 25.0)
-    found = linearize(s)
-    C, D = directional(variant, s, found)
+    found = linearize(s, free_speed=free)
+    C, D = directional(tmp_path, s, found)
     np.testing.assert_allclose(C, found.C, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(D, found.D, rtol=1e-8, atol=1e-8)
-    a_y = found.outputs.index("sensor.a_y")
-    np.testing.assert_allclose(C[a_y] - [0, 1.2], found.A[0], rtol=1e-8)
-    slope_y = G * (np.array(found.inputs) == "floor.slope_y")  # which an accelerometer does not feel
-    np.testing.assert_allclose(D[a_y] + slope_y, found.B[0], rtol=1e-8, atol=1e-10)
+    a_x, a_y = (found.outputs.index(f"sensor.a_{axis}") for axis in "xy")
+    before, D_before = directional(tmp_path, s, found, {"effect.accelerometer_offset.x": 1.0})
+    first = 0 if free else 1
+    turning = np.array([[0, s.psi_dot, s.v], [-s.psi_dot, 0, -s.speed], [0, 0, 0]])[:, first:]
+    A = np.array([C[a_x], C[a_y], before[a_y] - C[a_y]]) + turning
+    np.testing.assert_allclose(A[first:], found.A, rtol=1e-8, atol=1e-8)
+    gravity = G * (np.array(found.inputs) == [["floor.slope_x"], ["floor.slope_y"], [""]])  # which no accelerometer feels
+    B = np.array([D[a_x], D[a_y], D_before[a_y] - D[a_y]]) + gravity
+    np.testing.assert_allclose(B[first:], found.B, rtol=1e-8, atol=1e-8)
 
 
-def directional(variant, s, linear):
-    """C and D as the FMU gives them in initialisation mode, where start.v and start.psi_dot are known variables."""
-    path = str(fmu_of(variant))
+def directional(folder, s, linear, more=None):
+    """C and D as the FMU gives them in initialisation mode, where the start values are known variables."""
+    path = str(fmu_of(s.chair.variant))
     description = fmpy.read_model_description(path)
     refer = {v.name: v.valueReference for v in description.modelVariables}
-    fmu = FMU2Slave(guid=description.guid, unzipDirectory=fmpy.extract(path), instanceName="x",
+    fmu = FMU2Slave(guid=description.guid, unzipDirectory=fmpy.extract(path, str(folder)), instanceName="x",
                     modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
     fmu.instantiate()
     fmu.setupExperiment()
-    values = {**s.chair.variant.values, "speed.u": s.speed, "start.v": s.v, "start.psi_dot": s.psi_dot,
-              **dict(zip(linear.inputs, s.w.tolist(), strict=True))}  # fmt: skip
+    values = {**s.chair.variant.values, "speed.u": s.speed, "start.u": s.speed, "start.v": s.v, "start.psi_dot": s.psi_dot,
+              **dict(zip(linear.inputs, s.w.tolist(), strict=True)), **(more or {})}  # fmt: skip
     values.pop("speed.mode")
-    fmu.setInteger([refer["speed.mode"], refer["tyre.law"]], [2, 3])
+    fmu.setInteger([refer["speed.mode"], refer["tyre.law"]], [1 if "u" in linear.states else 2, 3])
     fmu.setReal([refer[n] for n in values], list(values.values()))
     fmu.enterInitializationMode()
     unknown = [refer[n] for n in linear.outputs]
-    columns = [fmu.getDirectionalDerivative(unknown, [refer[n]], [1.0]) for n in ("start.v", "start.psi_dot", *linear.inputs)]
+    known = (*(f"start.{n}" for n in linear.states), *linear.inputs)
+    columns = [fmu.getDirectionalDerivative(unknown, [refer[n]], [1.0]) for n in known]
     fmu.exitInitializationMode()
     fmu.freeInstance()
-    return np.array(columns[:2]).T, np.array(columns[2:]).T
+    n = len(linear.states)
+    return np.array(columns[:n]).T, np.array(columns[n:]).T
 
 
 def test_small_motions_of_the_simulated_chair_follow_it():
