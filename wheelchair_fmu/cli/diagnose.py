@@ -12,12 +12,13 @@ from rich.table import Table
 
 from ..campaign import read
 from ..handling.experiments import experiments
+from ..loop.profile import profiles as estimate_profiles
 from ..loop.verdict import UNEXPLAINED, Diagnosis, as_json
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled, load
-from ..model.generic import library, terms
+from ..model.generic import VARIABLES, library, profiles, terms
 from ..model.variant import Variant, read_variant
-from ..report.figures import staircase_figure
+from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
 from .check import known_parameters
 from .files import written
@@ -109,7 +110,21 @@ def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
             save(figure, beside)
     if d.proposal:
         files.append(write_proposal(d, folder / "effects")[1])
+        files.append(_missing_picture(d, folder / "missing.png"))
     return files
+
+
+def _missing_picture(d: Diagnosis, file: Path) -> Path:
+    """The proposed term's quantity as the data would have it, against each variable."""
+    assert d.proposal is not None
+    term = terms()[d.proposal.effect]
+    free = profiles(term)
+    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, free)
+    panels = [{"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
+              for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)]  # fmt: skip
+    with written(file) as beside:
+        save(missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels), beside)
+    return file
 
 
 def write_proposal(d: Diagnosis, folder: Path) -> tuple[str, Path]:

@@ -110,3 +110,39 @@ def _family(to: str, unit: Unit, noun: str, bases: dict[str, tuple[str, str]], s
 def library() -> dict[str, Effect]:
     """The generic terms as effects, by id."""
     return {name: term.effect() for name, term in terms().items()}
+
+
+# what a missing force may depend on -> (words, unit, expression, knots between which it goes straight)
+VARIABLES = {
+    "speed": ("speed", "m/s", "u", (-0.5, 0.0, 0.3, 0.6, 1.0, 1.4, 1.8, 2.4)),
+    "yaw_rate": ("yaw rate", "rad/s", "psi_dot", (-2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0)),
+    "heading": ("heading", "rad", "atan2(sin(psi), cos(psi))", (-3.1416, -2.0944, -1.0472, 0.0, 1.0472, 2.0944, 3.1416)),
+    "push": ("push of both hands", "N", "sum1(F_t)", (-60.0, -20.0, -5.0, 5.0, 20.0, 40.0, 80.0, 140.0)),
+    "caster": ("mean caster angle", "rad", "sum1(v_yf / magnitude(v_xf, 0.05)) / 2",
+               (-0.8, -0.4, -0.2, -0.05, 0.05, 0.2, 0.4, 0.8)),
+}  # fmt: skip
+
+
+def profiles(term: Term) -> dict[str, Effect]:
+    """A term's quantity as any function of one variable, by variable: an effect with one parameter per knot."""
+    shape = "+ 0 * delta" if term.to == "M_w" else ""  # one for each caster
+    found = {}
+    for name, (words, _, x, knots) in VARIABLES.items():
+        id = f"profile_{term.to}_{name}"
+        parameters = tuple(
+            Parameter(f"q{i}", term.unit, f"{words} {knot:g}", off=0.0, smallest_interesting=SIZES[term.unit],
+                      lower=-1e3, upper=1e3, source="generic") for i, knot in enumerate(knots))  # fmt: skip
+        expression = " + ".join(f"q{i} * {_hat(x, knots, i)}" for i in range(len(knots)))
+        found[id] = Effect(id, f"any function of {words}", parameters, (adds(term.to, law(expression + shape)),))
+    return found
+
+
+def _hat(x: str, knots: tuple[float, ...], i: int) -> str:
+    """1 at knot i, 0 at its neighbours, straight between, level outside the outermost."""
+    sides = []
+    if i > 0:
+        sides.append(f"({x} - ({knots[i - 1]})) / {knots[i] - knots[i - 1]!r}")
+    if i + 1 < len(knots):
+        sides.append(f"(({knots[i + 1]}) - {x}) / {knots[i + 1] - knots[i]!r}")
+    both = f"fmin({sides[0]}, {sides[1]})" if len(sides) > 1 else f"fmin(1, {sides[0]})"
+    return f"fmax(0, {both})"

@@ -5,6 +5,7 @@ Colours are those of Okabe and Ito, told apart by every kind of colour vision; l
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -192,3 +193,27 @@ def _at_least(ax: Axes, reach: float) -> None:
     """The axis shows ±reach, or more where the data need it."""
     low, high = ax.get_ylim()
     ax.set_ylim(min(low, -reach), max(high, reach))
+
+
+def missing_figure(words: str, unit: str, panels: Sequence[Mapping[str, Any]]) -> Figure:
+    """What is missing against each variable, with its 95 % band.
+
+    `words` and `unit` say what is missing; a panel is {"variable": words, "unit": its unit, "knots": (k,), "estimate": (k,),
+    "se": (k,)}, with NaN where the data say nothing.
+    """
+    figure = Figure(figsize=(3.4 * min(3, len(panels)), 0.5 + 2.8 * math.ceil(len(panels) / 3)), layout="constrained")
+    figure.suptitle(f"estimated missing {words}, with its 95 % band")
+    axes = figure.subplots(math.ceil(len(panels) / 3), min(3, len(panels)), squeeze=False, sharey=True).ravel()
+    for ax, panel in zip(axes, panels, strict=False):
+        knots, estimate, se = (np.asarray(panel[key], float) for key in ("knots", "estimate", "se"))
+        seen = np.isfinite(estimate)
+        ax.axhline(0, color=GREY, lw=0.8)
+        ax.fill_between(knots[seen], (estimate - 1.96 * se)[seen], (estimate + 1.96 * se)[seen], color=BLUE, alpha=0.25, lw=0)
+        ax.plot(knots[seen], estimate[seen], "o-", color=BLUE, ms=3)
+        ax.set_xlabel(f"{panel['variable']} [{panel['unit']}]")
+        _tidy(ax)
+    for ax in axes[len(panels):]:
+        ax.set_axis_off()
+    for row in axes[:: min(3, len(panels))]:
+        row.set_ylabel(f"[{unit}]")
+    return figure
