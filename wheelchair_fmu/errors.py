@@ -5,7 +5,8 @@
     WheelchairError             one sentence: the fact, the value, the cure
     ├── UsageError              the question is wrong (exit code 2): unknown option, id or name
     └── Failure                 the data or the model fails what was asked (exit code 1)
-        ├── CampaignError       faults in a campaign's files; carries all of them
+        ├── FileError           faults in files; carries all of them
+        │   └── CampaignError   those of a campaign
         ├── ModelError          a model that cannot be assembled
         ├── SimulationError     a simulation that cannot go on
         └── BuildError          no compiler, a failing compile, an archive that cannot be written
@@ -33,8 +34,8 @@ class Failure(WheelchairError):
     """The data or the model fails what was asked."""
 
 
-class CampaignError(Failure):
-    """Faults in a campaign, all of them.
+class FileError(Failure):
+    """Faults in files, all of them.
 
     `faults` is a sequence of objects whose `str` is one line: place, fact, value, cure.
     """
@@ -42,6 +43,10 @@ class CampaignError(Failure):
     def __init__(self, faults: Sequence[object]):
         self.faults = tuple(faults)
         super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+class CampaignError(FileError):
+    """Faults in a campaign's files."""
 
 
 class ModelError(Failure):

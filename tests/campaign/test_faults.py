@@ -156,8 +156,8 @@ def test_held_out_samples_that_are_fitted_too(campaign):
 @pytest.mark.parametrize(
     ("content", "line"),
     [
-        (b"", "run a.csv: the file is empty; export it again, or remove the run"),
-        (b"time [s],F_rl [N]\n", "run a.csv: the file has a header but no rows; export it again, or remove the run"),
+        (b"", "run a.csv: the file is empty; export it again, or leave it out"),
+        (b"time [s],F_rl [N]\n", "run a.csv: the file has a header but no rows; export it again, or leave it out"),
         (b"time [s],gr\xf6\xdfe\n0,1\n", "run a.csv line 1: byte 11 (0xF6) is not UTF-8 text; save the file as UTF-8"),
         ("time [s]\n".encode("utf-16"), "run a.csv line 1: byte 0 (0xFF) is not UTF-8 text; "
          "it looks like UTF-16; save the file as UTF-8"),

@@ -7,9 +7,9 @@
     *.csv, ... ── tables ───────┘
 """
 
+from ..faults import Fault
 from .axes import to_sae
 from .channels import CHANNELS, INPUTS, Channel
-from .faults import Fault
 from .formats import read_smartwheel
 from .reading import check, read
 from .records import Campaign, Run

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..faults import WARNING, Fault, run_fault, suggestion
+from ..units import UnitError, factor, same_dimension, split
 from .channels import BY_NAME, TIME, Channel
 from .document import Document, number
-from .faults import WARNING, Fault, run_fault, suggestion
-from .units import UnitError, factor, same_dimension
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,6 @@ class Wanted:
     unit: str | None = None
     radius: float | None = None
     renamed: bool = False
-
-
-def split(header: str) -> tuple[str, str | None]:
-    """'yaw_rate [deg/s]' is ('yaw_rate', 'deg/s'); no bracket, no unit."""
-    name, bracket, unit = header.partition("[")
-    if bracket and unit.rstrip().endswith("]"):
-        return name.strip(), unit.rstrip()[:-1].strip()
-    return header.strip(), None
 
 
 def wanted(doc: Document, name: str) -> Wanted:

@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from .faults import ERROR, Fault
+from ..faults import ERROR, Fault, not_utf8
 
 FILE = "campaign.toml"
 PARAMETER_TABLES = ("chair", "tyre", "resistance", "wheel", "caster", "floor", "effect")
@@ -137,16 +137,6 @@ def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
     except tomllib.TOMLDecodeError as error:
         return None, [_syntax(path.name, text, str(error))]
     return Document(path, raw, data, _lines(text)), []
-
-
-def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError, in_run: bool = False) -> Fault:
-    """The fault of bytes that are no UTF-8."""
-    line = error.object[: error.start].count(b"\n") + 1
-    fact = f"byte {error.start} (0x{error.object[error.start]:02X}) is not UTF-8 text"
-    cure = "save the file as UTF-8"
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        cure = "it looks like UTF-16; save the file as UTF-8"
-    return Fault(file, line, None, fact, cure, in_run=in_run)
 
 
 def _syntax(file: str, text: str, message: str) -> Fault:

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from ..faults import Fault
+from ..tables import Rows, Table
+from ..units import UnitError, quantity
 from .axes import to_sae
 from .binding import Bindings, bind
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, Channel
 from .document import Document, Entry, number
-from .faults import Fault
 from .formats import open_table
-from .tables import Rows, Table
-from .units import UnitError, quantity
 
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
 _FIRST = 10  # samples from which the starting speed is taken

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 
 from ..errors import CampaignError, UsageError
+from ..faults import WARNING, Fault, run_fault
+from ..tables import Table, as_frame_table, read_bytes, read_csv, unreadable
 from .document import Entry
-from .faults import WARNING, Fault, run_fault
-from .tables import Table, as_frame_table, read_bytes, read_csv, unreadable
 
 FORMATS = ("csv", "parquet", "mdf", "smartwheel")
 _BY_SUFFIX = {".parquet": "parquet", ".mf4": "mdf", ".mdf": "mdf", ".dat": "mdf"}
@@ -49,7 +49,7 @@ def _by_library(file: str, path: Path, name: str, read: Any) -> tuple[Table | No
         what = " ".join(str(error).split()) or type(error).__name__
         return None, [run_fault(file, f"{name} cannot read the file: {what}", "export it again")]
     if frame.empty:
-        return None, [run_fault(file, "the file has no rows", "export it again, or remove the run")]
+        return None, [run_fault(file, "the file has no rows", "export it again, or leave it out")]
     return as_frame_table(file, frame), []
 
 

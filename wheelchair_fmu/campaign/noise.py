@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ..units import UnitError, quantity
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .document import Document, number
 from .draft import Draft
-from .units import UnitError, quantity
 
 NAMES = (*CHANNEL_NAMES, "F_rl", "F_rr", "M_rl", "M_rr")  # what [noise] may name
 

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import CampaignError
+from ..faults import ERROR, Fault, once
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, parameter_tables
 from .document import Document, Entry, flatten, load, number
 from .draft import Draft, prepare
-from .faults import ERROR, Fault, once
 from .noise import gather
 from .records import Campaign, Run
 

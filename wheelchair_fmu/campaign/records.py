@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .faults import Fault
+from ..faults import Fault
 
 
 @dataclass(frozen=True, eq=False)

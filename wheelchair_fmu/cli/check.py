@@ -12,7 +12,7 @@ from rich.table import Table
 
 from ..campaign import CHANNELS, Campaign, Fault, read
 from ..campaign import check as faults_of
-from ..campaign.faults import ERROR
+from ..faults import ERROR
 from ..model.effects import bundled
 from ..model.variant import Variant
 from .files import print_json

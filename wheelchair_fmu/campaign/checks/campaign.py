@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from ...faults import WARNING, Fault
 from ..binding import absent_fault
 from ..channels import BY_NAME
 from ..document import Document
 from ..draft import Draft
-from ..faults import WARNING, Fault
 from ..noise import Noise
 
 RATIO = 20.0  # between stated and visible noise

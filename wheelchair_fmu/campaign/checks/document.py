@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from ...faults import WARNING, Fault, suggestion
+from ...units import UnitError
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, TIME
 from ..document import CAMPAIGN_KEYS, OTHER_TABLES, PARAMETER_TABLES, RUN_KEYS, Document, Entry, flatten, number
 from ..draft import constant_value
-from ..faults import WARNING, Fault, suggestion
 from ..formats import FORMATS
 from ..noise import NAMES as NOISE_NAMES
-from ..units import UnitError
 
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ...faults import WARNING, Fault, run_fault
 from ..channels import BY_NAME, PUSHES, TIME
 from ..draft import Draft
-from ..faults import WARNING, Fault, run_fault
 
 FEWEST = 10  # samples of a run
 

@@ -16,8 +16,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import pandas as pd
 
-from .document import not_utf8
-from .faults import SHOWN, Fault, run_fault
+from .faults import SHOWN, Fault, not_utf8, run_fault
 
 _GAPS = ("", "NaN", "nan", "NAN")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf(inity)?", re.IGNORECASE)
@@ -81,6 +80,12 @@ class CsvTable:
         if key not in self._known:
             self._known[key] = self._fast(key) or self._careful(key)
         return self._known[key]
+
+    def words(self, index: int) -> list[str]:
+        """A column of text, one word for each row of `rows`."""
+        reader = csv.reader(io.StringIO(self.body), delimiter=self.separator, quoting=self._quoting())
+        filled = (row for row in reader if any(cell.strip() for cell in row))
+        return [row[index].strip() if index < len(row) else "" for row in filled]
 
     def _fast(self, indices: tuple[int, ...]) -> Rows | None:
         """Pandas' C parser; None where anything is odd, so that the careful way can say what and where."""
@@ -174,14 +179,14 @@ def read_csv(file: str, raw: bytes) -> tuple[CsvTable | None, list[Fault]]:
     except UnicodeDecodeError as error:
         return None, [not_utf8(file, raw, error, in_run=True)]
     if not text.strip():
-        return None, [run_fault(file, "the file is empty", "export it again, or remove the run")]
+        return None, [run_fault(file, "the file is empty", "export it again, or leave it out")]
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     blank = len(text) - len(text.lstrip("\n"))
     first, _, body = text[blank:].partition("\n")
     separator = _separator(first)
     headers = tuple(cell.strip() for cell in next(csv.reader([first], delimiter=separator)))
     if not body.strip():
-        return None, [run_fault(file, "the file has a header but no rows", "export it again, or remove the run")]
+        return None, [run_fault(file, "the file has a header but no rows", "export it again, or leave it out")]
     decimal = "," if separator != "," and "," in body else "."
     return CsvTable(file, headers, body, separator, decimal, blank + 1), []
 

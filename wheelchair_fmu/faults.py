@@ -1,4 +1,4 @@
-"""One fault of a campaign: place, fact, value, cure, on one line."""
+"""One fault of a file: place, fact, value, cure, on one line."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHOWN = 10  # faults of one kind listed for one column; the rest are counted
 class Fault:
     """What is wrong, where, and what to do about it.
 
-    `file` is the name as campaign.toml writes it, `line` counts from 1 with the header as line 1,
+    `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
     `column` is a whole header. An error stops `read`; a warning does not.
     """
 
@@ -24,7 +24,7 @@ class Fault:
     fact: str
     cure: str
     severity: str = ERROR
-    in_run: bool = False  # the file is a recording, not campaign.toml
+    in_run: bool = False  # the file is a recording of a campaign
 
     def __str__(self) -> str:
         warning = "warning: " if self.severity == WARNING else ""
@@ -39,6 +39,16 @@ def run_fault(
 ) -> Fault:
     """A fault in a recording."""
     return Fault(file, line, column, fact, cure, severity, in_run=True)
+
+
+def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError, in_run: bool = False) -> Fault:
+    """The fault of bytes that are no UTF-8."""
+    line = error.object[: error.start].count(b"\n") + 1
+    fact = f"byte {error.start} (0x{error.object[error.start]:02X}) is not UTF-8 text"
+    cure = "save the file as UTF-8"
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        cure = "it looks like UTF-16; save the file as UTF-8"
+    return Fault(file, line, None, fact, cure, in_run=in_run)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

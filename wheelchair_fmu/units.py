@@ -19,7 +19,7 @@ _ASIDE = {"Nm": "N.m", "N·m": "N.m", "N-m": "N.m", "-": "1", "": "1", "m/s²": 
 _STUMBLES = (ValueError, TypeError, AttributeError, KeyError, SyntaxError, AssertionError, ArithmeticError, IndexError)
 _EXAMPLES = {
     "s": "s or ms", "m": "m or mm", "m/s": "m/s or km/h", "m/s2": "m/s2 or g", "rad": "rad or deg",
-    "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %",
+    "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %", "bar": "bar or kPa",
 }  # fmt: skip
 
 
@@ -90,6 +90,14 @@ def quantity(text: str, si: str) -> float:
     if not match:
         raise UnitError(f"{text!r} is not a number with a unit", f"write it as, for example, '0.1 {si}'")
     return float(match[1]) * factor(match[2] or si, si)
+
+
+def split(header: str) -> tuple[str, str | None]:
+    """'yaw_rate [deg/s]' is ('yaw_rate', 'deg/s'); no bracket, no unit."""
+    name, bracket, unit = header.partition("[")
+    if bracket and unit.rstrip().endswith("]"):
+        return name.strip(), unit.rstrip()[:-1].strip()
+    return header.strip(), None
 
 
 def _dimension(unit: Any) -> str:
