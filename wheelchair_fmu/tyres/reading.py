@@ -1,0 +1,56 @@
+"""Tyre measurements from a file: CSV, TYDEX 1.3 or a tyre property file, by its ending."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import Failure, FileError, unknown
+from ..faults import ERROR, Fault
+from ..tables import read_bytes
+from .records import ISO, SAE, Sweep
+from .rig_csv import read_rig
+from .rows import Rows, sweeps
+
+Reader = Callable[[Path, bytes], tuple[Rows | None, list[Fault]]]
+READERS: dict[str, Reader] = {".csv": read_rig}
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """The sweeps of a file, in the paper's axes, and warnings."""
+
+    path: Path
+    sweeps: tuple[Sweep, ...]
+    warnings: tuple[Fault, ...]
+
+
+def read(path: str | Path, axes: str = SAE) -> Measured:
+    """Read a file; `axes` says whether y points right (SAE) or left (ISO) where the format does not say it.
+
+    Raises UsageError for an unknown ending and FileError with all faults of the file.
+    """
+    path = Path(path)
+    if axes not in (SAE, ISO):
+        raise unknown("axes", axes, (SAE, ISO))
+    if not path.is_file():
+        raise Failure(f"{path}: no such file; give rig data as {', '.join(READERS)}")
+    kind = path.with_suffix("").suffix if path.suffix == ".gz" else path.suffix
+    if kind.lower() not in READERS:
+        raise unknown("reader for tyre data that end in", kind, READERS)
+    rows, faults = READERS[kind.lower()](path, read_bytes(path))
+    if rows is None or any(f.severity == ERROR for f in faults):
+        raise FileError([f for f in faults if f.severity == ERROR])
+    if axes == ISO and kind.lower() == ".csv":
+        rows = _to_sae(rows)
+    found, met = sweeps(rows)
+    if not found:
+        raise Failure(f"{path}: no row has a slip or a camber angle other than zero; measure some")
+    return Measured(path, found, (*faults, *met))
+
+
+def _to_sae(rows: Rows) -> Rows:
+    """Angles keep their sign (tan α = v_y/|v_x| with y left, −v_y/|v_x| with y right); force and torque change it."""
+    turned = {name: -rows.columns[name] for name in ("lateral_force", "yaw_torque") if name in rows.columns}
+    return replace(rows, columns={**rows.columns, **turned})
