@@ -117,7 +117,6 @@ def test_the_reference_condition_is_table_1(disc):
     within(law["C_lambda"].K, DEFAULT["tyre.C_lambda"])
     within(law["C_m_lambda"].K, DEFAULT["tyre.C_m_lambda"])
     within(law["C_phi"].K, DEFAULT["tyre.C_phi"])
-    within(law["C_m_phi"].K, DEFAULT["tyre.C_m_phi"])
 
 
 def test_the_default_pressure_exponents_are_those_of_tyre_a(disc):

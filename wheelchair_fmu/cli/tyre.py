@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
 from ..errors import UsageError
+from ..fmu import parameter_set
+from ..model.variant import LAWS, variant_text
+from ..report.saving import save
+from ..report.tyre_figures import comparison_figure, laws_figure, single_figure
 from ..tyres import Identified, Measured, identify, read
 from ..tyres.fitting import Estimate
-from ..tyres.identify import OF_PEAK, TOLERANCE, dugoff_off
+from ..tyres.identify import OF_PEAK, TOLERANCE, ConditionFit, dugoff_off
 from ..tyres.magic_formula import FORCE, TORQUE
-from ..tyres.records import SLIP
+from ..tyres.parameters import chair, chosen
+from ..tyres.records import KM_H, SLIP
 from ..tyres.summary import condition as summarised
 from ..tyres.summary import summary
-from .files import print_json
+from ..tyres.tir import tir_text
+from .files import print_json, written
 from .group import console
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Tyres identified from rig data.")
@@ -49,6 +57,88 @@ def fit(
     out.print(_magic(found, FORCE, "N"))
     out.print(_magic(found, TORQUE, "N m"))
     out.print(_across(found))
+
+
+@app.command()
+def plot(
+    file: File,
+    axes: Axes = "sae",
+    tolerance: Tolerance = TOLERANCE,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the figures go.")] = Path("out"),
+) -> None:
+    """The curves and their laws as Figs. 4 to 9 of the paper, PNG and SVG."""
+    _, found = _identified(file, axes, tolerance)
+    for name, figure in _figures(found):
+        for ending in (".png", ".svg"):
+            target = output / f"tyre-{name}{ending}"
+            with written(target) as beside:
+                save(figure, beside)
+            print(target)
+
+
+@app.command()
+def export(
+    file: File,
+    output: Annotated[list[Path], typer.Option("-o", "--output", metavar="FILE", help="A .toml, .ssv or .tir; repeatable.")],
+    tyre: Annotated[str | None, typer.Option(help="Which tyre, where the file has several.")] = None,
+    pressure: Annotated[float | None, typer.Option(help="At this pressure [bar]; else the one nearest to 4.")] = None,
+    load: Annotated[float | None, typer.Option(help="At this load [N]; else the one nearest to 400.")] = None,
+    speed: Annotated[float | None, typer.Option(help="At this speed [km/h]; else the one nearest to 4.")] = None,
+    law: Annotated[str, typer.Option(metavar="LAW", help=f"One of {', '.join(LAWS['tyre'])}.")] = "magic_formula",
+    axes: Axes = "sae",
+) -> None:
+    """One condition as the FMU's parameters: a variant (TOML), an SSP parameter set (.ssv), or a tyre property file (.tir)."""
+    for target in output:
+        if target.suffix.lower() not in (".toml", ".ssv", ".tir"):
+            raise UsageError(f"-o {target}: write a .toml, .ssv or .tir")
+    _, found = _identified(file, axes)
+    fit = chosen(found, tyre, pressure, load, None if speed is None else speed * KM_H)
+    texts = [_exported(found, fit, law, target.suffix.lower()) for target in output]
+    for target, text in zip(output, texts, strict=True):
+        with written(target) as beside:
+            beside.write_bytes(text)
+        print(target)
+
+
+def _exported(found: Identified, fit: ConditionFit, law: str, ending: str) -> bytes:
+    if ending == ".tir":
+        return tir_text(found, fit).encode()
+    variant = chair(found, fit, law)
+    if ending == ".toml":
+        return variant_text(variant).encode()
+    return parameter_set.text(parameter_set.from_variant(variant, "tyre", str(fit.condition)))
+
+
+def _figures(found: Identified) -> Iterator[tuple[str, Figure]]:
+    """The paper's figures, as far as the conditions allow: name, figure."""
+    references = {tyre: chosen(found, tyre, None, None, None) for tyre in found.tyres}
+    at = [f"tyre {tyre}: {_at(fit)}" for tyre, fit in references.items()]
+    yield "reference", comparison_figure("Forces and torques in the reference condition",
+                                         list(zip(at, references.values(), strict=True)))  # fmt: skip
+    for name in ("speed", "pressure", "load"):
+        curves = [(f"tyre {tyre}: {_at(f)}", f) for tyre, fit in references.items() for f in _varied(found, fit, name)]
+        if len(curves) > len(references):
+            figure = single_figure if name == "speed" else comparison_figure
+            yield name, figure(f"Effect of {_LONG[name]}", curves)
+    for tyre, fit in references.items():
+        others = [f for name in ("pressure", "load") for f in _varied(found, fit, name) if f is not fit]
+        labelled = [(_at(f), f) for f in (fit, *others)]
+        for channel in (FORCE, TORQUE):
+            what = "side slip force" if channel == FORCE else "self-aligning torque"
+            yield f"{tyre}-{channel}", laws_figure(f"Tyre {tyre}: laws of the {what}", channel, labelled, found.tolerance)
+
+
+_LONG = {"speed": "forward speed on the side slip force", "pressure": "inflation pressure", "load": "vertical load"}
+
+
+def _varied(found: Identified, reference: ConditionFit, name: str) -> list[ConditionFit]:
+    """The reference and the conditions that differ from it in this alone."""
+    same = {n: getattr(reference.condition, n) for n in ("tyre", "pressure", "load", "speed") if n != name}
+    return [f for f in found.conditions if all(getattr(f.condition, n) == v for n, v in same.items())]
+
+
+def _at(fit: ConditionFit) -> str:
+    return str(fit.condition).partition(", ")[2]
 
 
 def _identified(file: Path, axes: str, tolerance: float = TOLERANCE) -> tuple[Measured, Identified]:

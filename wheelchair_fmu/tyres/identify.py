@@ -21,6 +21,7 @@ from .slope import Slope, slope_of
 TOLERANCE = 0.05  # of the measured curve: beyond it the linear law is not enough
 REACH = np.radians(2.0)  # slips that stay below this say nothing about the bend
 ODD = 1e-3  # a misfit that noise alone would show less often is worth a word
+SMALL = 0.005  # of the peak: nobody minds a smaller misfit, however unlikely
 UNITS = {FORCE: "N", TORQUE: "N m"}
 OF_PEAK = 0.1  # of the largest torque or force: where Dugoff's law is off by more
 
@@ -156,7 +157,8 @@ def _doubt(kind: str, channel: str, curve: Curve, slope: Slope) -> str | None:
 
 
 def _odd(magic: MagicFormula) -> bool:
-    return magic.misfit is not None and magic.misfit < ODD
+    unlikely = magic.misfit is not None and magic.misfit < ODD
+    return unlikely and magic.rms > SMALL * abs(magic.D.value)
 
 
 def _signs(fits: Mapping[tuple[str, str], CurveFit]) -> list[str]:

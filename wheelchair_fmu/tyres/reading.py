@@ -12,9 +12,11 @@ from ..tables import read_bytes
 from .records import ISO, SAE, Sweep
 from .rig_csv import read_rig
 from .rows import Rows, sweeps
+from .tir import read_tir
+from .tydex import read_tydex
 
 Reader = Callable[[Path, bytes], tuple[Rows | None, list[Fault]]]
-READERS: dict[str, Reader] = {".csv": read_rig}
+READERS: dict[str, Reader] = {".csv": read_rig, ".tdx": read_tydex, ".tir": read_tir}
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,7 @@ class Measured:
 
 
 def read(path: str | Path, axes: str = SAE) -> Measured:
-    """Read a file; `axes` says whether y points right (SAE) or left (ISO) where the format does not say it.
+    """Read a file; `axes` says of a CSV whether y points right (SAE) or left (ISO). The other formats say it themselves.
 
     Raises UsageError for an unknown ending and FileError with all faults of the file.
     """

@@ -1,7 +1,8 @@
 """The slope of a curve at the origin, and whether the curve bends at all.
 
-Near the origin an odd curve is K x + k x³. The widest range that this describes within the noise gives K the smallest
-error without letting the bend pull at it; beyond where the paper sees straight curves it is not looked for.
+Where noise hides every bend, K is that of the straight line through all of it. Else, near the origin, an odd curve is
+K x + k x³, and the widest range that this describes within the noise gives K the smallest error without letting the bend pull
+at it; beyond where the paper sees straight curves it is not looked for.
 """
 
 from __future__ import annotations
@@ -32,20 +33,22 @@ class Slope:
 
 def slope_of(curve: Curve, kind: str) -> Slope:
     """The slope of a curve with one pair of settings or more."""
-    if len(curve.angle) < FEWEST:
-        return _slope(straight(curve, curve.angle[:, None]), curve, curve)
+    line = straight(curve, curve.angle[:, None])
+    bends = _bends(curve)
+    if len(curve.angle) < FEWEST or (not bends and (line.misfit is None or line.misfit >= DOUBT)):
+        return _slope(line, curve, bends)
     widest = max(int(np.sum(curve.angle <= NEAR[kind] + 1e-6)), FEWEST)
     for m in range(widest, FEWEST - 1, -1):
         near = _nearest(curve, m)
         fit = straight(near, _odd(near.angle))
         if fit.misfit is None or fit.misfit >= DOUBT:
             break
-    return _slope(fit, near, curve)
+    return _slope(fit, near, bends)
 
 
-def _slope(fit: Fit, near: Curve, curve: Curve) -> Slope:
+def _slope(fit: Fit, near: Curve, bends: bool) -> Slope:
     variance = None if fit.covariance is None else float(fit.covariance[0, 0])
-    return Slope(estimate(float(fit.numbers[0]), variance, fit.freedom), float(near.angle[-1]), _bends(curve))
+    return Slope(estimate(float(fit.numbers[0]), variance, fit.freedom), float(near.angle[-1]), bends)
 
 
 def _bends(curve: Curve) -> bool:
