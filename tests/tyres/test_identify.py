@@ -134,11 +134,12 @@ def test_the_effects_give_the_stiffnesses_that_were_measured(disc):
         factor = float(scale[to](-2.0, 4.0, DEFAULT[name]))
         measured = soft.magic(SLIP, channel).K.value / reference.magic(SLIP, channel).K.value
         assert factor == pytest.approx(measured, rel=0.05)
-    exponent = disc.across["A"].laws["C_lambda"].exponents["load"].value
-    (by_load,) = load_sensitivity.EFFECT.contributions
-    measured = heavy.magic(SLIP, FORCE).K.value / reference.magic(SLIP, FORCE).K.value
-    assert float(by_load.law(exponent, 600.0, 400.0)) == pytest.approx(measured, rel=0.02)
-    assert 0 < exponent < 1  # Fig. 7.1: forces grow less than the load
+    scale = {c.to: c.law for c in load_sensitivity.EFFECT.contributions}
+    for to, name, channel in (("k_F", "C_lambda", FORCE), ("k_M", "C_m_lambda", TORQUE)):
+        exponent = disc.across["A"].laws[name].exponents["load"].value
+        measured = heavy.K(SLIP, channel).value / reference.K(SLIP, channel).value
+        assert float(scale[to](exponent, 600.0, 400.0)) == pytest.approx(measured, rel=0.02)
+    assert 0 < disc.across["A"].laws["C_lambda"].exponents["load"].value < 1  # Fig. 7.1: forces grow less than the load
 
 
 def test_what_the_paper_says_of_these_tyres(disc):
@@ -182,7 +183,7 @@ def test_five_points_support_a_slope_and_no_more():
     found = identify([Tyre().sweep(angles=[2.0, 5.0])]).conditions[0]
     assert found.magic(SLIP, FORCE) is None and found.dugoff is None
     assert found.K(SLIP, FORCE).value > 3000
-    assert "2 angles measured with both signs cannot tell four Magic Formula coefficients" in found.warnings[0]
+    assert "2 angles measured with both signs cannot tell how it bends, nor" in found.warnings[0]
 
 
 def test_slips_below_half_a_degree_support_a_slope_and_no_more():
@@ -198,6 +199,35 @@ def test_one_sign_only_is_refused_because_the_curvature_force_stays_in():
     half = type(sweep)(sweep.condition, sweep.kind, sweep.angle[right], sweep.force[right], sweep.torque[right])
     with pytest.raises(Failure, match="all angles are positive; measure every angle with both signs"):
         identify([half])
+
+
+@pytest.mark.parametrize(("force", "said"), [
+    (lambda a: 0 * a, "the force is the same at both signs of every angle"),
+    (lambda a: 3 + a**2, "the force is the same at both signs of every angle"),
+    (lambda a: 50 * a**3, "the slope is not told from zero"),
+    (lambda a: 60 * a, "bends less than the noise"),
+])  # fmt: skip
+def test_forces_of_odd_shapes_are_told_and_do_not_stop_the_rest(force, said):
+    sweep = Tyre().sweep()
+    odd = type(sweep)(sweep.condition, sweep.kind, sweep.angle, force(np.degrees(sweep.angle)), sweep.torque)
+    found = identify([odd]).conditions[0]
+    assert any(said in w for w in found.warnings)
+    assert found.dugoff is None and found.magic(SLIP, FORCE) is None and found.magic(SLIP, TORQUE) is not None
+
+
+def test_a_force_that_falls_again_beyond_its_peak_is_fitted():
+    sweep = Tyre().sweep()
+    x = np.degrees(sweep.angle)
+    peaked = type(sweep)(sweep.condition, sweep.kind, sweep.angle, 300 * x / (1 + (x / 2) ** 2), sweep.torque)
+    found = identify([peaked]).conditions[0]
+    assert found.magic(SLIP, FORCE).rms < 10 and found.K(SLIP, FORCE).value == pytest.approx(np.degrees(300), rel=0.05)
+
+
+def test_torques_that_were_not_measured_are_named():
+    sweep = Tyre().sweep()
+    found = identify([type(sweep)(sweep.condition, sweep.kind, sweep.angle, sweep.force, sweep.torque * np.nan)])
+    assert found.conditions[0].dugoff.c_p is None
+    assert "side slip: no torque was measured; its laws are left out" in found.conditions[0].warnings
 
 
 def test_an_angle_without_its_partner_is_left_out_and_named():

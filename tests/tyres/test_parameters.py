@@ -89,8 +89,18 @@ def test_the_model_gives_the_fitted_torque_and_camber_force(disc, law, condition
         assert F_s[0] - F_lam[0] == pytest.approx(lean, rel=1e-3)
 
 
-def test_the_reference_tyre_is_the_default_one_within_its_error(disc):
-    """Table 1 came from this rig: linear, the turn of the exported chair is that of the default chair."""
+def test_a_tyre_exported_at_400_n_is_the_one_measured_at_600_n_when_the_chair_is_heavy(disc):
+    variant, heavy = chair(disc, at(disc, "A", 4, 400), "linear"), at(disc, "A", 4, 600)
+    model = variant.model()
+    of_load = cs.Function("k", [model.x, model.w, model.p], [model.quantities["k_F"], model.quantities["k_M"]])
+    weighed = variant.with_values({"chair.m": on_load(variant, 600.0)})
+    k_F, k_M = of_load(np.zeros(model.x.numel()), np.array([i.start for i in model.inputs]), weighed.vector())
+    assert float(k_F[0]) == pytest.approx(heavy.K(SLIP, FORCE).value, rel=0.01)
+    assert float(k_M[0]) == pytest.approx(-heavy.K(SLIP, TORQUE).value, rel=0.01)
+
+
+def test_the_reference_tyre_is_the_default_one(disc):
+    """Table 1 is tyre A in the reference condition."""
     values = chair(disc, at(disc, "A", 4, 400), "linear").values
     for name, default in (("tyre.C_lambda", 5038), ("tyre.C_m_lambda", 45), ("tyre.C_phi", 464)):
         assert values[name] == pytest.approx(default, rel=0.03)

@@ -1,7 +1,7 @@
 """One law across load and pressure:  K = K₀ (p / p₀)^n (N / N₀)^m  for each stiffness of a tyre.
 
-n feeds `tyre.pressure_F` and `tyre.pressure_M`, which the effect `inflation_pressure` reads; m of the cornering stiffness is
-the exponent of the effect `load_sensitivity`.
+n feeds `tyre.pressure_F` and `tyre.pressure_M`, which the effect `inflation_pressure` reads, and m the exponents of the effect
+`load_sensitivity`.
 """
 
 from __future__ import annotations
@@ -32,10 +32,14 @@ ENOUGH = 1000  # degrees of freedom of the noise are many: each stiffness brings
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """K₀ in SI units at the REFERENCES, and an exponent for each of these that the tests varied."""
+    """K₀ in SI units, an exponent for each of the REFERENCES that the tests varied, and where K₀ holds.
+
+    `at` are the REFERENCES for what was varied, and else what was tested.
+    """
 
     K: Estimate
     exponents: Mapping[str, Estimate]
+    at: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -70,8 +74,8 @@ def across(fits: Sequence[ConditionFit]) -> dict[str, Across]:
 
 
 def _law(fits: Sequence[ConditionFit], name: str, over: Sequence[str]) -> PowerLaw | None:
-    """ln K = ln K₀ + Σ exponent · ln ratio, by weighted least squares; None where no slope has a sign and an error."""
-    rows = [(f.condition, K) for f in fits if (K := stiffness(f, name)) and K.value > 0 and K.se]
+    """ln K = ln K₀ + Σ exponent · ln ratio, by weighted least squares; None where no slope is told from zero."""
+    rows = [(f.condition, K) for f in fits if (K := stiffness(f, name)) and K.low is not None and K.low > 0]
     if not rows:
         return None
     logs = {w: np.log([getattr(c, w) / REFERENCES[w] for c, _ in rows]) for w in over}
@@ -80,10 +84,11 @@ def _law(fits: Sequence[ConditionFit], name: str, over: Sequence[str]) -> PowerL
     if np.linalg.matrix_rank(A) < A.shape[1]:
         return None
     K = np.array([k.value for _, k in rows])
-    weight = K / np.array([k.se for _, k in rows])
+    weight = K / np.array([float(k.se or np.inf) for _, k in rows])
     z, *_ = np.linalg.lstsq(A * weight[:, None], np.log(K) * weight, rcond=None)
     spare = len(rows) - A.shape[1]
     left = float(np.sum(((A @ z - np.log(K)) * weight) ** 2))
     S = np.linalg.inv((A * weight[:, None]).T @ (A * weight[:, None])) * max(1.0, left / spare if spare else 1.0)
     exponents = {w: estimate(float(z[i]), float(S[i, i]), ENOUGH) for i, w in enumerate(varied, start=1)}
-    return PowerLaw(positive(float(z[0]), float(S[0, 0]), ENOUGH), exponents)
+    at = {w: REFERENCES[w] if w in varied else getattr(rows[0][0], w) for w in over}
+    return PowerLaw(positive(float(z[0]), float(S[0, 0]), ENOUGH), exponents, at)

@@ -10,7 +10,6 @@ from . import laws
 from .fitting import Estimate, Prior, Shape, bent, estimate, positive, straight
 from .half_difference import Curve
 
-FEWEST = 4  # settings for two numbers and something to judge them by
 _SHAPE = Shape(np.array([True, True]))  # ln C_λ, ln μN
 
 

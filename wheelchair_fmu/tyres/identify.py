@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Failure
-from . import dugoff as dugoff_law
 from . import magic_formula as magic_law
 from .across import Across, across
 from .dugoff import Dugoff, dugoff
@@ -108,7 +107,13 @@ def _curves(sweeps: Sequence[Sweep]) -> tuple[Curves, dict[Condition, list[str]]
             said.append(f"{sweep.kind}: {angles}° measured with one sign only and left out; measure the other sign too")
         for channel, measured in ((FORCE, sweep.force), (TORQUE, sweep.torque)):
             if np.isfinite(measured).all():
-                found[sweep.condition, sweep.kind, channel] = corrected(paired, measured)
+                curve = corrected(paired, measured)
+                if curve.largest > 0:
+                    found[sweep.condition, sweep.kind, channel] = curve
+                else:
+                    said.append(f"{sweep.kind}: the {channel} is the same at both signs of every angle; check the file")
+            else:
+                said.append(f"{sweep.kind}: no {channel} was measured; its laws are left out")
     for channel in (FORCE, TORQUE):
         keys = [key for key in found if key[2] == channel]
         found |= zip(keys, pooled([found[key] for key in keys]), strict=True)
@@ -144,8 +149,8 @@ def _doubt(kind: str, channel: str, curve: Curve, slope: Slope) -> str | None:
     n, largest = len(curve.angle), float(np.degrees(curve.angle[-1]))
     what = f"{kind} {channel}: the slope only"
     if n < magic_law.FEWEST:
-        return (f"{what}; {n} angle{'s' * (n > 1)} measured with both signs cannot tell four Magic Formula coefficients; "
-                f"measure {magic_law.FEWEST} or more")  # fmt: skip
+        return (f"{what}; {n} angle{'s' * (n > 1)} measured with both signs cannot tell how it bends, nor a Magic Formula's "
+                f"four coefficients; measure {magic_law.FEWEST} or more")  # fmt: skip
     ends = slope.K.interval
     if ends is not None and ends[0] * ends[1] <= 0:
         return f"{kind} {channel}: the slope is not told from zero; measure larger angles, or more of them"
@@ -183,9 +188,9 @@ def _linear_range(curve: Curve, magic: MagicFormula | None, tolerance: float) ->
 
 def _dugoff(condition: Condition, fits: Mapping[tuple[str, str], CurveFit]) -> Dugoff | None:
     force, torque = fits.get((SLIP, FORCE)), fits.get((SLIP, TORQUE))
-    if force is None or not force.slope.bends or len(force.curve.angle) < dugoff_law.FEWEST or force.slope.K.value <= 0:
+    if force is None or force.magic is None or force.K.value <= 0:
         return None
-    return dugoff(force.curve, torque.curve if torque else None, force.slope.K.value, condition.load)
+    return dugoff(force.curve, torque.curve if torque else None, force.K.value, condition.load)
 
 
 def dugoff_off(fit: ConditionFit, channel: str) -> tuple[tuple[float, float], ...] | None:

@@ -71,6 +71,8 @@ def chair(found: Identified, fit: ConditionFit, law: str) -> Variant:
     if "load" in exponents.get("C_lambda", {}):
         values["effect.load_sensitivity.exponent"] = exponents["C_lambda"]["load"].value
         values["effect.load_sensitivity.N_ref"] = fit.condition.load
+        if "load" in exponents.get("C_m_lambda", {}):
+            values["effect.load_sensitivity.exponent_M"] = exponents["C_m_lambda"]["load"].value
     return replace(Variant().with_values({**values, "tyre.law": law}), notes=_notes(fit, law))
 
 

@@ -1,6 +1,6 @@
 """Rig data as CSV: a row for each measurement, headers `name [unit]`, as in measurements/rotating-disc.csv.
 
-Needed are pressure, load, disc_speed, slip_angle and lateral_force; yaw_torque, camber_angle, tyre and test may be there.
+Needed are pressure, load, slip_angle and lateral_force; disc_speed, yaw_torque, camber_angle, tyre and test may be there.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from ..faults import WARNING, Fault, suggestion
 from ..quantities import BAR, M_S, N_M, RAD, N
 from ..tables import CsvTable, read_csv
 from ..units import UnitError, factor, split
-from .records import KINDS
-from .rows import NEEDED, Rows
+from .records import KINDS, KM_H
+from .rows import NEEDED, USUAL_SPEED, Rows
 
 UNITS = {
     "pressure": BAR, "load": N, "disc_speed": M_S, "slip_angle": RAD, "camber_angle": RAD, "lateral_force": N,
@@ -37,6 +37,10 @@ def read_rig(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
     faults += [_plain(f) for f in read.faults]
     columns = {name: read.values[i] * scale for name, (i, scale) in places.items()}
     n = len(next(iter(columns.values())))
+    if "disc_speed" not in columns:
+        columns["disc_speed"] = np.full(n, USUAL_SPEED)
+        faults.append(Fault(path.name, table.header_line, None, f"no column 'disc_speed', {USUAL_SPEED / KM_H:g} km/h assumed",
+                            "add one named 'disc_speed [km/h]'", WARNING))  # fmt: skip
     line = np.zeros(n, int) if read.lines is None else read.lines
     headers = {name: table.headers[i] for name, (i, _) in places.items()}
     words = {w: table.words(table.headers.index(w)) if w in table.headers else None for w in WORDS}

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..faults import SHOWN, WARNING, Fault
-from .records import CAMBER, SLIP, Condition, Sweep
+from .records import CAMBER, KM_H, SLIP, Condition, Sweep
 
 LEVEL = np.radians(0.05)  # an angle below this is zero
 SAME = 0.03  # relative: settings of a rig that lie closer are one
@@ -29,13 +29,14 @@ class Bound:
 BOUNDS = {
     "pressure": Bound(0.05, 20.0, "give the pressure above the air's, with its unit, such as [bar] or [kPa]"),
     "load": Bound(1.0, 2e4, "give the vertical load as a positive force, with its unit, such as [N]"),
-    "disc_speed": Bound(0.0, 60.0, "give the speed of the track, with its unit, such as [km/h]"),
+    "disc_speed": Bound(0.01, 60.0, "give the speed of the track, with its unit, such as [km/h]"),
     "slip_angle": Bound(-np.pi / 6, np.pi / 6, "is the unit [deg]? rigs reach 30°"),
     "camber_angle": Bound(-np.pi / 3, np.pi / 3, "is the unit [deg]? rigs reach 60°"),
     "lateral_force": Bound(-5e4, 5e4, "check the unit"),
     "yaw_torque": Bound(-5e3, 5e3, "check the unit"),
 }
-NEEDED = ("pressure", "load", "disc_speed", "slip_angle", "lateral_force")
+USUAL_SPEED = 4 * KM_H  # m/s, where none is given; it hardly matters (Doria, Fig. 5)
+NEEDED = ("pressure", "load", "slip_angle", "lateral_force")
 
 
 @dataclass(frozen=True, eq=False)

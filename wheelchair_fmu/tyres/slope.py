@@ -34,7 +34,7 @@ class Slope:
 def slope_of(curve: Curve, kind: str) -> Slope:
     """The slope of a curve with one pair of settings or more."""
     line = straight(curve, curve.angle[:, None])
-    bends = _bends(curve)
+    bends = _bends(curve, line)
     if len(curve.angle) < FEWEST or (not bends and (line.misfit is None or line.misfit >= DOUBT)):
         return _slope(line, curve, bends)
     widest = max(int(np.sum(curve.angle <= NEAR[kind] + 1e-6)), FEWEST)
@@ -51,10 +51,12 @@ def _slope(fit: Fit, near: Curve, bends: bool) -> Slope:
     return Slope(estimate(float(fit.numbers[0]), variance, fit.freedom), float(near.angle[-1]), bends)
 
 
-def _bends(curve: Curve) -> bool:
-    """Whether a straight line leaves more than the noise does: the cubic term over its standard error."""
+def _bends(curve: Curve, line: Fit) -> bool:
+    """Whether a straight line leaves more than the noise does, in all or as a cubic term."""
     if len(curve.angle) < FEWEST:
         return False
+    if line.misfit is not None and line.misfit < SURE:
+        return True
     fit = straight(curve, _odd(curve.angle))
     if fit.covariance is None:
         return False

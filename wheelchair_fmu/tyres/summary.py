@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .across import STIFFNESSES
+from .across import STIFFNESSES, PowerLaw
 from .fitting import CONFIDENCE, Estimate
 from .identify import OF_PEAK, ConditionFit, CurveFit, Identified, dugoff_off
 from .magic_formula import FORCE, TORQUE, MagicFormula
@@ -24,7 +24,7 @@ def summary(found: Identified) -> dict[str, Any]:
     """Everything `wheelchair tyre fit --json` prints, but for the file's own warnings."""
     return {
         "conditions": [condition(fit, found.tolerance) for fit in found.conditions],
-        "across": {tyre: {"laws": {name: {"K": _told(law.K), "exponents": _all_told(law.exponents)}
+        "across": {tyre: {"laws": {name: {"K": _told(law.K), "exponents": _all_told(law.exponents), "at": _at(law)}
                                    for name, law in own.laws.items()},
                           "speed_exponents": _all_told(own.speed)} for tyre, own in found.across.items()},
         "confidence": CONFIDENCE, "units": UNITS, "laws": LINEAR,
@@ -84,6 +84,10 @@ def _magic(law: MagicFormula | None) -> dict[str, Any] | None:
 
 def _offset(fit: CurveFit | None) -> dict[str, Any] | None:
     return None if fit is None else {"value": fit.curve.offset, "se": fit.curve.offset_se}
+
+
+def _at(law: PowerLaw) -> dict[str, float]:
+    return {name: value * (PA if name == "pressure" else 1.0) for name, value in law.at.items()}
 
 
 def _told(e: Estimate) -> dict[str, Any]:

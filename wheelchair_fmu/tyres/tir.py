@@ -23,7 +23,7 @@ from .identify import ConditionFit, Identified
 from .magic_formula import FORCE, TORQUE
 from .mf52 import ALIGNING, NEEDED, Mf52
 from .records import CAMBER, SLIP
-from .rows import Rows
+from .rows import USUAL_SPEED, Rows
 
 PA = 1e5  # in a bar
 LOADS = np.array([0.75, 1.0, 1.5])  # of the nominal load
@@ -33,6 +33,7 @@ UNITS = {"LENGTH": ("meter", "m"), "FORCE": ("newton", "n"), "ANGLE": ("radians"
 FITTED = (5.0, 6.0)  # FITTYP of MF 5.2 and what it reads unchanged
 FORMATS = ("PAC2002", "MF_05", "MF05")
 RADIUS = next(p.default for p in CHASSIS if p.name == "wheel.R")
+SIGNED = ("PKY1", "PDY1")
 _ENTRY = re.compile(r"\s*([A-Za-z]\w*)\s*=\s*('[^']*'|[^\s$!]+)")
 _SKIP = ("$", "!", "#")
 
@@ -49,8 +50,9 @@ def read_tir(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
     for key in NEEDED:
         if key not in numbers and key not in words:
             faults.append(Fault(path.name, None, None, f"no {key}", "an MF 5.2 file has it; add it"))
-        elif key not in ("PKY1", "PDY1") and numbers.get(key, 1.0) <= 0:
-            faults.append(Fault(path.name, lines[key], key, f"{numbers[key]:g} is not positive", "correct it"))
+        elif (key in SIGNED and numbers.get(key) == 0) or (key not in SIGNED and numbers.get(key, 1.0) <= 0):
+            what = "is zero" if key in SIGNED else "is not positive"
+            faults.append(Fault(path.name, lines[key], key, f"{numbers[key]:g} {what}", "correct it"))
     if any(f.severity != WARNING for f in faults):
         return None, faults
     pressure = next((numbers[k] / PA for k in ("INFLPRES", "INFLATION_PRESSURE", "NOMPRES") if k in numbers), None)
@@ -118,7 +120,7 @@ def _curves(path: Path, numbers: Mapping[str, float], pressure: float) -> Rows:
     Fy, Mz = tyre.forces(alpha, gamma, Fz)
     sign = -1.0 if numbers["PKY1"] < 0 else 1.0  # ISO's axes, or y to the right already
     n = len(alpha)
-    columns = {"pressure": np.full(n, pressure), "load": Fz, "disc_speed": np.full(n, numbers.get("LONGVL", 0.0)),
+    columns = {"pressure": np.full(n, pressure), "load": Fz, "disc_speed": np.full(n, numbers.get("LONGVL", USUAL_SPEED)),
                "slip_angle": alpha, "camber_angle": gamma, "lateral_force": sign * Fy}  # fmt: skip
     if all(key in numbers for key in ALIGNING):
         columns["yaw_torque"] = sign * Mz

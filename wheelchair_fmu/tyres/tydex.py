@@ -17,7 +17,7 @@ import numpy as np
 from ..faults import SHOWN, Fault, not_utf8
 from ..quantities import BAR, M_S, N_M, RAD, N, Unit
 from ..units import UnitError, factor
-from .rows import NEEDED, Rows
+from .rows import Rows
 
 UNIT, VALUES = slice(42, 52), slice(52, None)
 
@@ -40,6 +40,7 @@ CHANNELS = {
     "lateral_force": Channel(("FYW", "FYH", "FYC"), N, -1),
     "yaw_torque": Channel(("MZW", "MZH", "MZC"), N_M, -1),
 }
+MAY_LACK = ("camber_angle", "yaw_torque")
 _WORDS = {"degree": "deg", "deg C": "degC", "km/u": "km/h"}
 
 
@@ -151,7 +152,7 @@ def _column(
                 if not value:
                     raise _Trouble(Fault(file, entry.line, wanted, "no value", "write one from column 53 on"))
                 return np.full(len(data), channel.sign * value[0] * _factor(file, entry, channel.unit)), wanted
-    if name in NEEDED:
+    if name not in MAY_LACK:
         fact = f"no {' or '.join(channel.names)} among channels and constants"
         raise _Trouble(Fault(file, None, channel.names[0], fact, "add it to **CONSTANTS or **MEASURCHANNELS"))
     return None, ""

@@ -1,4 +1,4 @@
-"""Cornering stiffness that depends on the load, but less than in proportion:  C_λ (N / 400 N)^exponent."""
+"""Stiffnesses that depend on the load:  C_λ (N / N_ref)^exponent, less than in proportion, and C_mλ (N / N_ref)^exponent_M."""
 
 import casadi as cs
 
@@ -7,14 +7,24 @@ from ..stage import Effect, scales
 
 EXPONENT = Parameter("exponent", ONE, "exponent of the load in the cornering stiffness: 0 none, 1 in proportion", off=0.0,
                      smallest_interesting=0.1, lower=-1.0, upper=2.0, source="Doria, Fig. 7")  # fmt: skip
-REFERENCE = Parameter("N_ref", N, "load at which C_λ was measured", default=400.0, lower=1.0, upper=1e4,
+EXPONENT_M = Parameter("exponent_M", ONE, "exponent of the load in the self-aligning stiffness; a rig tells it, driving hardly",
+                       default=0.0, lower=-1.0, upper=3.0, source="Doria, Fig. 7")  # fmt: skip
+REFERENCE = Parameter("N_ref", N, "load at which C_λ and C_mλ were measured", default=400.0, lower=1.0, upper=1e4,
                       source="Doria, Table 1")  # fmt: skip
 LIGHTEST = 0.01  # of the reference load; a wheel that carries less is off the ground
+
+
+def power(exponent, N_r, N_ref):
+    return cs.exp(exponent * cs.log(cs.fmax(N_r / N_ref, LIGHTEST)))
+
 
 EFFECT = Effect(
     "load_sensitivity",
     "cornering stiffness that grows less than the load",
     parameters=(EXPONENT,),
-    constants=(REFERENCE,),
-    contributions=(scales("k_F", lambda exponent, N_r, N_ref: cs.exp(exponent * cs.log(cs.fmax(N_r / N_ref, LIGHTEST)))),),
+    constants=(EXPONENT_M, REFERENCE),
+    contributions=(
+        scales("k_F", power),
+        scales("k_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref)),
+    ),
 )
