@@ -67,6 +67,19 @@ def test_the_figures_of_the_paper_are_written(tmp_path):
     assert sorted(f.name for f in tmp_path.iterdir()) == sorted(f"tyre-{n}.{e}" for n in names for e in ("png", "svg"))
 
 
+def test_camber_alone_and_names_that_are_no_file_names_can_be_drawn(tmp_path):
+    head, *rows = DISC.read_text().splitlines()
+    lean = [row.replace("B,", "24/7 *,", 1) for row in rows if ",camber," in row]
+    (tmp_path / "lean.csv").write_text("\n".join([head, *lean]))
+    (tmp_path / "odd.csv").write_text("\n".join([head, *(row.replace("B,", "24/7 *,", 1) for row in rows)]))
+    for name, figure, there in (("lean", "tyre-24-7--force.png", False), ("odd", "tyre-24-7--force.png", True)):
+        done = wheelchair("tyre", "plot", tmp_path / f"{name}.csv", "-o", tmp_path / name)
+        assert done.exit_code == 0, done.output
+        assert (tmp_path / name / "tyre-load.png").exists() and (tmp_path / name / figure).exists() == there
+    refused = wheelchair("tyre", "export", tmp_path / "lean.csv", "--tyre", "A", "-o", tmp_path / "a.toml")
+    assert refused.exit_code == 1 and "measure side slip, too" in refused.output
+
+
 def test_an_export_is_a_variant_a_parameter_set_and_a_tyre_file(tmp_path):
     files = [tmp_path / f"a.{ending}" for ending in ("toml", "ssv", "tir")]
     done = wheelchair("tyre", "export", DISC, "--tyre", "A", "--pressure", 2, *(w for f in files for w in ("-o", f)))

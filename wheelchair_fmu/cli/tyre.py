@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from matplotlib.figure import Figure
 from rich import box
 from rich.table import Table
 
@@ -16,7 +14,7 @@ from ..errors import UsageError
 from ..fmu import parameter_set
 from ..model.variant import LAWS, variant_text
 from ..report.saving import save
-from ..report.tyre_figures import comparison_figure, laws_figure, single_figure
+from ..report.tyre_figures import paper_figures
 from ..tyres import Identified, Measured, identify, read
 from ..tyres.fitting import Estimate
 from ..tyres.identify import OF_PEAK, TOLERANCE, ConditionFit, dugoff_off
@@ -68,7 +66,7 @@ def plot(
 ) -> None:
     """The curves and their laws as Figs. 4 to 9 of the paper, PNG and SVG."""
     _, found = _identified(file, axes, tolerance)
-    for name, figure in _figures(found):
+    for name, figure in paper_figures(found):
         for ending in (".png", ".svg"):
             target = output / f"tyre-{name}{ending}"
             with written(target) as beside:
@@ -107,38 +105,6 @@ def _exported(found: Identified, fit: ConditionFit, law: str, ending: str) -> by
     if ending == ".toml":
         return variant_text(variant).encode()
     return parameter_set.text(parameter_set.from_variant(variant, "tyre", str(fit.condition)))
-
-
-def _figures(found: Identified) -> Iterator[tuple[str, Figure]]:
-    """The paper's figures, as far as the conditions allow: name, figure."""
-    references = {tyre: chosen(found, tyre, None, None, None) for tyre in found.tyres}
-    at = [f"tyre {tyre}: {_at(fit)}" for tyre, fit in references.items()]
-    yield "reference", comparison_figure("Forces and torques in the reference condition",
-                                         list(zip(at, references.values(), strict=True)))  # fmt: skip
-    for name in ("speed", "pressure", "load"):
-        curves = [(f"tyre {tyre}: {_at(f)}", f) for tyre, fit in references.items() for f in _varied(found, fit, name)]
-        if len(curves) > len(references):
-            figure = single_figure if name == "speed" else comparison_figure
-            yield name, figure(f"Effect of {_LONG[name]}", curves)
-    for tyre, fit in references.items():
-        others = [f for name in ("pressure", "load") for f in _varied(found, fit, name) if f is not fit]
-        labelled = [(_at(f), f) for f in (fit, *others)]
-        for channel in (FORCE, TORQUE):
-            what = "side slip force" if channel == FORCE else "self-aligning torque"
-            yield f"{tyre}-{channel}", laws_figure(f"Tyre {tyre}: laws of the {what}", channel, labelled, found.tolerance)
-
-
-_LONG = {"speed": "forward speed on the side slip force", "pressure": "inflation pressure", "load": "vertical load"}
-
-
-def _varied(found: Identified, reference: ConditionFit, name: str) -> list[ConditionFit]:
-    """The reference and the conditions that differ from it in this alone."""
-    same = {n: getattr(reference.condition, n) for n in ("tyre", "pressure", "load", "speed") if n != name}
-    return [f for f in found.conditions if all(getattr(f.condition, n) == v for n, v in same.items())]
-
-
-def _at(fit: ConditionFit) -> str:
-    return str(fit.condition).partition(", ")[2]
 
 
 def _identified(file: Path, axes: str, tolerance: float = TOLERANCE) -> tuple[Measured, Identified]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..tyres.identify import ConditionFit
+from ..tyres.identify import ConditionFit, Identified
 from ..tyres.magic_formula import FORCE, TORQUE
+from ..tyres.parameters import chosen
 from ..tyres.records import CAMBER, SLIP
 from .figures import BAND, BLACK, BLUE, GREEN, GREY, ORANGE, tidy
 
@@ -20,7 +23,46 @@ PANELS = (
     (CAMBER, TORQUE, "twisting torque / load [mm]", "camber angle φ [deg]"),
 )
 LOOKS = ((BLUE, "-", "o"), (ORANGE, "-", "s"), (BLUE, "--", "^"), (ORANGE, "--", "v"), (GREEN, "-", "D"), (BLACK, "-", "x"))
+LONG = {"speed": "forward speed on the side slip force", "pressure": "inflation pressure", "load": "vertical load"}
 SCALE = {FORCE: 1.0, TORQUE: 1e3}
+
+
+def paper_figures(found: Identified) -> Iterator[tuple[str, Figure]]:
+    """Figs. 4 to 9, as far as the conditions allow: a name and a figure each."""
+    references = {tyre: chosen(found, tyre, None, None, None) for tyre in found.tyres}
+    at = [f"tyre {tyre}: {_at(fit)}" for tyre, fit in references.items()]
+    yield "reference", comparison_figure("Forces and torques in the reference condition",
+                                         list(zip(at, references.values(), strict=True)))  # fmt: skip
+    for name in ("speed", "pressure", "load"):
+        curves = [(f"tyre {tyre}: {_at(f)}", f) for tyre, fit in references.items() for f in _varied(found, fit, name)]
+        if name == "speed":
+            curves = [(label, f) for label, f in curves if (SLIP, FORCE) in f.fits]
+        if len(curves) > len(references):
+            draw = single_figure if name == "speed" else comparison_figure
+            yield name, draw(f"Effect of {LONG[name]}", curves)
+    for tyre, fit in references.items():
+        others = [f for name in ("pressure", "load") for f in _varied(found, fit, name) if f is not fit]
+        labelled = [(_at(f), f) for f in (fit, *others)]
+        for channel in (FORCE, TORQUE):
+            if (SLIP, channel) not in fit.fits:
+                continue
+            what = "side slip force" if channel == FORCE else "self-aligning torque"
+            figure = laws_figure(f"Tyre {tyre}: laws of the {what}", channel, labelled, found.tolerance)
+            yield f"{_as_file_name(tyre)}-{channel}", figure
+
+
+def _varied(found: Identified, reference: ConditionFit, name: str) -> list[ConditionFit]:
+    """The reference and the conditions that differ from it in this alone."""
+    same = {n: getattr(reference.condition, n) for n in ("tyre", "pressure", "load", "speed") if n != name}
+    return [f for f in found.conditions if all(getattr(f.condition, n) == v for n, v in same.items())]
+
+
+def _as_file_name(tyre: str) -> str:
+    return re.sub(r"[^\w.-]+", "-", tyre)
+
+
+def _at(fit: ConditionFit) -> str:
+    return str(fit.condition).partition(", ")[2]
 
 
 def comparison_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) -> Figure:
@@ -28,13 +70,13 @@ def comparison_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) ->
     figure = Figure(figsize=(10, 7.5), layout="constrained")
     figure.suptitle(title)
     for ax, (kind, channel, above, below) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
-        for (label, fit), look in zip(curves, LOOKS, strict=False):
+        for (label, fit), look in zip(curves, cycle(LOOKS), strict=False):
             _normalised(ax, fit, kind, channel, label, look)
         ax.set_ylabel(above)
         ax.set_xlabel(below)
         _axes(ax)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
+    handles = {label: handle for ax in figure.axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 
@@ -43,7 +85,7 @@ def single_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) -> Fig
     figure = Figure(figsize=(6.5, 4.5), layout="constrained")
     figure.suptitle(title)
     ax = figure.subplots()
-    for (label, fit), look in zip(curves, LOOKS, strict=False):
+    for (label, fit), look in zip(curves, cycle(LOOKS), strict=False):
         _normalised(ax, fit, SLIP, FORCE, label, look)
     ax.set_ylabel(PANELS[0][2])
     ax.set_xlabel(PANELS[0][3])

@@ -83,11 +83,11 @@ def _law(fits: Sequence[ConditionFit], name: str, over: Sequence[str]) -> PowerL
     A = np.column_stack([np.ones(len(rows)), *(logs[w] for w in varied)])
     if np.linalg.matrix_rank(A) < A.shape[1]:
         return None
-    K = np.array([k.value for _, k in rows])
-    weight = K / np.array([float(k.se or np.inf) for _, k in rows])
-    z, *_ = np.linalg.lstsq(A * weight[:, None], np.log(K) * weight, rcond=None)
+    values = np.array([k.value for _, k in rows])
+    weight = values / np.array([float(k.se or np.inf) for _, k in rows])
+    z, *_ = np.linalg.lstsq(A * weight[:, None], np.log(values) * weight, rcond=None)
     spare = len(rows) - A.shape[1]
-    left = float(np.sum(((A @ z - np.log(K)) * weight) ** 2))
+    left = float(np.sum(((A @ z - np.log(values)) * weight) ** 2))
     S = np.linalg.inv((A * weight[:, None]).T @ (A * weight[:, None])) * max(1.0, left / spare if spare else 1.0)
     exponents = {w: estimate(float(z[i]), float(S[i, i]), ENOUGH) for i, w in enumerate(varied, start=1)}
     at = {w: REFERENCES[w] if w in varied else getattr(rows[0][0], w) for w in over}

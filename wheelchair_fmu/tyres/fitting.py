@@ -83,9 +83,13 @@ def straight(curve: Curve, columns: np.ndarray) -> Fit:
 
 
 def bent(curve: Curve, law: str, starts: Sequence[np.ndarray], prior: Prior, shape: Shape) -> Fit:
-    """The numbers of a nonlinear law nearest to the curve and to what was known beforehand, from the best of `starts`."""
+    """The numbers of a nonlinear law nearest to the curve and to what was known beforehand, from the best of `starts`.
+
+    The curve must know its noise.
+    """
     f = laws.at(law, curve.angle)
-    sigma = curve.sigma or max(float(curve.value.std()) * 1e-2, 1e-12)
+    sigma = curve.sigma
+    assert sigma is not None
 
     def residual(z: np.ndarray) -> np.ndarray:
         return np.r_[(f(shape.parameters(z)) - curve.value) / sigma, (z - prior.mean) / prior.deviation]

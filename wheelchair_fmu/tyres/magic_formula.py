@@ -70,11 +70,11 @@ def _prior(curve: Curve, slope: float, kind: str) -> Prior:
 def _told(fit: Fit, prior: Prior, sign: float) -> MagicFormula:
     names = ("K", "C", "D", "E")
     S = fit.covariance
-    v = dict.fromkeys(names) if S is None else dict(zip(names, np.diag(S), strict=True))
+    v = dict(zip(names, (None,) * 4 if S is None else np.diag(S), strict=True))
     z = dict(zip(names, fit.numbers, strict=True))
     of_B = np.array([1.0, -1.0, -1.0, 0.0])  # B = K / (C D)
     untold = tuple(n for n, d in zip(names[1:], prior.deviation[1:], strict=True)
-                   if v[n] is None or np.sqrt(v[n]) > TOLD * d)  # fmt: skip
+                   if (variance := v[n]) is None or variance > (TOLD * d) ** 2)  # fmt: skip
     return MagicFormula(
         B=positive(float(of_B @ fit.numbers), None if S is None else float(of_B @ S @ of_B), fit.freedom),
         C=positive(z["C"], v["C"], fit.freedom),

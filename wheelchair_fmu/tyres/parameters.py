@@ -6,7 +6,7 @@ written beside them. The effect `load_sensitivity` is switched on where the rig 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -83,7 +83,7 @@ def _law_values(fit: ConditionFit, law: str) -> dict[str, float]:
 def _linear(fit: ConditionFit) -> dict[str, float]:
     force, torque = fit.K(SLIP, FORCE), fit.K(SLIP, TORQUE)
     if force is None:
-        raise _unsupported(fit, "linear", ())
+        raise _unsupported(fit, "linear")
     values = {"tyre.C_lambda": force.value}
     return values if torque is None else {**values, "tyre.C_m_lambda": -torque.value}  # (15)
 
@@ -91,7 +91,7 @@ def _linear(fit: ConditionFit) -> dict[str, float]:
 def _dugoff(fit: ConditionFit) -> dict[str, float]:
     law = fit.dugoff
     if law is None:
-        raise _unsupported(fit, "Dugoff's", ("linear",))
+        raise _unsupported(fit, "Dugoff")
     values = {"tyre.C_lambda": law.C_lambda.value, "tyre.mu": law.mu.value}
     return values if law.c_p is None else {**values, "tyre.c_p": law.c_p.value}
 
@@ -99,7 +99,7 @@ def _dugoff(fit: ConditionFit) -> dict[str, float]:
 def _magic(fit: ConditionFit) -> dict[str, float]:
     force, torque = fit.magic(SLIP, FORCE), fit.magic(SLIP, TORQUE)
     if force is None:
-        raise _unsupported(fit, "the Magic Formula", ("linear",))
+        raise _unsupported(fit, "Magic Formula")
     values = {"tyre.C_lambda": force.K.value, "tyre.mu": force.D.value / fit.condition.load,
               "tyre.force.C": force.C.value, "tyre.force.E": force.E.value}  # fmt: skip
     if torque is not None:
@@ -113,10 +113,10 @@ def _camber(fit: ConditionFit) -> dict[str, float]:
     return {name: K.value for name, K in stiffness.items() if K is not None}
 
 
-def _unsupported(fit: ConditionFit, law: str, others: Sequence[str]) -> Failure:
+def _unsupported(fit: ConditionFit, law: str) -> Failure:
     why = f" ({fit.warnings[0]})" if fit.warnings else ""
-    cure = f"choose --law {others[0]}" if others else "measure more"
-    return Failure(f"{fit.condition}: the data do not support {law} law{why}; {cure}")
+    cure = "measure side slip, too" if fit.K(SLIP, FORCE) is None else "choose --law linear"
+    return Failure(f"{fit.condition}: the data do not support the {law} law{why}; {cure}")
 
 
 def _notes(fit: ConditionFit, law: str) -> Mapping[str, Any]:

@@ -54,5 +54,5 @@ def read(path: str | Path, axes: str = SAE) -> Measured:
 
 def _to_sae(rows: Rows) -> Rows:
     """Angles keep their sign (tan α = v_y/|v_x| with y left, −v_y/|v_x| with y right); force and torque change it."""
-    turned = {name: -rows.columns[name] for name in ("lateral_force", "yaw_torque") if name in rows.columns}
-    return replace(rows, columns={**rows.columns, **turned})
+    turned = ("lateral_force", "yaw_torque")
+    return replace(rows, columns={name: -v if name in turned else v for name, v in rows.columns.items()})

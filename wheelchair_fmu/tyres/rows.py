@@ -5,8 +5,9 @@ Every format ends here. Rows are in SI units (pressure in bar) and the paper's a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -58,19 +59,20 @@ class Rows:
             bound = BOUNDS[name]
             header = self.headers.get(name, name)
             gaps, beyond = np.isnan(values), (values < bound.low) | (values > bound.high)
-            yield from self._places(gaps, header, lambda i: ("the cell is empty", "write the value, or remove the row"))
-            yield from self._places(
-                beyond, header, lambda i, v=values, b=bound, n=name: (f"{_shown(n, v[i])} is not plausible", b.cure)
-            )
+            yield from self._listed(gaps, header, lambda _: "the cell is empty", "write the value, or remove the row")
+            yield from self._listed(beyond, header, partial(_implausible, name, values), bound.cure)
 
-    def _places(self, where: np.ndarray, header: str, what) -> Iterator[Fault]:  # type: ignore[no-untyped-def]
-        places = np.flatnonzero(where)
+    def _listed(self, where: np.ndarray, header: str, fact: Callable[[int], str], cure: str) -> Iterator[Fault]:
+        places = [int(i) for i in np.flatnonzero(where)]
         for i in places[:SHOWN]:
-            yield Fault(self.file, int(self.line[i]) or None, header, *what(i))
+            yield Fault(self.file, int(self.line[i]) or None, header, fact(i), cure)
         if len(places) > SHOWN:
-            _, cure = what(places[0])
-            yield Fault(self.file, int(self.line[places[SHOWN]]) or None, header,
-                        f"{len(places) - SHOWN} more cells like these", cure)  # fmt: skip
+            more = f"{len(places) - SHOWN} more cells like these"
+            yield Fault(self.file, int(self.line[places[SHOWN]]) or None, header, more, cure)
+
+
+def _implausible(name: str, values: np.ndarray, i: int) -> str:
+    return f"{_shown(name, float(values[i]))} is not plausible"
 
 
 def _shown(name: str, value: float) -> str:
@@ -89,9 +91,9 @@ def sweeps(rows: Rows) -> tuple[tuple[Sweep, ...], tuple[Fault, ...]]:
     settings = [_grouped(c[name]) for name in ("pressure", "load", "disc_speed")]
     found = []
     groups: dict[tuple[Condition, str], list[int]] = {}
-    for i in np.flatnonzero(slips ^ leans):
+    for i in map(int, np.flatnonzero(slips ^ leans)):
         condition = Condition(rows.tyre[i], *(float(s[i]) for s in settings))
-        groups.setdefault((condition, SLIP if slips[i] else CAMBER), []).append(int(i))
+        groups.setdefault((condition, SLIP if slips[i] else CAMBER), []).append(i)
     for (condition, kind), places in groups.items():
         angle = (slip if kind == SLIP else camber)[places]
         torque = c["yaw_torque"][places] if "yaw_torque" in c else np.full(len(places), np.nan)
