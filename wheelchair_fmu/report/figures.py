@@ -211,7 +211,7 @@ def missing_figure(words: str, unit: str, panels: Sequence[Mapping[str, Any]]) -
         ax.fill_between(knots[seen], (estimate - 1.96 * se)[seen], (estimate + 1.96 * se)[seen], color=BLUE, alpha=0.25, lw=0)
         ax.plot(knots[seen], estimate[seen], "o-", color=BLUE, ms=3)
         ax.set_xlabel(f"{panel['variable']} [{panel['unit']}]")
-        _tidy(ax)
+        tidy(ax)
     for ax in axes[len(panels):]:
         ax.set_axis_off()
     for row in axes[:: min(3, len(panels))]:
