@@ -1,0 +1,88 @@
+"""Evidence by the short way and the long way; offsets; robust variances against sums written out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.fit import fit, prior_of
+from wheelchair_fmu.loop.screen import _long_run_variance
+from wheelchair_fmu.loop.workshop import Workshop
+from wheelchair_fmu.model.variant import Variant
+
+NAMES = ("tyre.C_lambda", "resistance.f_r")
+BIAS = 0.02  # rad/s
+DRAG = "effect.rolling_resistance_asymmetry.D"
+CHAIR = Variant().with_values({DRAG: 1.6066})  # with what was hidden in the sample
+
+
+@pytest.fixture(scope="module")
+def short(sample):
+    return replace(sample, runs=(sample.fit[0], sample.fit[2], sample.holdout[2]))
+
+
+@pytest.fixture(scope="module")
+def biased(short):
+    """The same recordings with a gyro that is off by BIAS, which the campaign says it may be."""
+    runs = tuple(replace(r, channels={**r.channels, "yaw_rate": r.channels["yaw_rate"] + BIAS}) for r in short.runs)
+    return replace(short, runs=runs, nuisance=("yaw_rate",))
+
+
+def test_again_is_the_evidence_itself_where_nothing_moved(short):
+    bench = Bench(short, Variant())
+    here = bench.evidence(short.fit, {}, NAMES)
+    again = bench.again(here, {})
+    np.testing.assert_allclose(again.r, here.r, atol=1e-9)
+    assert again.rms == pytest.approx(here.rms, rel=1e-9)
+
+
+def test_again_follows_the_slopes_for_a_small_step(short):
+    bench = Bench(short, Variant())
+    here = bench.evidence(short.fit, {"resistance.f_r": 0.012}, NAMES)
+    step = 1e-5
+    moved = bench.again(here, {"resistance.f_r": 0.012 + step}).r - here.r
+    expected = -here.S[:, 1] * step
+    assert np.linalg.norm(moved - expected) < 0.02 * np.linalg.norm(expected)
+
+
+def test_a_fit_ends_where_the_slopes_see_nothing_more_to_gain(short):
+    names = (*NAMES, DRAG)  # which was hidden, so that no bound is met
+    bench = Bench(short, Variant().with_effects(["rolling_resistance_asymmetry"]))
+    found = fit(bench, names, {"tyre.C_lambda": 4500.0, "resistance.f_r": 0.012})
+    anew = bench.evidence(short.fit, found.values, names)
+    prior = prior_of(bench, names)
+    g = anew.S.T @ anew.r + prior.slopes @ prior.rows(np.array([found.values[n] for n in names]))
+    assert g @ np.linalg.solve(anew.S.T @ anew.S + prior.slopes**2, g) < 1.0  # −2 log likelihood
+
+
+def test_an_offset_that_the_campaign_names_is_estimated(biased):
+    bench = Bench(biased, CHAIR)
+    assert bench.offsets == {"offset.yaw_rate": "yaw_rate"}
+    found = fit(bench, (*NAMES, "offset.yaw_rate"), {})
+    assert found.values["offset.yaw_rate"] == pytest.approx(BIAS, abs=0.004)
+
+
+def test_an_effect_is_never_tested_beside_the_offset_that_it_is(biased):
+    search = Search(Workshop(biased, CHAIR, fixed=[DRAG]))
+    base, held, _, _ = search.calibrate()
+    assert "offset.yaw_rate" in base.names
+    screened = search.screen(base, (), ["gyro_bias", "gyro_scale"])
+    by = {s.score.effect: s for s in screened}
+    assert by["gyro_bias"].score.drop > 100 > by["gyro_scale"].score.drop
+    found = search.candidate(base, held, (), by["gyro_bias"], 2)
+    assert found is not None and "offset.yaw_rate" not in found.fit.names
+    assert found.estimate[0] == pytest.approx(BIAS, abs=0.004)
+
+
+def test_long_run_variance_is_bartletts_sum():
+    q = np.random.default_rng(3).normal(size=(200, 2)).cumsum(axis=0)
+    lags = 7
+    total = q.T @ q
+    for lag in range(1, lags + 1):
+        c = q[lag:].T @ q[:-lag]
+        total = total + (1 - lag / (lags + 1)) * (c + c.T)
+    np.testing.assert_allclose(_long_run_variance(q, lags), total, rtol=1e-10)

@@ -1,0 +1,59 @@
+"""Adding goes on; what is proposed can be added; an experiment that was proposed breaks the tie."""
+
+from __future__ import annotations
+
+import json
+
+from typer.testing import CliRunner
+
+from benchmarks.independent.campaigns import make
+from benchmarks.independent.hidden import usual
+from benchmarks.independent.manoeuvres import STRAIGHT, Run, coast
+from tests.loop.conftest import measured
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.handling.experiments import experiments
+from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.model.effects import load
+from wheelchair_fmu.model.variant import read_variant
+
+FAST = Run("fast-coast", "coast-down", "fit", 2.5, 14.0, coast(0.0, 1.0))
+
+
+def run(*words: object):
+    return CliRunner().invoke(app, [str(w) for w in words], catch_exceptions=False)
+
+
+def test_improve_finds_adds_and_then_finds_nothing(tmp_path):
+    folder = make(tmp_path / "drag", {"aerodynamic_drag": {"k": 0.8}}, manoeuvres=[*STRAIGHT, FAST], seed=21)
+    better = tmp_path / "better.toml"
+    done = run("improve", folder, "-o", better, "--json", tmp_path / "last.json")
+    assert done.exit_code == 0, done.output
+    last = json.loads((tmp_path / "last.json").read_text())
+    assert "aerodynamic_drag" in last["effects"]
+    assert last["ladder"][1]["heldout"] > last["ladder"][-1]["heldout"]
+    chair = read_variant(better)
+    assert 0.5 < chair.values["effect.aerodynamic_drag.k"] < 1.1
+    again = diagnose(read(folder), chair)
+    assert again.already == ("aerodynamic_drag",) and again.effects == ()
+    assert again.verdict in ("adequate", "cannot_see", "small")
+
+
+def test_the_proposed_run_breaks_the_tie(tmp_path):
+    """Two drags look alike at one speed; a coast-down from 2.5 m/s, simulated by another author's chair, decides."""
+    hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 2.0)}
+    tied = diagnose(read(make(tmp_path / "one", hidden, manoeuvres="straight", seed=5)), experiments=experiments())
+    assert tied.verdict == "tie" and tied.next_experiment is not None
+    assert "coast-down from 2.5" in tied.next_experiment["manoeuvre"]
+    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, FAST], seed=5)))
+    assert decided.verdict == "missing" and decided.effects[0] == "aerodynamic_drag"
+
+
+def test_improve_adds_the_term_it_proposes(tmp_path):
+    campaign = measured("open-09-outside")
+    better = tmp_path / "better.toml"
+    done = run("improve", campaign.path if campaign.path.is_dir() else campaign.path.parent, "-o", better)
+    assert done.exit_code == 0, done.output
+    chair = read_variant(better, load(tmp_path / "better-effects"))
+    assert chair.effects == ("proposed_m_w_spring",)
+    assert "nothing more is missing" in done.stdout
