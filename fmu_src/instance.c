@@ -51,7 +51,9 @@ static label valued(const wc_variable *v, double value) {
 
 /* ---- values ---- */
 
-const wc_kernel *wc_kernel_of(const wc_instance *c) { return model->kernels[(int)c->now.p[model->law] - 1]; }
+static int law_of(const wc_instance *c) { return model->law < 0 ? 0 : (int)c->now.p[model->law] - 1; }
+
+const wc_kernel *wc_kernel_of(const wc_instance *c) { return model->kernels[law_of(c)]; }
 
 void wc_reset(wc_instance *c) {
     memset(&c->now, 0, sizeof c->now);
@@ -196,7 +198,7 @@ wc_result wc_settle(wc_instance *c, const char *function) {
 
 /* Says, once, where the model has left the range in which it holds. */
 static void watch(wc_instance *c) {
-    const int law = (int)c->now.p[model->law] - 1;
+    const int law = law_of(c);
     for (int i = 0; i < model->watches; i++) {
         const wc_watch *m = &model->watch[i];
         if (c->warned >> i & 1) continue;

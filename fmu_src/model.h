@@ -47,7 +47,7 @@ typedef struct {
     int variables;
     const wc_variable *variable;
     const wc_kernel *const *kernels; /* of the same size; parameter `law` (from 1, within its bounds) chooses */
-    int law;
+    int law;                         /* < 0: there is one kernel, and nothing to choose */
     wc_function start_forward; /* (p, w, dp, dw) → dx at the start */
     int jumps;
     const wc_jump *jump;

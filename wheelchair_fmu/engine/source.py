@@ -40,7 +40,7 @@ def c_source(kernel: Kernel, prefix: str) -> str:
     nominal = [s.nominal for s in model.states for _ in s.names]
     return text + RECORD.format(
         prefix=prefix,
-        nominal=", ".join(map(repr, nominal)),
+        nominal=", ".join(map(repr, nominal)) or "0",
         states=model.x.numel(),
         inputs=model.w.numel(),
         parameters=model.p.numel(),

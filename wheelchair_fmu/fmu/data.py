@@ -9,10 +9,7 @@ from tempfile import TemporaryDirectory
 
 import casadi as cs
 
-from ..engine.kernel import kernel
-from ..engine.source import c_source
 from ..errors import BuildError
-from ..model.variant import LAWS
 from ..model.wheelchair import Model
 from .variables import GRID, TOLERANCE, Interface, Variable
 
@@ -22,7 +19,7 @@ LIMITS = {"parameters": 256, "outputs": 128, "states": 32, "inputs": 32}  # as i
 def generate(face: Interface) -> dict[str, str]:
     """C files by name, all but the tables, which need the token that depends on these."""
     _refuse_too_large(face.model)
-    files = {f"{law}.c": c_source(kernel(model), law) for law, model in face.models.items()}
+    files = {f"{law}.c": face.c_source(law) for law in face.models}
     return {**files, "start_forward.c": _start_forward(face.model)}
 
 
@@ -46,7 +43,8 @@ def _start_forward(m: Model) -> str:
 
 def tables(face: Interface, name: str, token: str) -> str:
     """model_data.c: `const wc_model wc_the_model`."""
-    kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in LAWS["tyre"])
+    kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in face.choices)
+    chooser = face.by_name[face.chooser].index if face.chooser else -1
     return "\n".join([
         '#include "model.h"',
         "",
@@ -68,7 +66,7 @@ def tables(face: Interface, name: str, token: str) -> str:
         "",
         "const wc_model wc_the_model = {",
         f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
-        f"    {face.by_name['tyre.law'].index}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
+        f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
         f"watches, {_number(TOLERANCE)}, {_number(GRID)}}};",
         "",
     ])  # fmt: skip
@@ -80,7 +78,8 @@ def _choices(v: Variable) -> str:
 
 
 def _array(kind: str, name: str, rows: Iterable[str]) -> list[str]:
-    return [f"static const {kind} {name}[] = {{", *(f"    {row}," for row in rows), "};"]
+    # Standard C knows no empty array: one row of zeros, which the count beside it leaves out.
+    return [f"static const {kind} {name}[] = {{", *(f"    {row}," for row in list(rows) or ["{0}"]), "};"]
 
 
 def _variable(v: Variable) -> str:

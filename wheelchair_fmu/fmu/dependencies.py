@@ -26,8 +26,10 @@ def outputs(face: Interface) -> Known:
 def initial(face: Interface) -> Known:
     """Which inputs and parameters the outputs at the start depend on."""
     on_p, on_w = (np.logical_or.reduce(parts) for parts in zip(*map(_at_start, face.models.values()), strict=True))
-    tyre = [v.index for v in face.of("parameter") if v.name.startswith("tyre.")]
-    on_p[:, face.by_name["tyre.law"].index] |= on_p[:, tyre].any(axis=1)
+    if face.chooser:
+        group = face.chooser.rpartition(".")[0] + "."  # what the chosen model reads, the choice acts on
+        chosen = [v.index for v in face.of("parameter") if v.name.startswith(group)]
+        on_p[:, face.by_name[face.chooser].index] |= on_p[:, chosen].any(axis=1)
     known = {}
     for o in face.of("output"):
         rows = [*(v for v in face.of("parameter") if on_p[o.index, v.index]),

@@ -11,7 +11,6 @@ from ..quantities import Unit
 from . import dependencies
 from .variables import STEP, STOP, TOLERANCE, Interface, Variable
 
-TITLE = "a manual wheelchair on real tyres, after Doria et al."
 AUTHOR = "the wheelchair-fmu authors"
 SHOWN_IN = {"rad": "deg", "rad/s": "deg/s", "m/s": "km/h"}  # what people read instead of the SI unit
 PASCALS = {"bar": 1e5}  # the one unit here that is not coherent
@@ -33,11 +32,12 @@ PYTHON = {"needsExecutionTool": "true", "canHandleVariableCommunicationStepSize"
 
 def description(face: Interface, name: str, token: str, abilities: dict[str, str], sources: list[str]) -> bytes:
     """The XML text. `abilities` are the flavour's; `sources` the C files to compile, where the archive carries some."""
-    root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=name, guid=token, description=TITLE,
+    root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=name, guid=token, description=face.title,
                       author=AUTHOR, version=__version__, license="MIT", generationTool=f"wheelchair-fmu {__version__}",
                       variableNamingConvention="structured", numberOfEventIndicators="0")  # fmt: skip
     root.append(co_simulation(name, abilities, sources))
-    root.extend([units(face), types(face), log_categories(), experiment(), variables(face), structure(face)])
+    chosen = [types(face)] if any(v.choices for v in face.variables) else []  # the schema knows no empty list of types
+    root.extend([units(face), *chosen, log_categories(), experiment(), variables(face), structure(face)])
     return to_bytes(root)
 
 

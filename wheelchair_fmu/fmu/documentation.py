@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from html import escape
 from math import isfinite
-from pathlib import Path
 from string import Template
 
 from ..model import frames
 from .describe import number
-from .variables import Interface, Variable
+from .variables import SOURCE, Interface, Variable
 
-SOURCE = Path(__file__).parents[2] / "fmu_src"
+LICENCE = SOURCE / "documentation" / "license.txt"
 
 
 def files(face: Interface) -> dict[str, bytes]:
     """Documentation, licence and icon by their path in the archive."""
-    page = (SOURCE / "documentation" / "index.html").read_text(encoding="utf-8")
+    page = (face.pages / "index.html").read_text(encoding="utf-8")
     choice = face.variant.choice
     filled = Template(page).substitute(
         frames=escape((frames.__doc__ or "").split("::", 1)[1].strip("\n")),
@@ -29,8 +28,8 @@ def files(face: Interface) -> dict[str, bytes]:
     )
     return {
         "documentation/index.html": filled.encode(),
-        "documentation/licenses/license.txt": (SOURCE / "documentation" / "license.txt").read_bytes(),
-        "model.png": (SOURCE / "model.png").read_bytes(),
+        "documentation/licenses/license.txt": LICENCE.read_bytes(),
+        "model.png": (face.pages / "model.png").read_bytes(),
     }
 
 

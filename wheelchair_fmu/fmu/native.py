@@ -14,7 +14,6 @@ from ..errors import BuildError
 from . import data, describe, documentation
 from .variables import Interface
 
-NAME = "Wheelchair"
 HANDWRITTEN = ("fmi2.c", "instance.c", "instance.h", "model.h")
 PLATFORMS = {"win32": "win64", "darwin": "darwin64"}  # else linux64
 PLATFORM = PLATFORMS.get(sys.platform, "linux64")
@@ -41,7 +40,7 @@ def sources(face: Interface) -> tuple[dict[str, str], str]:
     """All C files by name, and the token in them."""
     texts = {**handwritten(), **data.generate(face)}
     token = token_of(face, texts)
-    return {**texts, "model_data.c": data.tables(face, NAME, token)}, token
+    return {**texts, "model_data.c": data.tables(face, face.name, token)}, token
 
 
 def headers() -> Path:
@@ -67,11 +66,11 @@ def units_of(texts: dict[str, str]) -> list[str]:
 def archive(face: Interface) -> dict[str, bytes]:
     """Everything in the archive, by path."""
     texts, token = sources(face)
-    library = f"binaries/{PLATFORM}/{NAME}{compiler.SUFFIX}"
+    library = f"binaries/{PLATFORM}/{face.name}{compiler.SUFFIX}"
     with TemporaryDirectory() as folder:
-        binary = compile_library(texts, Path(folder) / f"{NAME}{compiler.SUFFIX}").read_bytes()
+        binary = compile_library(texts, Path(folder) / f"{face.name}{compiler.SUFFIX}").read_bytes()
     return {
-        "modelDescription.xml": describe.description(face, NAME, token, describe.NATIVE, units_of(texts)),
+        "modelDescription.xml": describe.description(face, face.name, token, describe.NATIVE, units_of(texts)),
         library: binary,
         **{f"sources/{name}": text.encode() for name, text in texts.items()},
         **documentation.files(face),

@@ -21,7 +21,7 @@ def write(target: Path, files: Files, faults: Callable[[Path], list[str]]) -> Pa
         try:
             _zip(beside, files)
             if found := faults(beside):
-                raise BuildError(f"{target}: would not be a valid FMU: {'; '.join(found)}")
+                raise BuildError(f"{target}: would not be valid: {'; '.join(found)}")
             beside.replace(target)
         finally:
             beside.unlink(missing_ok=True)
@@ -31,8 +31,8 @@ def write(target: Path, files: Files, faults: Callable[[Path], list[str]]) -> Pa
 
 
 def _zip(path: Path, files: Files) -> None:
-    # The description comes first, as readers expect; the rest in alphabetical order.
-    order = sorted(files, key=lambda name: (name != "modelDescription.xml", name))
+    # What describes an archive comes first, as readers expect; the rest in alphabetical order.
+    order = sorted(files, key=lambda name: (name not in ("modelDescription.xml", "SystemStructure.ssd"), name))
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in order:
             entry = zipfile.ZipInfo(name, EPOCH)

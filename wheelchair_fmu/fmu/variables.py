@@ -6,16 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
+from pathlib import Path
 
 import casadi as cs
 
+from ..engine.kernel import kernel
+from ..engine.source import c_source
 from ..errors import BuildError
 from ..model.variant import LAWS, Variant
 from ..model.wheelchair import Model
-from ..quantities import Output, Parameter, S, Unit
+from ..quantities import Input, Output, Parameter, S, Unit
 
 TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
 GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
+SOURCE = Path(__file__).parents[2] / "fmu_src"
 STOP, STEP = 10.0, 0.01  # s, of the default experiment
 HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a state follows at once: in which mode, which
 
@@ -74,6 +78,10 @@ class Interface:
     variant: Variant
     models: Mapping[str, Model]
     variables: tuple[Variable, ...]
+    name: str = "Wheelchair"
+    title: str = "a manual wheelchair on real tyres, after Doria et al."
+    pages: Path = SOURCE / "documentation"  # with index.html, to be filled in, and the icon
+    chooser: str = "tyre.law"  # the parameter that chooses among the models; "" where there is but one
 
     @property
     def model(self) -> Model:
@@ -85,6 +93,15 @@ class Interface:
 
     def of(self, kind: str) -> tuple[Variable, ...]:
         return tuple(v for v in self.variables if v.kind == kind)
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """What the chooser can be, in the order of its numbers; not all have a model in every archive."""
+        return self.by_name[self.chooser].choices if self.chooser else tuple(self.models)
+
+    def c_source(self, law: str) -> str:
+        """C text that defines `<law>_kernel`."""
+        return c_source(kernel(self.models[law]), law)
 
     @property
     def jumps(self) -> tuple[Jump, ...]:
@@ -120,15 +137,14 @@ def interface(variant: Variant) -> Interface:
     only_start = _only_at_the_start(models)
     table = [Variable(0, "time", "simulation time", S, "time")]
     for i, (p, start) in enumerate(zip(model.parameters, starts, strict=True)):
-        variable = _parameter(len(table), i, p, float(start), p.fixed or (i in only_start and p.name not in HELD))
+        variable = parameter_variable(len(table), i, p, float(start), p.fixed or (i in only_start and p.name not in HELD))
         if p.name == "tyre.law":
             variable = replace(variable, lower=1 + p.choices.index(laws[0]), upper=1 + p.choices.index(laws[-1]))
         table.append(variable)
     for i, w in enumerate(model.inputs):
-        table.append(Variable(len(table), w.name, w.meaning, w.unit, "input", "Real", i, w.start, w.lower, w.upper,
-                              w.nominal))  # fmt: skip
+        table.append(input_variable(len(table), i, w))
     for record, i in zip(model.outputs, range(model.y.numel()), strict=True):
-        table.append(_output(len(table), i, record))
+        table.append(output_variable(len(table), i, record))
     return Interface(variant, models, tuple(table))
 
 
@@ -139,7 +155,7 @@ def _without_delays(variant: Variant) -> Variant:
     return replace(variant, effects=tuple(e for e in variant.effects if e not in late), values=values)
 
 
-def _parameter(reference: int, index: int, p: Parameter, start: float, fixed: bool) -> Variable:
+def parameter_variable(reference: int, index: int, p: Parameter, start: float, fixed: bool) -> Variable:
     kind = "Enumeration" if p.choices else "Real"
     lower, upper = (1, len(p.choices)) if p.choices else (p.lower, p.upper)
     assert p.nominal is not None
@@ -147,7 +163,11 @@ def _parameter(reference: int, index: int, p: Parameter, start: float, fixed: bo
                     fixed, p.choices, p.source)  # fmt: skip
 
 
-def _output(reference: int, index: int, o: Output) -> Variable:
+def input_variable(reference: int, index: int, w: Input) -> Variable:
+    return Variable(reference, w.name, w.meaning, w.unit, "input", "Real", index, w.start, w.lower, w.upper, w.nominal)
+
+
+def output_variable(reference: int, index: int, o: Output) -> Variable:
     kind = "Boolean" if o.boolean else "Real"
     return Variable(reference, o.name, o.meaning, o.unit, "output", kind, index, None, o.lower, o.upper, o.nominal)
 
