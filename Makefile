@@ -21,8 +21,8 @@ setup: $(VENV)/.ready
 $(VENV)/.ready: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python %d.%d is too old: give 3.11 or newer, as in make setup PYTHON=python3.12" % sys.version_info[:2])'
 	$(PYTHON) -m venv $(VENV)
-	@extras=dev; \
-	if [ -z "$$CC" ] && ! { command -v cc || command -v gcc || command -v clang; } >/dev/null; then extras=dev,zig; fi; \
+	@extras=dev,ssp; \
+	if [ -z "$$CC" ] && ! { command -v cc || command -v gcc || command -v clang; } >/dev/null; then extras=dev,ssp,zig; fi; \
 	echo "installing the package with [$$extras]"; \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[$$extras]"
 	@touch $@

@@ -6,7 +6,8 @@
     ├── UsageError              the question is wrong (exit code 2): unknown option, id or name
     └── Failure                 the data or the model fails what was asked (exit code 1)
         ├── FileError           faults in files; carries all of them
-        │   └── CampaignError   those of a campaign
+        │   ├── CampaignError   those of a campaign
+        │   └── SystemStructureError  those of an .ssp
         ├── ModelError          a model that cannot be assembled
         ├── SimulationError     a simulation that cannot go on
         └── BuildError          no compiler, a failing compile, an archive that cannot be written
@@ -47,6 +48,10 @@ class FileError(Failure):
 
 class CampaignError(FileError):
     """Faults in a campaign's files."""
+
+
+class SystemStructureError(FileError):
+    """Faults in an .ssp."""
 
 
 class ModelError(Failure):

@@ -1,0 +1,116 @@
+"""The sources in the folder `ssp`: systems, parameter sets and the interface, as TOML."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ...errors import Failure, UsageError, unknown
+from ...fmu.parameter_set import ParameterSet, from_values, from_variant, reference
+from ...model.variant import number, read_variant
+from ...quantities import Parameter
+from ...surroundings import floor, pusher
+
+FOLDER = Path(__file__).parents[3] / "ssp"
+RECORDS: Mapping[str, tuple[Parameter, ...]] = {"Pusher": pusher.PARAMETERS, "Floor": floor.PARAMETERS}
+VERSIONS = {"1": "1.0", "2": "2.0"}
+COMPONENTS = ("Chair", "Pusher", "Floor")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A system: what it is, how long it runs [s], and values by component."""
+
+    name: str
+    title: str
+    stop: float
+    step: float
+    values: Mapping[str, Mapping[str, float | str]]
+
+
+def systems() -> tuple[str, ...]:
+    return _names("systems")
+
+
+def parameter_sets() -> tuple[str, ...]:
+    return ("reference", *_names("parameters"))
+
+
+def system(name: str) -> Source:
+    """A system by name, or in a TOML file. Raises UsageError and Failure that name the fault."""
+    path = _path(name, "systems", systems(), "system")
+    table = _load(path)
+    if lost := [key for key in ("title", "stop", "step") if key not in table]:
+        raise Failure(f"{path}: no {' and no '.join(lost)}; write title = \"…\", stop and step in seconds")
+    for key in table:
+        if key not in ("title", "stop", "step", *COMPONENTS):
+            raise unknown(f"component in {path}", key, COMPONENTS)
+    for key in ("stop", "step"):
+        if not isinstance(table[key], int | float) or not 0 < table[key] <= 1e6:
+            raise Failure(f"{path}: {key} = {table[key]!r} is no time; give seconds above 0")
+    values = {c: dict(table.get(c, {})) for c in COMPONENTS}
+    for component, records in RECORDS.items():
+        known = {p.name: p for p in records}
+        for parameter, value in values[component].items():
+            try:
+                number(known, parameter, value)
+            except UsageError as error:
+                raise Failure(f"{path} [{component}]: {error}") from None
+    return Source(path.stem, str(table["title"]), float(table["stop"]), float(table["step"]), values)
+
+
+def parameter_set(name: str) -> tuple[str, ParameterSet]:
+    """The component that a set is for, and the set: by name, or in a TOML file as `wheelchair add` writes it."""
+    if name == "reference":
+        return "Chair", reference()
+    path = _path(name, "parameters", parameter_sets(), "parameter set")
+    table = _load(path)
+    component, title = str(table.get("for", "Chair")), str(table.get("title", ""))
+    if component == "Chair":
+        return component, replace(from_variant(read_variant(path), path.stem), description=title)
+    if component not in RECORDS:
+        raise unknown(f"component in {path}", component, COMPONENTS)
+    known = {p.name: p for p in RECORDS[component]}
+    try:
+        for parameter, value in table.get("values", {}).items():
+            number(known, parameter, value)
+    except UsageError as error:
+        raise Failure(f"{path} [values]: {error}") from None
+    return component, from_values(path.stem, table.get("values", {}), known.values(), title)
+
+
+def version(short: str) -> str:
+    """A version of the standard as its files write it. Raises UsageError for one that there is not."""
+    if short not in VERSIONS:
+        raise UsageError(f"there is no SSP {short}; choose {' or '.join(VERSIONS)}")
+    return VERSIONS[short]
+
+
+def interface() -> Mapping[str, Mapping[str, Any]]:
+    return _load(FOLDER / "interface.toml")
+
+
+def _names(folder: str) -> tuple[str, ...]:
+    return tuple(sorted(f.stem for f in (FOLDER / folder).glob("*.toml")))
+
+
+def _path(name: str, folder: str, known: Iterable[str], kind: str) -> Path:
+    if name.endswith(".toml"):
+        return Path(name)
+    if not (FOLDER / folder).is_dir():
+        raise Failure(f"{FOLDER}: no such folder; build from a checkout, which has it")
+    if name not in known:
+        raise unknown(kind, name, known)
+    return FOLDER / folder / f"{name}.toml"
+
+
+def _load(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise Failure(f"{path}: no such file; give a TOML file that is there") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
