@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from . import add, check, compare, diagnose, effects, improve, linearize, paper, simulate, steady, tyre
+from . import add, check, compare, diagnose, effects, improve, linearize, paper, simulate, ssp, steady, tyre
 from .group import Group
 
 # In the order of --help; each module has `register(app)`.
-COMMANDS = (simulate, linearize, steady, paper, tyre, check, compare, diagnose, add, improve, effects)
+COMMANDS = (simulate, linearize, steady, paper, tyre, check, compare, diagnose, add, improve, effects, ssp)
 
 app = typer.Typer(cls=Group, add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False,
                   rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip

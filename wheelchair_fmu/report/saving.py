@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.figure import Figure
+from PIL import Image
 
 STEADY: Any = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "path"}
+COLOURS = 32  # of a film
 UNDATED = {".svg": {"Date": None, "Creator": None}, ".png": {"Software": None}}
 
 
@@ -16,3 +20,16 @@ def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG or SVG, by the path's ending."""
     with matplotlib.rc_context(STEADY):
         figure.savefig(path, dpi=150, metadata=UNDATED[path.suffix])
+
+
+def save_film(frames: Iterable[np.ndarray], path: Path, pause: float) -> None:
+    """Write frames (height, width, 3) of bytes as a GIF that plays for ever, with `pause` [s] from one to the next.
+
+    All frames share the first one's colours, so that only what moves is stored again.
+    """
+    pictures: list[Image.Image] = []
+    for frame in frames:
+        picture = Image.fromarray(frame)
+        pictures.append(picture.quantize(COLOURS, dither=Image.Dither.NONE) if not pictures else
+                        picture.quantize(palette=pictures[0], dither=Image.Dither.NONE))  # fmt: skip
+    pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=round(1000 * pause), loop=0, optimize=True)
