@@ -10,7 +10,7 @@ from scipy import stats
 
 from ..errors import SimulationError
 from .evidence import Bench, Evidence
-from .fit import Fit, fit, prior_of, start_value
+from .fit import Fit, Prior, fit, prior_of, start_value
 from .noise import colour_of
 from .screen import Score, projector, score
 from .statistics import alike, correlation_time, held_out_gain, sandwich, seen_directions
@@ -26,6 +26,7 @@ HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less i
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
+LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
@@ -51,6 +52,7 @@ class Candidate:
     estimate: np.ndarray
     se: np.ndarray
     p: float
+    falls: bool  # does the RMS over all fitted runs not rise?
     visible: float  # largest fall of a channel's RMS in a run
     gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
     heldout: Evidence | None
@@ -61,7 +63,8 @@ class Candidate:
     def found(self) -> bool:
         """There, large enough to matter, visible, and it predicts runs it has not seen."""
         predicts = self.gain is None or self.gain[1] > 0 or (self.p < PLAIN and self.gain[2] > 0)
-        return self.lawful and self.p < SIGNIFICANT and not self.small and self.visible > VISIBLE and predicts
+        shows = self.visible > VISIBLE and self.falls
+        return self.lawful and self.p < SIGNIFICANT and not self.small and shows and predicts
 
 
 @dataclass(frozen=True)
@@ -85,8 +88,9 @@ class Screened:
 
     @property
     def negligible(self) -> bool:
-        """Is it surely a small part of its smallest interesting size, whatever a refit would say?"""
-        return bool(np.all(np.abs(self.score.estimate) + 3 * self.score.se < NEGLIGIBLE * self.delta))
+        """Does it gain little, being surely a small part of its smallest interesting size?"""
+        far = np.abs(self.score.estimate) + 3 * self.score.se
+        return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
 
 class Search:
@@ -165,6 +169,7 @@ class Search:
         except SimulationError:
             return []
         off = projector(evidence.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
+        unbent = self._unbent(bench, base, names)
         found = []
         for effect in here:
             if self._is_an_offset(effect, evidence):
@@ -173,11 +178,25 @@ class Search:
                 continue
             own = [evidence.by.index(n) for n in w.parameters(effect)]
             tangent = self._score(evidence, off, effect, evidence.S[:, own])
-            secants = [self._score(evidence, off, effect, S) for S in self._secants(bench, base, evidence, effect)]
+            columns = [names.index(n) for n in w.parameters(effect)]
+            others = [*self._secants(bench, base, evidence, effect), *(S[:, columns] for S in unbent)]
+            secants = [self._score(evidence, off, effect, S) for S in others]
             best = max(secants, key=lambda s: s.drop, default=tangent)
             delta = np.array([self.records[n].smallest_interesting for n in w.parameters(effect)])
             found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence, delta))
         return found
+
+    def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
+        """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
+        them: what it bent to imitate an effect may be what the effect works through."""
+        straight, off = _straight(prior_of(bench, base.names), np.array([base.values[n] for n in base.names]))
+        if off <= BENT:
+            return []
+        try:
+            values = dict(zip(base.names, map(float, straight), strict=True))
+            return [bench.evidence(self.workshop.campaign.fit, values, names).S]
+        except SimulationError:
+            return []
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
         """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
@@ -251,12 +270,9 @@ class Search:
         several sizes: the expected change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
-        prior, k = prior_of(bench, names), len(base.names)
         calibrated = np.array([base.values[n] for n in base.names])
-        bent = np.abs(calibrated - prior.mean[:k]) / prior.sd[:k]
-        straight = np.where(np.isfinite(bent), prior.mean[:k], calibrated)
-        # a fit without the effect may have bent what it could to imitate it
-        calibrations = [calibrated, straight] if bent.max(initial=0) > BENT else [calibrated]
+        straight, off = _straight(prior_of(bench, base.names), calibrated)
+        calibrations = [calibrated, straight] if off > BENT else [calibrated]
         linear = self._linear(s.score.effect)
         if linear and len(calibrations) == 1:
             return [({n: base.values.get(n, 0.0) for n in names}, s.evidence.only(names))]
@@ -303,6 +319,7 @@ class Search:
             estimate=estimate,
             se=np.sqrt(np.maximum(np.diag(covariance), 0)),
             p=min(1.0, tests * p),
+            falls=found.evidence.rms < 1.002 * base.evidence.rms,
             visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
             gain=held_out_gain(base_held, held) if held is not None else None,
             heldout=held,
@@ -342,6 +359,12 @@ class Search:
         held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
+
+
+def _straight(prior: Prior, calibrated: np.ndarray) -> tuple[np.ndarray, float]:
+    """Calibrated values (k,) as the campaign has them, and by how many standard deviations they differ from that at most."""
+    off = np.where(np.isfinite(prior.sd), np.abs(calibrated - prior.mean) / prior.sd, 0.0)
+    return np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, calibrated), float(off.max(initial=0))
 
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step], list[str]]:
