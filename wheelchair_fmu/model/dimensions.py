@@ -1,0 +1,113 @@
+"""Units of an effect that is written as an expression: what unit its parameter q must have, or why none fits.
+
+The law is evaluated at random places, then again with the units of mass, length and time made smaller, one
+after the other. Where it is a product of powers of units, its value grows by a power of the factor, the
+same at every place; what is missing to the quantity it acts on is the unit of q.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from inspect import signature
+from math import log
+from typing import Any
+
+import casadi as cs
+import numpy as np
+
+from ..errors import ModelError, UsageError, unknown
+from ..quantities import ONE, Parameter, Quantity, Unit
+from . import expression
+from .stage import Effect, adds
+from .wheelchair import Choice, Model, assemble
+
+FACTOR = 1.7  # by which a unit is made smaller
+PLACES = 4  # random places, at which all must agree
+NEAR = 1e-6  # of a whole exponent
+SYMBOLS = ("kg", "m", "s")
+
+
+def vocabulary(model: Model) -> dict[str, Quantity]:
+    """Every quantity that an expression may name, by its symbol."""
+    records = (*model.parameters, *model.inputs, *model.states, *model.records.values())
+    return {r.symbol: r for r in records if r.symbol in model.quantities}
+
+
+def targets(model: Model) -> dict[str, Quantity]:
+    """Quantities that an effect may act on: those that the stages define."""
+    return dict(model.records)
+
+
+def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
+    """The unit that q must have in `quantity += text`.
+
+    Raises UsageError, with the reason in a sentence, where the expression is none, does not depend on q in proportion,
+    reads what is not known at `to`, or adds unlike quantities.
+    """
+    law, model = expression.law(text), assemble(choice)
+    if to not in model.records:
+        raise unknown("quantity to act on", to, targets(model))
+    _refuse_unreadable(text, to, law, choice)
+    here, there = _exponents(law, vocabulary(model)), model.records[to].unit
+    wanted = [have - own for have, own in zip((there.kg, there.m, there.s), here, strict=True)]
+    return _named(*wanted)
+
+
+def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice) -> None:
+    """An expression must assemble: it reads only what is known, and has the shape of what it acts on."""
+    if "q" not in signature(law).parameters:
+        raise UsageError(f"{text!r} has no q in it; q is the size that is estimated, as in -q * u")
+    q = Parameter("q", ONE, off=0.0, smallest_interesting=1.0)
+    try:
+        assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
+    except ModelError as error:
+        raise UsageError(str(error).partition("; known here")[0].replace("effect typed", "the expression")) from None
+    except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
+        raise UsageError(f"{text!r} cannot be evaluated: {str(error).splitlines()[-1]}") from None
+
+
+def _exponents(law: Callable[..., Any], known: Mapping[str, Quantity]) -> tuple[int, int, int]:
+    rng = np.random.default_rng(5)
+    names = [n for n in signature(law).parameters if n != "q"]
+    found = []
+    for _ in range(PLACES):
+        place = {n: rng.uniform(0.3, 1.3, known[n].size) for n in names}
+        whole = _value(law, place, 1.0)
+        if np.any(abs(_value(law, place, 2.0) - 2 * whole) > NEAR * abs(whole)):
+            raise UsageError("q must be a factor of the whole: write q times something")
+        found.append([_power(law, place, known, whole, **{unit: FACTOR}) for unit in SYMBOLS])
+    spread = np.array(found)
+    whole_numbers = np.round(spread[0])
+    if not np.all(abs(spread - whole_numbers) < NEAR):
+        raise UsageError("the units do not fit: unlike quantities are added, or a plain number stands where a quantity "
+                         "with a unit belongs (small numbers with units: v_eps [m/s])")  # fmt: skip
+    kg, m, s = (int(e) for e in whole_numbers)
+    return kg, m, s
+
+
+def _power(law: Callable[..., Any], place: Mapping[str, np.ndarray], known: Mapping[str, Quantity], whole: np.ndarray,
+           kg: float = 1.0, m: float = 1.0, s: float = 1.0) -> float:  # fmt: skip
+    scaled = _value(law, {n: v * known[n].unit.scale(kg, m, s) for n, v in place.items()}, 1.0)
+    i = int(np.argmax(abs(whole)))
+    ratio = scaled[i] / whole[i] if whole[i] else np.nan
+    return log(ratio) / log(FACTOR) if ratio > 0 else np.nan
+
+
+def _value(law: Callable[..., Any], place: Mapping[str, np.ndarray], q: float) -> np.ndarray:
+    return np.array(cs.DM(law(**{n: cs.DM(v) for n, v in place.items()}, **{"q": q}))).ravel()
+
+
+def _named(kg: int, m: int, s: int) -> Unit:
+    """The project's own record of a unit, or a name made of its exponents."""
+    from .. import quantities
+
+    own = [u for u in vars(quantities).values() if isinstance(u, Unit) and (u.kg, u.m, u.s) == (kg, m, s) and u.name != "bar"]
+    if own:
+        return min(own, key=lambda u: abs(u.rad))
+    above = [_written(n, e) for n, e in zip(SYMBOLS, (kg, m, s), strict=True) if e > 0]
+    below = [_written(n, -e) for n, e in zip(SYMBOLS, (kg, m, s), strict=True) if e < 0]
+    return Unit(".".join(above) or "1" if not below else f"{'.'.join(above) or '1'}/{'.'.join(below)}", kg=kg, m=m, s=s)
+
+
+def _written(name: str, exponent: int) -> str:
+    return name if exponent == 1 else f"{name}{exponent}"
