@@ -3,13 +3,14 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo test lint bench bench-diagnosis clean
+.PHONY: help setup demo test test-browser lint bench bench-diagnosis clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make setup   a virtual environment in $(VENV) with everything to run and test"
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    all tests"
+	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES and LSODA; writes out/bench.json"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
@@ -35,9 +36,15 @@ demo: setup
 	$(BIN)/wheelchair diagnose examples/sample-campaign --json out/demo/diagnosis.json -o out/demo
 	$(BIN)/wheelchair add rolling_resistance_asymmetry examples/sample-campaign -o out/demo/better.toml
 	$(BIN)/python build_fmu.py --variant out/demo/better.toml -o out/demo/Better.fmu
+	@echo "the report, to be opened in a browser:"
+	@$(BIN)/wheelchair report examples/sample-campaign --diagnosis out/demo/diagnosis.json -o out/demo/report.html
 
 test: setup
 	$(BIN)/python -m pytest -n 2
+
+test-browser: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[browser]"
+	$(BIN)/python -m pytest tests/browser -s
 
 lint: setup
 	$(BIN)/ruff check .

@@ -14,7 +14,7 @@ from ..model.effects import bundled, load
 from ..model.variant import Variant, read_variant
 from .check import known_parameters
 from .files import print_json
-from .group import console
+from .group import Progress, console, working
 from .settings import applied
 from .staircase import finite, staircase_table, write_improved
 
@@ -31,6 +31,7 @@ def add(
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The variant to improve.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the staircase as JSON.")] = False,
+    progress: Progress = False,
 ) -> None:
     """Refit with one more effect, print and draw the staircase, and write the improved variant."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
@@ -38,8 +39,8 @@ def add(
         raise unknown("effect", effect, catalogue)
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
     chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
-    with console(stderr=True).status("calibrating") as status:
-        better = add_effect(measured, chair, effect, fixed, status.update)
+    with working("calibrating", lines=progress) as say:
+        better = add_effect(measured, chair, effect, fixed, say)
     files = write_improved(output, better.variant, better.ladder)
     if as_json:
         steps = [{"step": s.name, "fit": s.fit, "heldout": finite(s.heldout)} for s in better.ladder]

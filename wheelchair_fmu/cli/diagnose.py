@@ -13,7 +13,8 @@ from rich.table import Table
 from ..campaign import read
 from ..handling.experiments import experiments
 from ..loop.profile import profiles as estimate_profiles
-from ..loop.verdict import UNEXPLAINED, Diagnosis, as_json
+from ..loop.story import story
+from ..loop.verdict import UNEXPLAINED, Diagnosis
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled, load
 from ..model.generic import VARIABLES, library, profiles, terms
@@ -22,7 +23,7 @@ from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
 from .check import known_parameters
 from .files import written
-from .group import console
+from .group import Progress, console, working
 from .settings import applied
 from .staircase import staircase_table
 
@@ -47,14 +48,15 @@ def diagnose(
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="For figures and proposals.")] = None,
+    progress: Progress = False,
 ) -> None:
     """Say which physical effect is missing from the model, with the evidence."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
     chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
-    with console(stderr=True).status("reading") as status:
-        found = run_diagnosis(measured, chair, library(), progress=status.update, experiments=experiments(), fixed=fixed)
-    content = as_json(found)
+    with working("reading", lines=progress) as say:
+        found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
+    content = story(found)
     if json_file:
         with written(json_file) as beside:
             beside.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

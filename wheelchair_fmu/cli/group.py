@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -11,6 +14,7 @@ from typer.core import TyperGroup
 
 from ..errors import WheelchairError
 
+Progress = Annotated[bool, typer.Option("--progress", help="Say each step on a line of its own on stderr.")]
 PIPED = 132  # columns where no terminal says how many there are
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
@@ -20,6 +24,18 @@ def console(*, stderr: bool = False) -> Console:
     file = sys.stderr if stderr else sys.stdout
     width = None if file.isatty() else PIPED
     return Console(stderr=stderr, highlight=False, soft_wrap=True, markup=False, width=width)
+
+
+@contextmanager
+def working(words: str, *, lines: bool = False) -> Iterator[Callable[[str], None]]:
+    """What is being done, on stderr: a line that changes, or with `lines` one line for each step, for another program."""
+    if lines:
+        say = partial(print, file=sys.stderr, flush=True)
+        say(words)
+        yield say
+    else:
+        with console(stderr=True).status(words) as status:
+            yield status.update
 
 
 class Group(TyperGroup):

@@ -7,11 +7,25 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from . import add, check, compare, diagnose, effects, improve, linearize, paper, simulate, ssp, steady, tyre
+from . import (
+    add,
+    check,
+    compare,
+    diagnose,
+    effects,
+    improve,
+    linearize,
+    paper,
+    report,
+    simulate,
+    ssp,
+    steady,
+    tyre,
+)
 from .group import Group
 
 # In the order of --help; each module has `register(app)`.
-COMMANDS = (simulate, linearize, steady, paper, tyre, check, compare, diagnose, add, improve, effects, ssp)
+COMMANDS = (simulate, linearize, steady, paper, tyre, check, compare, diagnose, add, improve, report, effects, ssp)
 
 app = typer.Typer(cls=Group, add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False,
                   rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip

@@ -68,14 +68,19 @@ def _compile(choice: Choice, effects: list[Effect], derivatives: bool, place: Pa
     compiler.compile_shared([*c_files, hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
 
 
-@cache
 def _toolchain() -> str:
-    """What every kernel depends on: this package's equations, the compiler, CasADi."""
+    """What every native kernel depends on: `sources` and the compiler."""
+    return f"{sources()} {compiler.version()} {compiler.FLAGS}"
+
+
+@cache
+def sources() -> str:
+    """What all generated code depends on: this package's equations, and CasADi."""
     files = sorted([*(PACKAGE / "model").rglob("*.py"), *(PACKAGE / "engine").rglob("*.[pch]*"),
                     PACKAGE / "quantities.py"])  # fmt: skip
     files = [f for f in files if "__pycache__" not in f.parts]
     texts = hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{texts} {version('casadi')} {compiler.version()} {compiler.FLAGS}"
+    return f"{texts} {version('casadi')}"
 
 
 def effect_key(effect: Effect) -> str:

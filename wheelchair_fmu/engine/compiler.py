@@ -47,9 +47,18 @@ def compile_shared(sources: Sequence[Path], target: Path, extra: Sequence[str] =
 
     Raises BuildError with the compiler's own words.
     """
+    return _compiled([*command(), *FLAGS], sources, target, [*extra, "-lm"])
+
+
+def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
+    """Compile `sources` into a WebAssembly module by ziglang, the only compiler that brings its own C library for it."""
+    return _compiled([sys.executable, "-m", "ziglang", "cc"], sources, target, flags)
+
+
+def _compiled(compiler: list[str], sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
     beside = target.with_name(f".{uuid4().hex}-{target.name}")
     try:
-        _run([*command(), *FLAGS, *extra, *map(str, sources), "-o", str(beside), "-lm"])
+        _run([*compiler, *map(str, sources), *flags, "-o", str(beside)])
         beside.replace(target)
     finally:
         beside.unlink(missing_ok=True)

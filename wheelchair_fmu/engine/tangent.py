@@ -20,6 +20,7 @@ with no special structure in mind: any states, pushes as the noisy inputs, any p
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as cs
@@ -57,10 +58,12 @@ def sensed(model: Model) -> tuple[int, ...]:
     return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS) or o.name in SENSED)
 
 
-def tangent(model: Model) -> Tangent:
-    """Derive the functions of a model."""
+def tangent(model: Model, only: Sequence[str] | None = None) -> Tangent:
+    """Derive the functions of a model, by all its differentiable parameters or `only` these."""
     x, w, p = model.x, model.w, model.p
     columns, rows = differentiable(model), sensed(model)
+    if only is not None:
+        columns = tuple(c for c in columns if c.name in only)
     places = [model.parameters.index(c) for c in columns]
     at = [x, w, p]
 

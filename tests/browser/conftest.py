@@ -1,0 +1,88 @@
+"""Chromium, where it and Playwright are there; the report of the sample campaign, written by the command."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from wheelchair_fmu.cli.main import app
+
+ROOT = Path(__file__).parents[2]
+SAMPLE = ROOT / "examples" / "sample-campaign"
+DIAGNOSIS = Path(__file__).with_name("sample-diagnosis.json")  # by `wheelchair diagnose examples/sample-campaign --json`
+OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+           "--disable-background-networking", "--disable-component-update", "--disable-sync"]  # fmt: skip
+PATIENCE = 60_000  # ms; what takes long on a busy machine is no fault
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed: make test-browser does")
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if chromium is None:
+        pytest.skip("no Chromium: apt-get install chromium")
+    with playwright.sync_playwright() as running:
+        opened = running.chromium.launch(executable_path=chromium, args=OPTIONS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture(scope="session")
+def report_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("report") / "report.html"
+    done = CliRunner().invoke(app, ["report", str(SAMPLE), "--diagnosis", str(DIAGNOSIS), "-o", str(file)])
+    assert done.exit_code == 0, done.output
+    return file
+
+
+class Reader:
+    """Somebody with the report open, from disk, with the network off; every complaint of the page is kept."""
+
+    def __init__(self, browser: Any, file: Path, width: int = 1280, scheme: str = "light"):
+        self.context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True)
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE)
+        self.complaints: list[str] = []
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("console", self._listen)
+        self.page.on("request", lambda r: r.url.startswith("http") and self.complaints.append(f"asked for {r.url}"))
+        self.page.goto(file.as_uri())
+        self.settle()
+
+    def _listen(self, message: Any) -> None:
+        if message.type in ("error", "warning", "trace"):
+            self.complaints.append(message.text)
+
+    def settle(self) -> None:
+        """Until the numbers are exact and nothing more is coming."""
+        self.page.wait_for_function(
+            "() => window.report && !report.running && !report.pending && report.settled && "
+            "document.getElementById('status').dataset.state === 'exact'"
+        )
+
+    def set(self, values: dict[str, float]) -> None:
+        self.page.evaluate("values => report.controls.put(values)", values)
+        self.settle()
+
+    def table(self) -> dict[str, dict[str, float]]:
+        """Whitened RMS by run and channel."""
+        return self.page.evaluate("""() => Object.fromEntries(report.campaign.runs.map((run, i) => {
+            const {squares, counts} = report.results[i];
+            return [run.name, Object.fromEntries(Object.keys(squares).map(c => [c, Math.sqrt(squares[c] / counts[c])]))];
+        }))""")  # type: ignore[no-any-return]
+
+    def close(self) -> None:
+        self.context.close()
+        assert not self.complaints
+
+
+@pytest.fixture
+def reader(browser: Any, report_file: Path) -> Iterator[Reader]:
+    opened = Reader(browser, report_file)
+    yield opened
+    opened.close()

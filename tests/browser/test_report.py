@@ -1,0 +1,181 @@
+"""The report in a real browser, from disk, with the network off."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader
+from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.model.variant import Variant
+
+SLACK = 3  # times as long as alone: other programs run beside the tests
+HIDDEN = "rolling_resistance_asymmetry"
+TOLD = json.loads(DIAGNOSIS.read_text())
+MODELS = {m["step"]: m["values"] for m in TOLD["models"]}
+
+
+@pytest.fixture(scope="module")
+def campaign() -> Campaign:
+    return read(SAMPLE)
+
+
+def variant_of(reader: Reader, model: int) -> Variant:
+    return Variant().with_effects(reader.page.evaluate("i => report.campaign.models[i].effects", model))
+
+
+def test_ticking_the_hidden_effect_brings_the_held_out_bar_to_the_floor(reader):
+    page = reader.page
+    assert "rolls harder" in page.inner_text("h1")
+    before = page.evaluate("report.now")
+    assert before["heldout"] == pytest.approx(TOLD["ladder"][1]["heldout"], abs=0.01)
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    after = page.evaluate("report.now")
+    assert after["heldout"] == pytest.approx(1.0, abs=0.03)
+    bar = page.evaluate("""() => { const {data} = document.querySelector('#staircase .drawing');
+                                   return data.find(d => d.name.startsWith('held')).y.at(-1); }""")
+    assert bar == pytest.approx(after["heldout"] - 1, abs=1e-12)  # bars stand on the floor
+    assert page.inner_text("#now-heldout") == f"{after['heldout']:.2f}"
+    page.uncheck(f"#effect-{HIDDEN}")
+    reader.settle()
+    assert page.evaluate("report.now.heldout") == pytest.approx(before["heldout"], rel=1e-9)
+
+
+@pytest.mark.parametrize(("step", "model", "more"), [
+    ("nominal", 0, {}),
+    (f"+{HIDDEN}", 0, {}),
+    ("calibrated", 0, {"effect.push_force_delay.tau": 0.013, "offset.yaw_rate": 0.02}),
+    ("calibrated", 1, {"effect.relaxation_length.sigma": 0.08, "effect.trunk_motion.amplitude": 0.01}),
+])  # fmt: skip
+def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
+    """The same start, weights and errors as `Bench`, which `wheelchair compare` whitens with."""
+    values = {**MODELS[step], **more}
+    reader.set(values)
+    expected = Bench(campaign, variant_of(reader, model)).evidence(campaign.runs, values, tune_start=2).table()
+    found = reader.table()
+    for run, row in expected.items():
+        for channel, rms in row.items():
+            assert found[run][channel] == pytest.approx(rms, rel=1e-7), (run, channel)
+
+
+@pytest.mark.parametrize("model", [0, 1, 2])
+@pytest.mark.parametrize(("tolerance", "grid", "bound"), [(1e9, 0.01, 1e-9), (1e-6, 0.0, 1e-6)])
+def test_the_simulation_is_pythons(reader, campaign, model, tolerance, grid, bound):
+    """On one list of steps (no error test: a step for each sample), and on the steps that each finds for itself."""
+    simulator = Simulator(variant_of(reader, model))
+    brought = [{}, {"effect.relaxation_length.sigma": 0.1}, {"effect.caster_inertia.I": 0.005}][model]
+    values = {"tyre.C_lambda": 4500.0, "effect.scrub_torque.M": 0.3, "start.u": 0.8, **brought}
+    run = campaign.runs[-1]
+    page = reader.page.evaluate("""async ({values, tolerance, grid}) => {
+        const {time, inputs} = report.campaign.runs.at(-1);
+        const {outputs, y} = await report.pool.trace({values, time, inputs, tolerance, grid});
+        return {outputs, y: [...y]};
+    }""", {"values": values, "tolerance": tolerance, "grid": grid})  # fmt: skip
+    p = simulator.variant.vector({**campaign.known, **values})
+    there = simulator.run(run.time, simulator.inputs(len(run.time), run.inputs), p, tolerance=tolerance, grid=grid)
+    assert tuple(page["outputs"]) == there.names
+    y = np.reshape(page["y"], there.results.shape)
+    assert np.max(np.abs(y - there.results) / (1 + np.abs(there.results))) < bound
+
+
+def test_dragging_follows_at_once(reader):
+    """50 ms for the run that is shown, 300 ms for all ten; printed with -s."""
+    page = reader.page
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    slider = page.locator(f'[id="slider-effect.{HIDDEN}.D"]')
+    box = slider.bounding_box()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
+    page.mouse.down()
+    begun, errors = page.evaluate("report.timings.length"), []
+    for i in range(25):
+        page.mouse.move(box["x"] + (0.7 - 0.02 * i) * box["width"], box["y"] + box["height"] / 2)
+        page.wait_for_timeout(60)
+        errors.append(page.evaluate("report.now.heldout"))
+    page.mouse.up()
+    reader.settle()
+    timings = [t for t in page.evaluate("report.timings")[begun:] if not t["exact"]]
+    one, every = median(t["one"] for t in timings), median(t["all"] for t in timings)
+    paint = page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    exact = page.evaluate("report.timings.filter(t => t.exact).at(-1).all")
+    print(f"\nfirst paint {paint:.0f} ms; one run {one:.0f} ms, ten runs {every:.0f} ms (median of {len(timings)}); "
+          f"exact, ten runs {exact:.0f} ms")  # fmt: skip
+    assert errors[-1] > errors[0] + 0.1  # away from the truth, the error grows
+    assert len(timings) > 3
+    assert paint < 1000
+    assert one < 50 * SLACK
+    assert every < 300 * SLACK
+
+
+def test_the_keyboard_reaches_everything(reader):
+    page = reader.page
+    page.focus(f"#effect-{HIDDEN}")
+    page.keyboard.press("Space")
+    reader.settle()
+    slider = page.locator(f'[id="slider-effect.{HIDDEN}.D"]')
+    slider.focus()
+    before = page.evaluate("report.values")[f"effect.{HIDDEN}.D"]
+    page.keyboard.press("ArrowRight")
+    reader.settle()
+    assert page.evaluate("report.values")[f"effect.{HIDDEN}.D"] > before
+    page.focus("#run")
+    page.keyboard.press("ArrowUp")
+    assert page.evaluate("report.shown.run") == int(page.input_value("#run"))
+    unnamed = page.evaluate("""[...document.querySelectorAll('button, input, select, a')].filter(e =>
+        !(e.innerText?.trim() || e.getAttribute('aria-label') || e.labels?.length)).map(e => e.outerHTML)""")
+    assert not unnamed
+
+
+def test_a_value_out_of_bounds_is_not_taken(reader):
+    page = reader.page
+    page.click("#controls details summary")
+    page.check("#effect-relaxation_length")
+    reader.settle()
+    number = page.locator('[aria-label="effect.relaxation_length.sigma [m]"]')
+    before = page.evaluate("report.values")
+    number.fill("-3")
+    number.blur()
+    assert page.evaluate("report.values") == before
+    assert not number.evaluate("e => e.checkValidity()")
+
+
+@pytest.mark.parametrize("figure", ["staircase", "where", "overlay", "path", "regimes"])
+@pytest.mark.parametrize(("kind", "start"), [("PNG", b"\x89PNG"), ("SVG", b"<svg"), ("CSV", b"")])
+def test_every_chart_can_be_taken_away(reader, figure, kind, start, tmp_path):
+    with reader.page.expect_download() as waiting:
+        reader.page.locator(f"#{figure} figcaption button", has_text=kind).click()
+    file = tmp_path / waiting.value.suggested_filename
+    waiting.value.save_as(file)
+    content = file.read_bytes()
+    assert file.suffix == f".{kind.lower()}"
+    assert content.startswith(start)
+    if kind == "CSV":
+        rows = content.decode().splitlines()
+        assert len(rows) > 3
+        assert len({r.count(",") for r in rows}) == 1
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_fits(browser: Any, report_file: Path, width, scheme):
+    """Nothing sticks out sideways, and text stands out from what is behind it."""
+    reader = Reader(browser, report_file, width, scheme)
+    assert reader.page.evaluate("document.documentElement.scrollWidth") <= width
+    contrast = reader.page.evaluate(Path(__file__).with_name("contrast.js").read_text())
+    assert min(contrast.values()) >= 4.5, contrast
+    reader.close()
+
+
+def test_one_file_small_and_shut(report_file):
+    text = report_file.read_text(encoding="utf-8")
+    assert report_file.stat().st_size < 8e6
+    assert "default-src 'none'" in text
+    assert 'src="http' not in text

@@ -1,0 +1,68 @@
+"""The page's words and its one file, without a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from wheelchair_fmu.quantities import N_S_M, RAD, N, Parameter
+from wheelchair_fmu.report.page import MODULES, asset, page
+from wheelchair_fmu.report.words import particulars, sentence, value_text
+
+TITLES = {"drag": "air that resists", "slope": "a floor that slopes"}
+LADDER = [{"step": "nominal", "fit": 9.0, "heldout": 8.0}, {"step": "calibrated", "fit": 2.0, "heldout": 1.9},
+          {"step": "+drag", "fit": 1.01, "heldout": 1.02}]  # fmt: skip
+
+
+def told(verdict, effects=(), **more):
+    ranking = [{"effect": e, "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}}} for e in effects]
+    return {"verdict": verdict, "effects": list(effects), "ranking": ranking, "ladder": LADDER, "notes": [], **more}
+
+
+@pytest.mark.parametrize(("verdict", "effects", "expected"), [
+    ("missing", ["drag"], "Missing from the model: air that resists."),
+    ("missing", ["drag", "slope"], "Missing from the model: air that resists and a floor that slopes."),
+    ("tie", ["drag", "slope"], "One of these is missing, and this campaign cannot tell which: "
+                               "air that resists or a floor that slopes."),
+    ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
+    ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
+    ("outside", [], "Something is left that no effect in the catalogue explains."),
+    ("outside", ["slope"], "Something is left that no effect in the catalogue explains; "
+                           "what helps but does not suffice: a floor that slopes."),
+])  # fmt: skip
+def test_a_verdict_is_one_sentence(verdict, effects, expected):
+    assert sentence(told(verdict, effects), TITLES) == expected
+
+
+def test_the_sizes_and_the_fall_come_next():
+    records = {"effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),
+               "effect.odd.q": Parameter("effect.odd.q", RAD, "a lean")}  # fmt: skip
+    lines = particulars(told("missing", ["drag"]), records)
+    left = {"proposal": {"term": "odd", "estimate": -0.01, "se": 0.001}}
+    assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06 deg."
+    assert lines == ["Drag: size of the drag: 1.234 ± 0.021 N s/m.",
+                     "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone."]  # fmt: skip
+
+
+@pytest.mark.parametrize(("value", "se", "text"), [
+    (1.60688, 0.0083, "1.607 ± 0.008 N"), (1.60688, 0.0123, "1.607 ± 0.012 N"), (1234.5, 34.0, "1234 ± 34 N"),
+    (0.5, None, "0.5 N"),
+])  # fmt: skip
+def test_no_more_digits_than_are_known(value, se, text):
+    assert value_text(value, se, N) == text
+
+
+def test_nothing_in_the_data_becomes_markup():
+    name = "</script><script>alert(1)</script>{{title}}<b>"
+    html = page({"name": name}, "a < b", ["<i>"])
+    assert "<script>alert" not in html
+    assert "<i>" not in html.partition("<main>")[2].partition("Try it")[0]
+    stored = re.search(r'id="content">(.*?)</script>', html)
+    assert stored and json.loads(stored[1])["name"] == name
+
+
+def test_every_module_is_in_the_import_map():
+    imported = {m for name in MODULES for m in re.findall(r'from "page/(\w+)"', asset(f"{name}.js"))}
+    assert imported <= set(MODULES)

@@ -1,0 +1,40 @@
+"""The diagnosis with what it takes to tell it again: every model it went through, and the noise it found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .verdict import Diagnosis, as_json
+
+
+def story(d: Diagnosis) -> dict[str, Any]:
+    """`as_json`, with what it takes to simulate it again: `calibrated` [name, ...], `noise` {sd, ar}, `models` [{step,
+    values}] for steps of the staircase, the one where the search `begins`, and `values` of each refitted effect in the
+    ranking. Full names, SI units."""
+    content, models = as_json(d), _models(d)
+    refitted = {c.effect: c.fit.values for r in reversed(d.rounds) for c in r.candidates}
+    for row in content["ranking"]:
+        values = models.get(f"+{row['effect']}", refitted.get(row["effect"]))
+        row["values"] = None if values is None else dict(values)
+    colour = d.search.workshop.colour
+    return {
+        **content,
+        "calibrated": list(d.search.names(())),
+        "begins": _beginning(d),
+        "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
+        "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],
+    }
+
+
+def _beginning(d: Diagnosis) -> str:
+    """The step from which the search began: calibrated, with the effects that the variant came with."""
+    return f"+{d.already[-1]}" if d.already else "calibrated"
+
+
+def _models(d: Diagnosis) -> dict[str, Mapping[str, float]]:
+    """Fitted values by step of the staircase, from where the search began; what came between is not kept."""
+    models: dict[str, Mapping[str, float]] = {"nominal": {}, _beginning(d): d.rounds[0].fit.values}
+    models |= {f"+{r.effects[-1]}": r.fit.values for r in d.rounds[1:]}
+    models[d.ladder[-1].name] = (d.proposal.fit if d.proposal else d.final).values
+    return models

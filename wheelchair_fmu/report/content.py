@@ -1,0 +1,121 @@
+"""What the page knows: measurements, the model as WebAssembly, the diagnosis and the models it went through."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..campaign import CHANNELS, Campaign, Run
+from ..engine.tangent import differentiable, sensed
+from ..engine.wasm import module
+from ..loop.evidence import START, TOLERANCE, Colour, prior_start, start_sd
+from ..loop.workshop import Workshop
+from ..model.stage import Effect
+from ..model.variant import Variant
+from ..model.wheelchair import REGIMES
+from ..quantities import N, Parameter, Unit
+
+TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
+PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
+
+
+def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any],
+            fixed: Sequence[str] = ()) -> dict[str, Any]:  # fmt: skip
+    """Everything that `page.html` shows, as JSON; series are base64 of little-endian doubles under the key "f64".
+
+    `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
+    """
+    workshop = Workshop(campaign, variant, fixed)
+    measured = {name for r in campaign.runs for name in r.channels}
+    return {
+        "name": campaign.name,
+        "diagnosis": diagnosis,
+        "runs": [_run(r, campaign) for r in campaign.runs],
+        "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
+        "outputs": {c.name: c.fmu for c in CHANNELS},
+        "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
+        "known": {**workshop.variant.values, **campaign.known},
+        "models": [_model(variant.with_effects(ids)) for ids in _layers(workshop)],
+        "effects": [_effect(e) for e in workshop.catalogue.values()],
+        "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
+        "regimes": _regimes(variant),
+        "shown": list(dict.fromkeys((*PATH, *REGIMES.values()))),
+        "geometry": _geometry(campaign, variant),
+        "start": START,
+        "tuning": TUNING,
+        "tolerance": TOLERANCE,
+    }
+
+
+def _layers(w: Workshop) -> list[tuple[str, ...]]:
+    """Effects of each model the page carries, the lightest first: what brings no state, what does, what needs other laws."""
+    groups = [tuple(w.light), (*w.light, *w.heavy), (*w.light, *w.heavy, *w.demanding)]
+    return list(dict.fromkeys(groups))
+
+
+def _model(variant: Variant) -> dict[str, Any]:
+    model = variant.model()
+    vector = variant.vector()
+    return {
+        "effects": list(variant.effects),
+        "wasm": b64encode(module(variant.choice, variant.active(), START)).decode(),
+        "parameters": [[p.name, float(v)] for p, v in zip(model.parameters, vector, strict=True)],
+        "inputs": [[i.name, i.start] for i in model.inputs],
+        "outputs": [o.name for o in model.outputs],
+        "states": model.x.numel(),
+        "sensors": [model.outputs[i].name for i in sensed(model)],
+        "columns": [p.name for p in differentiable(model) if p.name in START],
+        "delays": [p.name for e in model.effects if e.delays_record for p in e.owned],
+    }
+
+
+def _run(run: Run, campaign: Campaign) -> dict[str, Any]:
+    return {
+        "name": run.name,
+        "role": run.role,
+        "manoeuvre": run.manoeuvre,
+        "set": run.set,
+        "time": _series(run.time),
+        "inputs": {name: _series(v) for name, v in run.inputs.items()},
+        "channels": {c.name: _series(run.channels[c.name]) for c in CHANNELS if c.name in run.channels},
+        "start": prior_start(run, {**campaign.known, **run.set}),
+        "start_sd": start_sd(run),
+    }
+
+
+def _effect(effect: Effect) -> dict[str, Any]:
+    return {"id": effect.id, "title": effect.title, "parameters": [_parameter(p) for p in effect.owned if p.estimated]}
+
+
+def _parameter(p: Parameter) -> dict[str, Any]:
+    return {**_quantity(p.name, p.unit, p.meaning), "lower": _finite(p.lower), "upper": _finite(p.upper),
+            "default": p.default, "delta": p.smallest_interesting, "source": p.source}  # fmt: skip
+
+
+def _quantity(name: str, unit: Unit, meaning: str) -> dict[str, Any]:
+    shown = [{"unit": d.name, "factor": d.factor} for d in unit.display if d.name.startswith("deg")]
+    return {"name": name, "unit": unit.name, "meaning": meaning, "display": shown}
+
+
+def _regimes(variant: Variant) -> list[dict[str, Any]]:
+    """What errors are sorted by: a result, or the total push."""
+    outputs = {o.name: o for o in variant.model().outputs}
+    sorted_by = [{**_quantity(name, outputs[o].unit, outputs[o].meaning), "output": o} for name, o in REGIMES.items()]
+    return [*sorted_by, {**_quantity("push", N, "total push"), "output": None}]
+
+
+def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
+    """Where the wheels are, for drawing the chair."""
+    values = {p.name: p.default for p in variant.parameters()} | dict(variant.values) | campaign.known
+    return {n.rpartition(".")[2]: values[n] for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "wheel.R")}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _series(values: Iterable[float]) -> dict[str, str]:
+    return {"f64": b64encode(np.asarray(values, "<f8").tobytes()).decode()}

@@ -1,0 +1,57 @@
+// Numbers and units as people read them.
+
+const UNITS = {
+  1: "", "m/s2": "m/s²", "N.m": "N m", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s2/m2": "N s²/m²",
+  "N.m.s/rad": "N m s/rad", "N.m/rad": "N m/rad", deg: "°", "deg/s": "°/s",
+};
+
+/** A unit's name in print; "1" is none. */
+export const unitText = (unit) => UNITS[unit] ?? unit;
+
+/** How a quantity is shown: {unit, factor} from SI. */
+export const display = (record) => record?.display?.[0] ?? { unit: record?.unit ?? "1", factor: 1 };
+
+/** `value` with so many significant digits, without an exponent where that is short. */
+export function significant(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.floor(Math.log10(Math.abs(value)));
+  if (size < -4 || size > 5) return minus(value.toExponential(digits - 1).replace("e-", "e−").replace("e+", "e"));
+  return minus(value.toFixed(Math.max(0, digits - 1 - size)));
+}
+
+/** "1.607 ± 0.008 N": the error to two digits at most, the estimate to the same place. */
+export function withError(estimate, se, record) {
+  const { unit, factor } = display(record), suffix = unitText(unit), space = suffix === "°" || !suffix ? "" : " ";
+  const [value, error] = [estimate * factor, se === null ? null : se * factor];
+  if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
+  if (error > 100 * Math.abs(value)) return `not seen${space}${suffix ? ` [${suffix}]` : ""}`;
+  const place = Math.max(0, (Number(error.toExponential(0)[0]) < 3 ? 1 : 0) - Math.floor(Math.log10(error)));
+  return `${minus(value.toFixed(Math.min(place, 8)))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
+}
+
+/** A value in the unit it is shown in. */
+export function inUnit(value, record, digits = 3) {
+  const { unit, factor } = display(record), suffix = unitText(unit);
+  return `${significant(value * factor, digits)}${suffix && suffix !== "°" ? " " : ""}${suffix}`;
+}
+
+/** "−4.2 to 6.8 °": both ends to the digits that tell them apart. */
+export function between(from, to, record) {
+  const { unit, factor } = display(record), [a, b] = [from * factor, to * factor], span = Math.abs(b - a);
+  const place = span > 0 ? Math.min(Math.max(0, 1 - Math.floor(Math.log10(span))), 4) : 2;
+  const text = (v) => minus(v.toFixed(place)).replace(/^−(0(\.0*)?)$/, "$1");
+  return `${text(a)} to ${text(b)} ${unitText(unit)}`.trim();
+}
+
+/** A probability. */
+export function probability(p) {
+  if (p === null || p === undefined) return "–";
+  if (p < 1e-6) return "< 10⁻⁶";
+  return p < 0.001 ? significant(p, 1) : p.toFixed(p < 0.1 ? 3 : 2);
+}
+
+/** Whitened RMS: two decimals are what its own noise allows. */
+export const rms = (value) => (value === null || value === undefined || Number.isNaN(value) ? "–" : value.toFixed(2));
+
+const minus = (text) => text.replace(/^-/, "−");

@@ -1,0 +1,350 @@
+/* The chair in a worker: simulates runs by WebAssembly and whitens what is left, as loop/evidence.py does.
+ *
+ * A page's worker has no imports, so this file stands alone. Messages in:
+ *   {load: {models, runs, noise, start, tuning, tolerance}}   once; see report/content.py
+ *   {job, run, values, exact}                                 simulate one run with parameter values by name (SI)
+ *   {job, trace}                                              only simulate: a record {values, time, inputs, tolerance, grid}
+ * and out: {job, ...result} or {job, error}. Matrices are stored by rows throughout. */
+"use strict";
+
+const WHY = {
+  1: "the equations gave NaN or infinity",
+  2: "no step was short enough for the tolerance",
+  3: "the algebraic equations have no solution nearby",
+};
+const PUSHES = 4; // the first inputs, whose records may carry noise
+const MOST = 64; // states, pushes and readings together, as in innovations.c
+const REACH = 3; // standard deviations that a start may be moved
+
+/** One compiled model: a WebAssembly instance whose memory is handed out afresh for every call. */
+class Kernel {
+  constructor(record) {
+    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, delays
+    const bytes = Uint8Array.from(atob(record.wasm), (c) => c.charCodeAt(0));
+    this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
+    this.base = (this.wasm.wc_page_heap() + 15) & ~15;
+    this.reset();
+  }
+
+  reset() {
+    this.top = this.base;
+  }
+
+  /** The address of `count` doubles. */
+  doubles(count) {
+    const at = this.top;
+    this.top += 8 * count;
+    const missing = this.top - this.wasm.memory.buffer.byteLength;
+    if (missing > 0) this.wasm.memory.grow(Math.ceil(missing / 65536));
+    return at;
+  }
+
+  /** The address of numbers put into memory. */
+  put(numbers) {
+    const at = this.doubles(numbers.length);
+    new Float64Array(this.wasm.memory.buffer, at, numbers.length).set(numbers);
+    return at;
+  }
+
+  /** The address of 32-bit words put into memory, with room to a multiple of 8 bytes. */
+  words(numbers) {
+    const at = this.doubles(Math.ceil(numbers.length / 2));
+    new Int32Array(this.wasm.memory.buffer, at, numbers.length).set(numbers);
+    return at;
+  }
+
+  /** A copy of `count` doubles. */
+  get(at, count) {
+    return new Float64Array(this.wasm.memory.buffer, at, count).slice();
+  }
+
+  vector(values) {
+    return Float64Array.from(this.parameters, ([name, start]) => values[name] ?? start);
+  }
+
+  /** Inputs (n, nw); a record that is early by `delay` is read that much later. */
+  inputRows(time, given, delay) {
+    const width = this.inputs.length, rows = new Float64Array(time.length * width);
+    this.inputs.forEach(([name, start], column) => {
+      let series = given[name];
+      if (series && delay) series = interpolated(time, series, delay);
+      for (let i = 0; i < time.length; i++) rows[i * width + column] = series ? series[i] : start;
+    });
+    return rows;
+  }
+
+  /** States and results of a run, from the start that the parameters give. */
+  run(p, time, rows, tolerance, grid = 0) {
+    this.reset();
+    const n = time.length;
+    const [P, T, W] = [p, time, rows].map((a) => this.put(a));
+    const X = this.doubles(n * this.states), Y = this.doubles(n * this.outputs.length), reached = this.doubles(1);
+    const status = this.wasm.wc_page_run(P, tolerance, grid, n, T, W, X, Y, reached);
+    this.check(status, reached, time);
+    return { x: this.get(X, n * this.states), y: this.get(Y, n * this.outputs.length) };
+  }
+
+  /** The same with what the filter needs: how states and readings follow from states and pushes before. */
+  linearise(p, time, rows, tolerance) {
+    this.reset();
+    const n = time.length, nx = this.states, ns = this.sensors.length, k = this.columns.length;
+    const [P, T, W] = [p, time, rows].map((a) => this.put(a));
+    const sizes = {
+      transition: (n - 1) * nx * nx, push_before: (n - 1) * nx * PUSHES, push_after: (n - 1) * nx * PUSHES,
+      by_state: n * ns * nx, by_push: n * ns * PUSHES, start: nx * k, by_parameter: n * ns * k,
+    };
+    const at = Object.fromEntries(Object.entries(sizes).map(([name, size]) => [name, this.doubles(size)]));
+    const which = this.words(this.columns.map((_, i) => i));
+    const out = this.words([k, which, 0, ...Object.values(at)]); // 0: these parameters only move the start
+    const X = this.doubles(n * nx), Y = this.doubles(n * this.outputs.length), reached = this.doubles(1);
+    const work = this.doubles(this.wasm.wc_page_work(k));
+    const status = this.wasm.wc_page_linearise(P, tolerance, n, T, W, X, Y, out, work, reached);
+    this.check(status, reached, time);
+    const got = Object.fromEntries(Object.entries(sizes).map(([name, size]) => [name, this.get(at[name], size)]));
+    return { ...got, x: this.get(X, n * nx), y: this.get(Y, n * this.outputs.length) };
+  }
+
+  check(status, reached, time) {
+    if (!status) return;
+    const row = new Int32Array(this.wasm.memory.buffer, reached, 1)[0];
+    const when = time[Math.min(Math.max(row, 1), time.length) - 1];
+    throw new Error(`the simulation stops at t = ${when.toPrecision(6)} s: ${WHY[status]}`);
+  }
+
+  /** Calls `act` with the address of a filter's record, whose matrices are put into memory. */
+  withFilter(filter, startCov, act) {
+    this.reset();
+    const { system, noise, present, nz } = filter, nx = this.states, nq = noise.pushes.length;
+    if (nx + nq + nz > MOST) throw new Error(`${nx} states, ${nq} pushes and ${nz} readings are more than ${MOST}`);
+    const arrays = [system.A, system.B, system.C, system.H, system.D, noise.pushes, noise.sd, noise.ar, startCov];
+    const flags = this.doubles(Math.ceil(present.length / 8));
+    new Uint8Array(this.wasm.memory.buffer, flags, present.length).set(present);
+    return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]));
+  }
+}
+
+/** The filter of one linearised run, as engine/innovations.py's Whitener. */
+class Whitener {
+  constructor(kernel, system, noise, present, n, startCov) {
+    Object.assign(this, { kernel, system, noise, present, n, startCov, nz: noise.sd.length });
+    this.size = kernel.states + noise.pushes.length + this.nz;
+    kernel.withFilter(this, startCov, (record) => {
+      const gain = kernel.doubles(n * this.nz * this.size), scale = kernel.doubles(n * this.nz);
+      kernel.wasm.wc_page_design(record, n, gain, scale);
+      this.gain = kernel.get(gain, n * this.nz * this.size);
+      this.scale = kernel.get(scale, n * this.nz);
+    });
+  }
+
+  /** Innovations of signals (n, nz, m), in place; 0 in gaps stays 0. `startMean` belongs to the first signal. */
+  whiten(signals, m, startMean) {
+    const { kernel, n } = this;
+    kernel.withFilter(this, this.startCov, (record) => {
+      const [gain, scale, mean, at] = [this.gain, this.scale, startMean, signals].map((a) => kernel.put(a));
+      kernel.wasm.wc_page_whiten(record, n, gain, scale, mean, m, at, kernel.doubles(2 * this.size * m));
+      signals.set(new Float64Array(kernel.wasm.memory.buffer, at, signals.length));
+    });
+    return signals;
+  }
+
+  /** One over the standard deviation of each reading (n, nz): its sensor's noise, and push noise added up by the chair. */
+  spread() {
+    const { kernel, n, nz } = this;
+    return kernel.withFilter(this, new Float64Array(kernel.states ** 2), (record) => {
+      const scale = kernel.doubles(n * nz);
+      kernel.wasm.wc_page_spread(record, n, scale);
+      return kernel.get(scale, n * nz);
+    });
+  }
+}
+
+function interpolated(time, series, delay) {
+  const out = new Float64Array(time.length);
+  for (let i = 0, j = 0; i < time.length; i++) {
+    const t = time[i] - delay;
+    if (t <= time[0]) { out[i] = series[0]; j = 0; continue; }
+    if (t >= time.at(-1)) { out[i] = series.at(-1); continue; }
+    while (j > 0 && time[j] > t) j--;
+    while (time[j + 1] < t) j++;
+    out[i] = series[j] + ((series[j + 1] - series[j]) / (time[j + 1] - time[j])) * (t - time[j]);
+  }
+  return out;
+}
+
+/** The columns `wanted` of each of n rows of a matrix (n, rows, columns), and of its rows those in `which`. */
+function part(matrix, n, rows, columns, which, wanted) {
+  const out = new Float64Array(n * which.length * wanted);
+  let to = 0;
+  for (let i = 0; i < n; i++)
+    for (const r of which)
+      for (let c = 0; c < wanted; c++) out[to++] = matrix[(i * rows + r) * columns + c];
+  return out;
+}
+
+let campaign, kernels;
+const remembered = []; // by run: what the last exact evaluation found, good to first order nearby
+
+function load(given) {
+  campaign = given;
+  kernels = given.models.map((record) => new Kernel(record));
+}
+
+/** The lightest model that has every effect of these values. */
+function kernelFor(values) {
+  const on = Object.keys(values).filter((n) => n.startsWith("effect.") && values[n] !== 0).map((n) => n.split(".")[1]);
+  const kernel = kernels.find((k) => on.every((effect) => k.effects.includes(effect)));
+  if (!kernel) throw new Error(`no model in this page has ${on.join(", ")} together`);
+  return kernel;
+}
+
+/** One run with one kernel: what was measured, less the sensors' offsets, what its noise is, and where its readings are. */
+function frame(kernel, index, values) {
+  const run = campaign.runs[index], names = Object.keys(run.channels), nz = names.length, n = run.time.length;
+  const which = names.map((c) => kernel.sensors.indexOf(campaign.outputs[c]));
+  const place = which.map((s) => kernel.outputs.indexOf(kernel.sensors[s]));
+  const measured = new Float64Array(n * nz), offsets = names.map((name) => values[`offset.${name}`] ?? 0);
+  names.forEach((name, z) => { for (let i = 0; i < n; i++) measured[i * nz + z] = run.channels[name][i] - offsets[z]; });
+  const noise = {
+    pushes: Float64Array.from(["F_rl", "F_rr"], (c) => campaign.noise.sd[c] ?? 0),
+    sd: Float64Array.from(names, (c) => campaign.noise.sd[c]),
+    ar: Float64Array.from(names, (c) => campaign.noise.ar[c] ?? 0),
+  };
+  const present = Uint8Array.from(measured, (v) => (Number.isNaN(v) ? 0 : 1));
+  return { kernel, run, names, nz, n, which, place, measured, noise, present, offsets };
+}
+
+/** Parameters and inputs of a run; what the run itself sets stands. */
+function given({ kernel, run }, values, start) {
+  const delay = kernel.delays.reduce((sum, name) => sum + (values[name] ?? 0), 0);
+  return [kernel.vector({ ...campaign.known, ...run.set, ...values, ...run.set, ...start }), run.time, kernel.inputRows(run.time, run.inputs, delay)];
+}
+
+function readings({ kernel, n, nz, place }, y) {
+  const out = new Float64Array(n * nz), width = kernel.outputs.length;
+  for (let i = 0; i < n; i++) for (let z = 0; z < nz; z++) out[i * nz + z] = y[i * width + place[z]];
+  return out;
+}
+
+/** Simulate from a start, linearise, and make the filter: {start, y, predicted, byStart, offset, whitener}. */
+function linearised(f, values, start) {
+  const { kernel, run, n, nz, which } = f, nx = kernel.states, k = campaign.start.length, ns = kernel.sensors.length;
+  const s = kernel.linearise(...given(f, values, start), campaign.tolerance);
+  const every = [...Array(nx).keys()], nq = f.noise.pushes.length;
+  const system = {
+    A: s.transition,
+    B: part(s.push_before, n - 1, nx, PUSHES, every, nq),
+    C: part(s.push_after, n - 1, nx, PUSHES, every, nq),
+    H: part(s.by_state, n, ns, nx, which, nx),
+    D: part(s.by_push, n, ns, PUSHES, which, nq),
+  };
+  const column = campaign.start.map((name) => kernel.columns.indexOf(name)), sd = campaign.start.map((name) => run.start_sd[name]);
+  const byStart = new Float64Array(n * nz * k), cov = new Float64Array(nx * nx), offset = new Float64Array(nx);
+  for (let c = 0; c < k; c++) {
+    const off = run.start[campaign.start[c]] - start[campaign.start[c]];
+    for (let r = 0; r < nx; r++) {
+      const a = s.start[r * k + column[c]];
+      offset[r] += a * off;
+      for (let q = 0; q < nx; q++) cov[r * nx + q] += a * sd[c] * sd[c] * s.start[q * k + column[c]];
+    }
+    if (campaign.start[c] in run.set) continue; // a run's own setting stands, so that parameter moves nothing in it
+    for (let i = 0; i < n; i++) for (let z = 0; z < nz; z++) byStart[(i * nz + z) * k + c] = s.by_parameter[(i * ns + which[z]) * k + column[c]];
+  }
+  const whitener = new Whitener(kernel, system, f.noise, f.present, n, cov);
+  return { start, y: s.y, predicted: readings(f, s.y), byStart, offset, whitener };
+}
+
+/** What is left of the readings, 0 in gaps. */
+function residual(f, predicted) {
+  return f.measured.map((v, i) => (f.present[i] ? v - predicted[i] : 0));
+}
+
+/** How each innovation goes with the start (n, nz, k). */
+function startSlopes(f, s) {
+  const k = campaign.start.length;
+  return s.whitener.whiten(s.byStart.map((v, i) => (f.present[Math.floor(i / k)] ? v : 0)), k, new Float64Array(f.kernel.states));
+}
+
+/** The start given all readings, to first order: prior mean + P0 S0' r. */
+function betterStart(f, s, predicted, slopes) {
+  const { run } = f, k = campaign.start.length, r = s.whitener.whiten(residual(f, predicted), 1, s.offset), found = {};
+  campaign.start.forEach((name, c) => {
+    let sum = 0;
+    for (let i = 0; i < r.length; i++) sum += r[i] * slopes[i * k + c];
+    const sd = run.start_sd[name], step = sd * sd * sum;
+    found[name] = run.start[name] + Math.min(Math.max(step, -REACH * sd), REACH * sd);
+  });
+  return found;
+}
+
+/** As `wheelchair compare` does it: the start is moved to where the readings want it, then all is found from there. */
+function exactly(f, values) {
+  let start = f.run.start;
+  for (let round = 0; round < campaign.tuning; round++) {
+    const s = linearised(f, values, start);
+    start = betterStart(f, s, s.predicted, startSlopes(f, s));
+  }
+  const s = linearised(f, values, start);
+  return { ...s, slopes: startSlopes(f, s), spread: s.whitener.spread() };
+}
+
+/** Simulated anew, with the filter of the last exact evaluation; a better start moves the readings to first order. */
+function nearby(f, values, last) {
+  const { y } = f.kernel.run(...given(f, values, last.start), campaign.tolerance), predicted = readings(f, y);
+  const start = betterStart(f, last, predicted, last.slopes), k = campaign.start.length;
+  campaign.start.forEach((name, c) => {
+    const step = start[name] - last.start[name];
+    for (let i = 0; i < predicted.length; i++) predicted[i] += step * last.byStart[i * k + c];
+  });
+  return { start, y, predicted, spread: last.spread };
+}
+
+function evaluate(index, values, exact) {
+  const kernel = kernelFor(values), f = frame(kernel, index, values), last = remembered[index];
+  if (!exact && last?.whitener.kernel === kernel) return summary(f, nearby(f, values, last));
+  remembered[index] = exactly(f, values);
+  return summary(f, remembered[index]);
+}
+
+/** Errors by channel, and the series that the page draws. */
+function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread }) {
+  const errors = {}, simulated = {}, squares = {}, counts = {};
+  names.forEach((name, z) => {
+    const e = new Float64Array(n), p = new Float64Array(n), offset = offsets[z];
+    let sum = 0, count = 0;
+    for (let i = 0; i < n; i++) {
+      e[i] = (measured[i * nz + z] - predicted[i * nz + z]) * spread[i * nz + z];
+      p[i] = predicted[i * nz + z] + offset; // as the sensor reads it
+      if (!Number.isNaN(e[i])) { sum += e[i] * e[i]; count++; }
+    }
+    [errors[name], simulated[name], squares[name], counts[name]] = [e, p, sum, count];
+  });
+  const results = {}, width = kernel.outputs.length;
+  for (const name of campaign.shown) {
+    const at = kernel.outputs.indexOf(name), series = (results[name] = new Float64Array(n));
+    for (let i = 0; i < n; i++) series[i] = y[i * width + at];
+  }
+  return { errors, predicted: simulated, squares, counts, results, start };
+}
+
+/** A bare simulation, for comparing this page with another program. */
+function trace({ values, time, inputs, tolerance, grid }) {
+  const kernel = kernelFor(values), p = kernel.vector({ ...campaign.known, ...values });
+  const { y } = kernel.run(p, time, kernel.inputRows(time, inputs, 0), tolerance, grid);
+  return { outputs: kernel.outputs, y };
+}
+
+function answer({ load: all, job, run, values, exact, trace: wanted }) {
+  if (all) return load(all);
+  const began = performance.now();
+  try {
+    const result = wanted ? trace(wanted) : evaluate(run, values, exact);
+    return { job, run, ...result, ms: performance.now() - began };
+  } catch (error) {
+    return { job, run, error: error.message };
+  }
+}
+
+self.onmessage = ({ data }) => {
+  const reply = answer(data);
+  if (reply) self.postMessage(reply);
+};

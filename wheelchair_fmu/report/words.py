@@ -1,0 +1,76 @@
+"""A diagnosis in the words of a person."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..quantities import DisplayUnit, Quantity, Unit
+
+
+def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
+    """The verdict in one sentence; `titles` say what each effect is."""
+    names = [titles.get(e, e.replace("_", " ")) for e in diagnosis["effects"]]
+    several = len(names) > 1
+    return {
+        "missing": f"Missing from the model: {_listed(names, 'and')}.",
+        "tie": f"One of these is missing, and this campaign cannot tell which: {_listed(names, 'or')}.",
+        "small": f"The model is adequate: {_listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
+        "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
+        "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
+        "outside": "Something is left that no effect in the catalogue explains"
+                   + (f"; what helps but does not suffice: {_listed(names, 'and')}." if names else "."),
+    }[diagnosis["verdict"]]  # fmt: skip
+
+
+def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
+    """What comes next to the verdict: sizes, the fall of the error, the next experiment, notes."""
+    rows = {row["effect"]: row for row in diagnosis["ranking"]}
+    said = [_size(e, rows[e], records) for e in diagnosis["effects"] if e in rows and diagnosis["verdict"] != "tie"]
+    said += _proposal(diagnosis.get("leftover") or {}, records)
+    said.append(_fall(diagnosis["ladder"]))
+    following = diagnosis.get("next_experiment")
+    if following:
+        times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
+        said.append(f"Measure next, {times}: {following['manoeuvre']}.")
+    return [*said, *(f"Note: {note}." for note in diagnosis.get("notes", ()))]
+
+
+def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity]) -> str:
+    known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
+    parts = [f"{record.meaning}: {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
+             for name, record in known.items()]  # fmt: skip
+    return f"{effect.replace('_', ' ').capitalize()}: {'; '.join(parts)}."
+
+
+def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
+    found = leftover.get("proposal")
+    record = records.get(f"effect.{found['term']}.q") if found else None
+    if not found or record is None:
+        return []
+    return [f"The term that helps most: {record.meaning}, {value_text(found['estimate'], found['se'], record.unit)}."]
+
+
+def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
+    before = next((s for s in ladder if s["step"] == "calibrated"), ladder[0])
+    last = ladder[-1]
+    key, runs = ("heldout", "runs held out") if last.get("heldout") is not None else ("fit", "the fitted runs")
+    if last is before:
+        return f"The error on {runs} is {last[key]:.2f} times what noise alone gives, after calibration."
+    return f"The error on {runs} falls from {before[key]:.2f} to {last[key]:.2f}, where 1.0 is noise alone."
+
+
+def value_text(value: float, se: float | None, unit: Unit) -> str:
+    """"1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
+    shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
+    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ')}"
+    value, se = value * shown.factor, se * shown.factor if se else None
+    if not se or se <= 0:
+        return f"{value:.3g}{name}".replace("-", "−")
+    exponent = int(f"{se:e}".split("e")[1])
+    place = max(0, (1 if f"{se:.0e}"[0] in "12" else 0) - exponent)
+    return f"{value:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")
+
+
+def _listed(names: Sequence[str], word: str) -> str:
+    return f" {word} ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
