@@ -1,0 +1,147 @@
+"""The workbench's addresses: what it takes in, what it refuses, and that nothing is lost."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from wheelchair_fmu.workbench.jobs import printed_json
+
+TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
+from wheelchair_fmu.workbench.server import HEADER, Workbench  # noqa: E402
+
+SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory) -> Workbench:
+    return Workbench(tmp_path_factory.mktemp("work"))
+
+
+@pytest.fixture
+def client(bench):
+    with TestClient(bench.app(), headers={HEADER: "1"}) as client:
+        client.base = f"{client.get('/', follow_redirects=False).headers['location']}"
+        yield client
+
+
+def upload(client, *files: tuple[str, bytes]):
+    return client.post(f"{client.base}/files", files=[("files", (name, content)) for name, content in files])
+
+
+def recordings() -> list[tuple[str, bytes]]:
+    return [(f.name, f.read_bytes()) for f in sorted((SAMPLE / "runs").glob("*.csv"))]
+
+
+def test_recordings_alone_become_a_campaign(client):
+    state = upload(client, *recordings()).json()
+    assert not [f for f in state["faults"] if f["severity"] == "error"]
+    roles = {r["file"]: r["role"] for r in state["campaign"]["run"]}
+    assert roles["holdout-slalom.csv"] == "holdout"
+    assert roles["slalom-slow.csv"] == "fit"
+    assert client.get(f"{client.base}/state").json()["campaign"] == state["campaign"], "a reload loses nothing"
+
+
+def test_a_campaign_folder_is_taken_as_it_is(client):
+    toml = (SAMPLE / "campaign.toml").read_bytes()
+    state = upload(client, ("campaign.toml", toml), *((f"runs/{n}", c) for n, c in recordings())).json()
+    assert state["campaign"]["campaign"]["name"] == "open-06-left-drag"
+    assert len(state["campaign"]["run"]) == 10
+    assert state["faults"] == []
+
+
+def test_a_loggers_own_columns_are_mapped(client):
+    head, _, body = (SAMPLE / "runs" / "slalom-slow.csv").read_text().partition("\n")
+    assert head.startswith("time [s],F_rl [N]")
+    renamed = "Time,left hand,right hand,left,right,Gyro Z [deg/s],Acc X [g],Acc Y [g]"
+    state = upload(client, ("log.csv", f"{renamed}\n{body}".encode())).json()
+    assert any(f["severity"] == "error" for f in state["faults"])
+    content = state["campaign"]
+    assert content["columns"]["yaw_rate"] == {"column": "Gyro Z [deg/s]"}, "guessed"
+    content["columns"] |= {"F_rl": {"column": "left hand", "unit": "N"}, "F_rr": {"column": "right hand", "unit": "lbf"},
+                           "wheel_speed_l": {"column": "left", "unit": "m/s"}}  # fmt: skip
+    state = client.put(f"{client.base}/campaign", json=content).json()
+    assert not [f for f in state["faults"] if f["severity"] == "error" and "holdout" not in f["text"]], state["faults"]
+
+
+def test_bad_files_show_their_faults_and_nothing_breaks(client):
+    state = upload(client, ("broken.csv", b"time [s],F_rl [N],F_rr [N],yaw_rate [furlong]\n0,1,2,x\n0,1,2,3\n")).json()
+    text = "\n".join(f["text"] for f in state["faults"])
+    assert "'furlong'" in text
+    assert "line 2" in text and "'x' is not a number" in text
+    assert upload(client, ("campaign.toml", b"[campaign\nname=")).json()["faults"][0]["text"].startswith("campaign.toml line 1")
+    assert upload(client, ("virus.exe", b"MZ")).json()["error"].startswith("virus.exe: .exe is no recording")
+
+
+@pytest.mark.parametrize("name", ["../../evil.csv", "/etc/evil.csv", ".hidden.csv", "a/../../evil.csv"])
+def test_files_stay_in_their_folder(client, bench, name):
+    assert "is no name for a file" in upload(client, (name, b"time [s]\n0\n")).json()["error"]
+    assert not list(bench.root.parent.rglob("evil.csv"))
+
+
+def test_two_tabs_do_not_disturb_each_other(client):
+    other = client.get("/", follow_redirects=False).headers["location"]
+    upload(client, *recordings())
+    assert client.get(f"{other}/state").json()["files"] == []
+
+
+def test_only_the_page_itself_may_change_anything(client, bench):
+    with TestClient(bench.app()) as stranger:
+        assert stranger.post(f"{client.base}/jobs", json={"kind": "diagnose"}).status_code == 403
+        assert stranger.get(f"{client.base}/state", headers={"host": "evil.example"}).status_code == 400
+    assert client.get("/s/000000000000/state").status_code == 404
+    assert client.get("/page/../content.py").status_code == 404
+    assert client.get("/page/%2e%2e/content.py").status_code == 404
+
+
+def test_an_expression_is_judged_as_it_is_typed(client):
+    def judged(expression, to="F_x"):
+        return client.post(f"{client.base}/expression", json={"expression": expression, "to": to}).json()
+
+    assert judged("-q * u") == {"unit": "N.s/m"}
+    assert "units do not fit" in judged("q * (u + m)")["why"]
+    assert "is no expression" in judged("q *")["why"]
+    assert "not allowed" in judged("q * u.__class__")["why"]
+
+
+def test_an_effect_of_ones_own_joins_the_catalogue(client):
+    effect = {"id": "rubbing_brake", "title": "a brake that rubs", "to": "F_x", "expression": "-q * u", "size": 0.5,
+              "lower": 0.0, "upper": 50.0}  # fmt: skip
+    state = client.post(f"{client.base}/effects", json=effect).json()
+    assert {"id": "rubbing_brake", "title": "a brake that rubs", "own": True} in state["effects"]
+    for change, why in (({"id": "x y"}, "is no name for an effect"), ({"id": "toe_misalignment"}, "already"),
+                        ({"title": 'a"""b'}, "plain words"), ({"size": -1}, "sizes must go"),
+                        ({"size": "much"}, "not a number"), ({"expression": "q * foo"}, "'foo'")):  # fmt: skip
+        answer = client.post(f"{client.base}/effects", json={**effect, "id": "other", **change})
+        assert answer.status_code == 400
+        assert why in answer.json()["error"]
+
+
+def test_undo_and_redo(client):
+    assert client.post(f"{client.base}/history", json={"by": -1}).json()["error"] == "there is nothing to undo"
+    assert client.post(f"{client.base}/history", json={"by": 5}).status_code == 400
+
+
+def test_long_work_can_be_cancelled(client):
+    upload(client, *recordings())
+    assert client.post(f"{client.base}/jobs", json={"kind": "diagnose"}).json()["job"]["state"] == "running"
+    assert "still running" in client.post(f"{client.base}/jobs", json={"kind": "calibrate"}).json()["error"]
+    wait_for(lambda: client.get(f"{client.base}/job").json()["lines"])
+    state = client.delete(f"{client.base}/jobs").json()
+    assert state["job"]["state"] == "cancelled"
+    assert state["report"] is None
+    assert len(state["history"]["steps"]) == 1
+    assert client.post(f"{client.base}/jobs", json={"kind": "bake"}).status_code == 400
+
+
+def wait_for(ready, seconds: float = 120) -> None:
+    end = time.monotonic() + seconds
+    while not ready():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def test_json_after_other_lines():
+    assert printed_json('out/a.png\n{"a": 1}\n') == {"a": 1}

@@ -1,0 +1,225 @@
+"""One piece of work as a folder: measurements, effects of one's own, the variants so far, what was found.
+
+::
+
+    campaign/campaign.toml, *.csv    what was dropped, and how its columns are read
+    effects/*.py                     effects written in the page
+    variants/N.toml                  one for each step; history.json says which, and where undo has gone
+    diagnosis.json, report.html      of the last diagnosis
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+from uuid import uuid4
+
+import tomli_w
+
+from ..campaign import CHANNELS, INPUTS, check, read
+from ..campaign.binding import split
+from ..campaign.channels import BY_NAME, TIME
+from ..campaign.document import Entry
+from ..campaign.formats import open_table
+from ..errors import CampaignError, Failure, UsageError
+from ..model.effects import bundled, load
+from ..model.stage import Effect
+from ..model.variant import Variant, read_variant, variant_text
+
+SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
+MOST_BYTES = 200_000_000  # of one file
+MANOEUVRES = ("coast-down", "slalom", "straight", "steady", "random", "strokes", "spin")
+NAME = re.compile(r"[0-9a-f]{12}")
+FIRST_HOLDOUT = "holdout"  # a file whose name says so is held out
+
+
+class Session:
+    """The folder `root / id`. Everything is read from and written to it at once; nothing is kept in memory."""
+
+    def __init__(self, root: Path, id: str):
+        if not NAME.fullmatch(id):
+            raise UsageError(f"{id!r} is no session; open the workbench's first page")
+        self.id, self.folder = id, root / id
+        self.campaign, self.effects, self.variants = (self.folder / n for n in ("campaign", "effects", "variants"))
+
+    @classmethod
+    def begin(cls, root: Path, campaign: Path | None = None) -> Session:
+        """A new session, with a copy of `campaign` where one is given."""
+        session = cls(root, uuid4().hex[:12])
+        for folder in (session.campaign, session.effects, session.variants):
+            folder.mkdir(parents=True)
+        session.keep(Variant(), "nominal")
+        for file in sorted(campaign.rglob("*")) if campaign else ():
+            if campaign and file.is_file() and file.suffix.lower() in SUFFIXES:
+                session.put(file.relative_to(campaign).as_posix(), file.read_bytes())
+        session.draft()
+        return session
+
+    @classmethod
+    def latest(cls, root: Path, most: int) -> list[Session]:
+        """Sessions that hold recordings, the last touched first."""
+        folders = [p for p in root.iterdir() if NAME.fullmatch(p.name) and p.is_dir()]
+        folders.sort(key=lambda p: p.stat().st_mtime, reverse=True)
+        return [s for s in (cls(root, p.name) for p in folders[: 4 * most]) if s.files()][:most]
+
+    @property
+    def name(self) -> str:
+        name = (self.content() or {}).get("campaign", {}).get("name")
+        return name if isinstance(name, str) else "campaign"
+
+    @property
+    def there(self) -> bool:
+        return self.folder.is_dir()
+
+    # -- measurements ---------------------------------------------------------------------------------------
+
+    def put(self, name: str, content: bytes) -> None:
+        """Take in a file of the campaign. Raises UsageError for one that cannot belong to it."""
+        path = PurePosixPath(name.replace("\\", "/"))
+        if path.is_absolute() or ".." in path.parts or not path.name or path.name.startswith("."):
+            raise UsageError(f"{name!r} is no name for a file of a campaign; give a plain name")
+        if path.suffix.lower() not in SUFFIXES:
+            raise UsageError(f"{name}: {path.suffix or 'no ending'} is no recording; give one of {', '.join(SUFFIXES)}")
+        if len(content) > MOST_BYTES:
+            raise UsageError(f"{name}: {len(content) / 1e6:.0f} MB is too much for the workbench; use `wheelchair diagnose`")
+        write(self.campaign / path, content)
+
+    def draft(self) -> None:
+        """A run for each recording that has none yet; columns as their headers say, where they do."""
+        content = self.content()
+        if content is None:
+            return  # what is there is no TOML: its fault is shown, and nothing is written over it
+        content.setdefault("campaign", {}).setdefault("name", "campaign")
+        content["campaign"].setdefault("axes", "SAE-J670")
+        runs = content.setdefault("run", [])
+        named = {run.get("file") for run in runs if isinstance(run, Mapping)} if isinstance(runs, list) else None
+        if named is None:
+            return
+        for name in self.files():
+            if name not in named:
+                runs.append(_run(name))
+        for header in self.headers():
+            channel = _guess(header)
+            columns = content.setdefault("columns", {})
+            if channel and channel != split(header)[0] and channel not in columns and isinstance(columns, dict):
+                columns[channel] = {"column": header}
+        if not content.get("columns"):
+            content.pop("columns", None)
+        self.write_content(content)
+
+    def files(self) -> list[str]:
+        """Recordings, by their names as campaign.toml writes them."""
+        every = (p for p in self.campaign.rglob("*") if p.is_file() and p.suffix.lower() in SUFFIXES)
+        return sorted(p.relative_to(self.campaign).as_posix() for p in every if p.suffix != ".toml")
+
+    def headers(self) -> dict[str, list[str]]:
+        """Every header there is, with the files that have it."""
+        found: dict[str, list[str]] = {}
+        for name in self.files():
+            table, _ = open_table(Entry(0, {"file": name}), self.campaign / name)
+            for header in table.headers if table else ():
+                if header:
+                    found.setdefault(header, []).append(name)
+        return found
+
+    def content(self) -> dict[str, Any] | None:
+        """campaign.toml as data; None where it is no TOML, {} where there is none."""
+        file = self.campaign / "campaign.toml"
+        try:
+            return tomllib.loads(file.read_text(encoding="utf-8-sig")) if file.exists() else {}
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError):
+            return None
+
+    def write_content(self, content: Mapping[str, Any]) -> None:
+        try:
+            write(self.campaign / "campaign.toml", tomli_w.dumps(content).encode())
+        except TypeError as error:
+            raise UsageError(f"campaign.toml cannot hold this: {error}") from None
+
+    def faults(self, known: Mapping[str, tuple[float, float]]) -> list[dict[str, Any]]:
+        if not self.files() and not (self.campaign / "campaign.toml").exists():
+            return []
+        return [{"text": str(f), "severity": f.severity} for f in check(self.campaign, dict(known))]
+
+    # -- effects and variants -------------------------------------------------------------------------------
+
+    def own_effects(self) -> dict[str, Effect]:
+        return load(self.effects)
+
+    def catalogue(self) -> dict[str, Effect]:
+        return {**bundled(), **self.own_effects()}
+
+    def history(self) -> dict[str, Any]:
+        """{"at": place, "steps": [{"label", "file", "ladder"}]}"""
+        file = self.folder / "history.json"
+        return json.loads(file.read_text()) if file.exists() else {"at": -1, "steps": []}  # type: ignore[no-any-return]
+
+    def keep(self, variant: Variant | Path, label: str, ladder: Any = None) -> None:
+        """One step more; what had been undone is forgotten."""
+        history = self.history()
+        steps = history["steps"][: history["at"] + 1]
+        file = self.variants / f"{len(steps)}-{uuid4().hex[:6]}.toml"
+        text = variant_text(variant) if isinstance(variant, Variant) else variant.read_text(encoding="utf-8")
+        write(file, text.encode())
+        steps.append({"label": label, "file": file.name, "ladder": ladder})
+        self._write_history(len(steps) - 1, steps)
+
+    def go(self, by: int) -> None:
+        """Undo (−1) or redo (1)."""
+        history = self.history()
+        at = history["at"] + by
+        if not 0 <= at < len(history["steps"]):
+            raise UsageError("there is nothing to undo" if by < 0 else "there is nothing to redo")
+        self._write_history(at, history["steps"])
+
+    def _write_history(self, at: int, steps: list[dict[str, Any]]) -> None:
+        write(self.folder / "history.json", json.dumps({"at": at, "steps": steps}).encode())
+
+    @property
+    def variant_file(self) -> Path:
+        history = self.history()
+        return self.variants / str(history["steps"][history["at"]]["file"])
+
+    def variant(self) -> Variant:
+        return read_variant(self.variant_file, self.catalogue())
+
+    def known(self) -> dict[str, float]:
+        """What the campaign file says of the chair. Raises Failure where the campaign has faults."""
+        try:
+            return read(self.campaign).known
+        except CampaignError as error:
+            raise Failure(f"the campaign has faults: {error}") from None
+
+
+def write(path: Path, content: bytes) -> None:
+    """Beside its place, then renamed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{os.getpid()}-{uuid4().hex[:6]}-{path.name}")
+    try:
+        beside.write_bytes(content)
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _run(name: str) -> dict[str, Any]:
+    stem = PurePosixPath(name).name.partition(".")[0]
+    manoeuvre = next((m for m in MANOEUVRES if m in stem.lower()), stem)
+    return {"file": name, "manoeuvre": manoeuvre, "role": "holdout" if FIRST_HOLDOUT in stem.lower() else "fit"}
+
+
+def _guess(header: str) -> str | None:
+    """The channel whose name is the header's but for case, spaces and dots."""
+    plain = re.sub(r"[^a-z0-9]+", "_", split(header)[0].lower()).strip("_")
+    names = {c.lower(): c for c in (TIME.name, *BY_NAME)}
+    return names.get(plain) or {"t": "time", "gyro_z": "yaw_rate", "yawrate": "yaw_rate", "ax": "a_x", "ay": "a_y"}.get(plain)
+
+
+def channel_list() -> list[dict[str, str]]:
+    """What a column may be."""
+    return [{"name": c.name, "unit": c.unit.name, "meaning": c.meaning} for c in (TIME, *INPUTS, *CHANNELS)]
