@@ -139,16 +139,16 @@ def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: S
 
 
 def _tied(r: Round) -> tuple[str, ...]:
-    """The effect a round found, and every other that this campaign cannot tell from it."""
-    found = [c for c in r.candidates if c.found]
-    if not found:
+    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be."""
+    leader = next((c for c in r.candidates if c.found), None)
+    if leader is None:
         return ()
-    leader = found[0]
     margin = TIED * correlation_time(leader.fit.evidence)
     group = [leader.effect]
-    for c in found[1:]:
+    for c in r.candidates:
         near = leader.drop - c.drop <= margin
-        if near or (c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)):
+        same = c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
+        if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
 
