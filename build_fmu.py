@@ -1,4 +1,4 @@
-"""Build the wheelchair FMU:  python build_fmu.py [--variant better.toml] [--effects all] [--flavour python]"""
+"""Build the wheelchair FMU:  python build_fmu.py [--variant better.toml] [--effects all] [--platforms all]"""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from wheelchair_fmu.errors import WheelchairError
-from wheelchair_fmu.fmu.build import NAMES, build
+from wheelchair_fmu.fmu.build import NAMES, build_each
 from wheelchair_fmu.model.effects import catalogue_of
 from wheelchair_fmu.model.variant import Variant, read_variant
 
@@ -19,14 +19,25 @@ class Parser(argparse.ArgumentParser):
 
 
 def arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = Parser(description="Build dist/Wheelchair.fmu, or the FMU of another variant.")
+    parser = Parser(description="Build dist/Wheelchair.fmu (FMI 2.0) and dist/Wheelchair.fmi3.fmu, or another variant's.")
     parser.add_argument("--variant", type=Path, metavar="TOML", help="laws, effects and values, as `wheelchair add` writes")
     parser.add_argument("--effects", default="default", metavar="IDS",
                         help="default (all without states of their own), all, none, ids, or a folder of your own")  # fmt: skip
     parser.add_argument("--equations", metavar="KIND", help="extended (any motion) or paper (the paper's to the letter)")
     parser.add_argument("--flavour", default="native", help="native (C inside) or python (needs Python around it)")
-    parser.add_argument("-o", "--output", type=Path, metavar="FMU", help="where to write it")
+    parser.add_argument("--fmi", metavar="VERSION", help="2, 3 or both (the default; pythonfmu makes 2 only)")
+    parser.add_argument("--platforms", default="host", metavar="NAMES",
+                        help="host, all (Linux and macOS on x86-64 and ARM, Windows), or names with commas")  # fmt: skip
+    parser.add_argument("-o", "--output", type=Path, metavar="FMU", help="where to write it; FMI 3.0 beside it, as .fmi3.fmu")
     return parser.parse_args(argv)
+
+
+def targets(version: str | None, flavour: str, first: Path) -> dict[str, Path]:
+    """Where to write which version of FMI."""
+    version = version or ("2" if flavour == "python" else "both")
+    if version == "both":
+        return {"2": first, "3": first.with_name(f"{first.stem}.fmi3.fmu")}
+    return {version: first}
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -34,12 +45,13 @@ def main(argv: list[str] | None = None) -> int:
     try:
         catalogue, effects = catalogue_of(given.effects)
         variant = read_variant(given.variant, catalogue) if given.variant else Variant(catalogue=catalogue)
-        target = given.output or Path("dist") / f"{NAMES.get(given.flavour, 'Wheelchair')}.fmu"
-        path = build(variant, target, effects=effects, equations=given.equations, flavour=given.flavour)
+        first = given.output or Path("dist") / f"{NAMES.get(given.flavour, 'Wheelchair')}.fmu"
+        paths = build_each(targets(given.fmi, given.flavour, first), variant, effects=effects, equations=given.equations,
+                           flavour=given.flavour, platforms=given.platforms)  # fmt: skip
     except WheelchairError as error:
         print(error, file=sys.stderr)
         return error.exit_code
-    print(path)
+    print(*paths, sep="\n")
     return 0
 
 

@@ -1,7 +1,12 @@
-/* One simulated chair, whatever the protocol: its values, their checks, its steps and saved states.
+/* One simulated instance, whatever the protocol: its phases, values, checks, steps and saved states.
  *
- * Every function that can refuse says why through the instance's `log`, in one sentence, and leaves
- * the instance as it was.
+ * fmi2.c and fmi3.c translate calls to these functions. Every one that can refuse says why through the
+ * instance's log, in one sentence, and leaves the instance as it was.
+ *
+ *     values.c        log, phases, variables by value reference
+ *     motion.c        steps of Co-Simulation, evaluations of Model Exchange
+ *     derivatives.c   directional and adjoint derivatives, output derivatives, slopes of inputs
+ *     saved.c         states as values and as bytes
  */
 #ifndef WC_INSTANCE_H
 #define WC_INSTANCE_H
@@ -11,11 +16,34 @@
 
 #include "model.h"
 
-typedef enum { WC_DONE, WC_DISCARDED, WC_FAILED } wc_result;
+/* The numbers are those of fmi2Status and fmi3Status. */
+typedef enum { WC_DONE = 0, WC_DISCARDED = 2, WC_FAILED = 3 } wc_result;
 typedef enum { WC_LOG_WARNING = 1, WC_LOG_DISCARD = 2, WC_LOG_ERROR = 4, WC_LOG_MODEL = 8 } wc_category;
-typedef enum { WC_INSTANTIATED = 1, WC_INITIALIZING = 2, WC_STEPPING = 4, WC_TERMINATED = 8 } wc_phase;
+typedef enum { WC_COSIMULATION = 1, WC_MODEL_EXCHANGE = 2 } wc_interface;
 
-typedef void (*wc_logger)(void *host, wc_category category, const char *text);
+typedef enum {
+    WC_INSTANTIATED = 1,
+    WC_INITIALIZING = 2,
+    WC_STEPPING = 4, /* Co-Simulation */
+    WC_BETWEEN = 8,  /* Co-Simulation, while the importer is told of an internal step */
+    WC_EVENT = 16,   /* Model Exchange */
+    WC_CONTINUOUS = 32,
+    WC_TERMINATED = 64
+} wc_phase;
+#define WC_ANY_PHASE 127
+#define WC_FOR_COSIMULATION 128 /* beside phases: legal in this interface only */
+#define WC_FOR_EXCHANGE 256
+#define WC_EVALUATION (WC_INITIALIZING | WC_EVENT | WC_CONTINUOUS | WC_TERMINATED | WC_FOR_EXCHANGE)
+#define WC_RUNNING (WC_STEPPING | WC_EVENT | WC_CONTINUOUS)
+#define WC_BEFORE_END (WC_INSTANTIATED | WC_INITIALIZING | WC_RUNNING)
+
+/* Tells the importer: the numeric status is FMI's. */
+typedef void (*wc_logger)(void *host, int status, const char *category, const char *text);
+
+/* Called after each internal step of Co-Simulation with the time reached; may bring *end forward, never back. */
+typedef void (*wc_pause)(void *host, double time, double *end);
+
+#define WC_MAGIC "wcstate2"
 
 /* All that a saved state must hold: no pointers and no padding, so that its bytes outlive a process. */
 typedef struct {
@@ -23,22 +51,38 @@ typedef struct {
     uint64_t checksum;
     double tolerance, start_time, stop_time, time;
     double elapsed, lost; /* since start_time, a compensated sum: steps add up exactly, whatever the start */
-    double x[WC_MAX_STATES], w[WC_MAX_INPUTS], slope[WC_MAX_INPUTS], p[WC_MAX_PARAMETERS];
-    int32_t phase, has_stop;
+    double x[WC_MAX_STATES], w[WC_MAX_INPUTS], p[WC_MAX_PARAMETERS];
+    double slope[WC_MAX_INPUTS], last_slope[WC_MAX_INPUTS]; /* of the inputs over the next step, and the last */
+    double held[WC_MAX_CROSSINGS];                          /* what is true or false, as of the last event */
+    int32_t interface, phase, has_stop;
     int32_t restart; /* x follows from start values that have changed since */
     int32_t stale;   /* a jump has left the algebraic rows of x where they were */
+    int32_t jumped;  /* an event has changed a continuous state, and the importer does not know yet */
 } wc_saved;
 
 typedef struct {
     wc_saved now;
-    double y[WC_MAX_OUTPUTS];
-    int y_valid;
-    unsigned warned; /* bit i: watch i has spoken */
+    double y[WC_MAX_OUTPUTS], rate[WC_MAX_STATES], z[WC_MAX_CROSSINGS];
+    int y_valid, rate_valid; /* rate and z */
+    unsigned warned;         /* bit i: watch i has spoken */
+    unsigned categories;     /* of the log, switched on */
+    const char *standard;    /* what the protocol's functions begin with */
     wc_logger log;
+    wc_pause pause; /* or 0 */
     void *host;
+    void *(*allocate)(size_t, size_t);
+    void (*release)(void *);
 } wc_instance;
 
-/* As after instantiation; keeps log and host. */
+/* ---- values.c ---- */
+
+/* Why this instance cannot be made, or 0. */
+const char *wc_refuse_instance(const char *name, wc_interface interface, const char *token);
+
+/* After the host has set standard, log, host, allocate and release. */
+void wc_begin(wc_instance *c, wc_interface interface, int logging);
+
+/* As after wc_begin; what belongs to the host stays. */
 void wc_reset(wc_instance *c);
 
 /* One sentence to the log. */
@@ -48,33 +92,95 @@ void wc_say(const wc_instance *c, wc_category category, const char *format, ...)
 #endif
     ;
 
-/* The kernel that the parameters choose. */
+/* Switches categories of the log, all where n is 0. */
+wc_result wc_set_logging(wc_instance *c, const char *function, int on, size_t n, const char *const names[]);
+
+/* The instance, where the call is legal in its phase; else 0, and a sentence that names the legal ones. */
+wc_instance *wc_enter(void *instance, const char *function, int legal);
+
+/* Where an argument that must not be null is null: a sentence. */
+wc_result wc_missing(const wc_instance *c, const char *function, const char *argument);
+
+/* A function that this FMU has no use for: a sentence that says why. */
+wc_result wc_unsupported(void *instance, const char *function, const char *why);
+
+/* The kernel that the parameters choose, and its place among all. */
+int wc_law_of(const wc_instance *c);
 const wc_kernel *wc_kernel_of(const wc_instance *c);
 
 /* The variable with this value reference and type; 0, with a sentence, where there is none. */
 const wc_variable *wc_find(const wc_instance *c, const char *function, unsigned reference, wc_type type);
 
-/* A value, after bringing what it depends on up to date. */
-wc_result wc_get(wc_instance *c, const wc_variable *v, double *value);
+/* Arrays of values as the protocols know them. */
+typedef enum { WC_DOUBLES, WC_INTS, WC_INT64S, WC_BYTES } wc_array;
 
-/* May this variable be given this value now? Says why not. */
-wc_result wc_check(const wc_instance *c, const char *function, const wc_variable *v, double value);
+/* Gives n variables their values, all or none. */
+wc_result wc_set_all(wc_instance *c, const char *function, const unsigned vr[], size_t n, wc_type type, const void *values,
+                     wc_array array);
+wc_result wc_get_all(wc_instance *c, const char *function, const unsigned vr[], size_t n, wc_type type, void *values,
+                     wc_array array);
 
-/* Gives a checked value. */
-void wc_set(wc_instance *c, const wc_variable *v, double value);
+/* Numbers the same way on every platform, and values as a reader knows them, with unit or name. */
+typedef struct {
+    char text[64];
+} wc_label;
+wc_label wc_number(double value);
+wc_label wc_valued(const wc_variable *v, double value);
+
+/* ---- motion.c ---- */
+
+wc_result wc_set_up(wc_instance *c, const char *function, int has_tolerance, double tolerance, double start, int has_stop,
+                    double stop);
+wc_result wc_leave_initialization(wc_instance *c, const char *function);
 
 /* Brings states up to date with start values and jumps. */
 wc_result wc_settle(wc_instance *c, const char *function);
 
-/* One communication step of length h. */
+/* Outputs, rates and crossings, where they are not up to date. */
+wc_result wc_refresh_outputs(wc_instance *c, const char *function);
+wc_result wc_refresh_rates(wc_instance *c, const char *function);
+
+/* One communication step of length h, or as far as the pause lets it. */
 wc_result wc_do_step(wc_instance *c, const char *function, double point, double h);
 
-/* dy along changes of inputs and parameters, given by variable. */
-wc_result wc_directional(wc_instance *c, const char *function, const double *dw, const double *dp, double *dy);
+/* Model Exchange. Arrays must have the model's number of states, or of crossings. */
+wc_result wc_set_time(wc_instance *c, const char *function, double time);
+wc_result wc_set_states(wc_instance *c, const char *function, const double *x, size_t n);
+wc_result wc_get_states(wc_instance *c, const char *function, double *x, size_t n);
+wc_result wc_get_rates(wc_instance *c, const char *function, double *rate, size_t n);
+wc_result wc_get_nominals(wc_instance *c, const char *function, double *nominal, size_t n);
+wc_result wc_get_crossings(wc_instance *c, const char *function, double *z, size_t n);
+wc_result wc_enter_continuous(wc_instance *c, const char *function);
+wc_result wc_complete_step(wc_instance *c, const char *function);
 
-/* The present state as bytes that `wc_restore` accepts in any process that runs the same model. */
-void wc_save(const wc_instance *c, wc_saved *to);
-wc_result wc_restore(wc_instance *c, const char *function, const wc_saved *from);
-wc_result wc_verify(const wc_instance *c, const char *function, const void *bytes, size_t size);
+/* Model Exchange, in an event: whether continuous states have jumped, told once. */
+wc_result wc_update_discrete(wc_instance *c, const char *function, int *jumped);
+
+/* ---- derivatives.c ---- */
+
+/* out = Σ ∂unknown/∂known · seed, as long as unknown. */
+wc_result wc_directional(wc_instance *c, const char *function, const unsigned unknown[], size_t n_unknown,
+                         const unsigned known[], size_t n_known, const double seed[], double out[]);
+
+/* out = Σ seed · ∂unknown/∂known, as long as known. */
+wc_result wc_adjoint(wc_instance *c, const char *function, const unsigned unknown[], size_t n_unknown,
+                     const unsigned known[], size_t n_known, const double seed[], double out[]);
+
+/* First derivatives of outputs by time, at the end of a step. */
+wc_result wc_output_slopes(wc_instance *c, const char *function, const unsigned vr[], size_t n, const int order[],
+                           double out[]);
+
+/* First derivatives of inputs over the next step. */
+wc_result wc_input_slopes(wc_instance *c, const char *function, const unsigned vr[], size_t n, const int order[],
+                          const double value[]);
+
+/* ---- saved.c ---- */
+
+wc_result wc_get_state(wc_instance *c, const char *function, void **state);
+wc_result wc_set_state(wc_instance *c, const char *function, const void *state);
+wc_result wc_free_state(wc_instance *c, void **state);
+wc_result wc_state_size(wc_instance *c, const char *function, const void *state, size_t *size);
+wc_result wc_serialize(wc_instance *c, const char *function, const void *state, void *bytes, size_t size);
+wc_result wc_deserialize(wc_instance *c, const char *function, const void *bytes, size_t size, void **state);
 
 #endif

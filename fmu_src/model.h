@@ -1,7 +1,7 @@
 /* The seam between generated physics and hand-written protocol.
  *
  * A generated file defines `wc_the_model`: the table of variables, the kernels, and the few rules that
- * tie them together. fmi2.c and instance.c read nothing else of the physics.
+ * tie them together. All other files here read nothing else of the physics.
  */
 #ifndef WC_MODEL_H
 #define WC_MODEL_H
@@ -10,8 +10,9 @@
 
 #define WC_MAX_PARAMETERS 256
 #define WC_MAX_OUTPUTS 128
+#define WC_MAX_CROSSINGS 8
 
-typedef enum { WC_TIME, WC_PARAMETER, WC_INPUT, WC_OUTPUT } wc_kind;
+typedef enum { WC_TIME, WC_PARAMETER, WC_INPUT, WC_OUTPUT, WC_DERIVATIVE, WC_INDICATOR } wc_kind;
 typedef enum { WC_REAL, WC_ENUMERATION, WC_BOOLEAN } wc_type;
 
 /* One variable; its value reference is its place in the table. */
@@ -19,7 +20,7 @@ typedef struct {
     const char *name, *unit;
     wc_kind kind;
     wc_type type;
-    int index; /* into the parameters, inputs or outputs of a kernel */
+    int index; /* into the parameters, inputs, outputs, states or crossings of a kernel */
     int fixed; /* a parameter that may not change once the simulation has started */
     double start, min, max;
     const char *const *choices; /* of an enumeration, whose values count from 1; else 0 */
@@ -42,6 +43,13 @@ typedef struct {
     const char *meaning; /* the rest of the sentence that begins with the variable's value */
 } wc_watch;
 
+/* A state that is integrated, by the model itself in Co-Simulation, by the importer in Model Exchange. The other
+ * states of a kernel are solutions of algebraic rows. */
+typedef struct {
+    int place;    /* among the kernel's states */
+    int variable; /* the value reference under which it is an output */
+} wc_state;
+
 typedef struct {
     const char *name, *token; /* the token (FMI 2: guid) changes with everything that changes results */
     int variables;
@@ -54,6 +62,11 @@ typedef struct {
     int watches;
     const wc_watch *watch;
     double tolerance, grid; /* of the internal steps, unless the importer asks for another tolerance */
+    int states; /* 0: this model is for Co-Simulation only */
+    const wc_state *state;
+    wc_function mass; /* p → the mass of each row of a kernel; which are zero is decided when the FMU is built */
+    int crossings;
+    const int *crossing; /* the outputs, true or false, that switch where the kernel's z crosses zero */
 } wc_model;
 
 extern const wc_model wc_the_model;

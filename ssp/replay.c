@@ -39,4 +39,5 @@ static int recorded_forward(const double **arg, double **res, long long *iw, dou
 }
 
 const wc_kernel replay_kernel = {
-    SIZES, unrecorded_nominal, unrecorded_start, unrecorded_project, unrecorded_step, recorded_output, recorded_forward};
+    SIZES, unrecorded_nominal, unrecorded_start, unrecorded_project, unrecorded_step, recorded_output, recorded_forward,
+    unrecorded_rate};

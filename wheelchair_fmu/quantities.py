@@ -32,34 +32,42 @@ class Unit:
     s: int = 0
     rad: int = 0
     display: tuple[DisplayUnit, ...] = ()
+    quantity: str = ""  # what is measured in it
 
     def scale(self, kg: float, m: float, s: float) -> float:
         """Factor by which a number grows when the units of mass, length, time shrink by kg, m, s."""
         return float(kg) ** self.kg * float(m) ** self.m * float(s) ** self.s
 
 
-ONE = Unit("1", display=(DisplayUnit("%", 100.0),))
-KG = Unit("kg", kg=1)
-KG_M2 = Unit("kg.m2", kg=1, m=2)
-M = Unit("m", m=1, display=(DisplayUnit("mm", 1000.0),))
-PER_M = Unit("1/m", m=-1)
-S = Unit("s", s=1, display=(DisplayUnit("ms", 1000.0),))
-M_S = Unit("m/s", m=1, s=-1, display=(DisplayUnit("km/h", 3.6),))
-M_S2 = Unit("m/s2", m=1, s=-2)
-RAD = Unit("rad", rad=1, display=(DisplayUnit("deg", 180 / pi),))
-RAD_S = Unit("rad/s", s=-1, rad=1, display=(DisplayUnit("deg/s", 180 / pi),))
-RAD_S2 = Unit("rad/s2", s=-2, rad=1)
-PER_RAD = Unit("1/rad", rad=-1)
-N = Unit("N", kg=1, m=1, s=-2)
-N_RAD = Unit("N/rad", kg=1, m=1, s=-2, rad=-1)
-N_M = Unit("N.m", kg=1, m=2, s=-2)
-N_M_RAD = Unit("N.m/rad", kg=1, m=2, s=-2, rad=-1)
-N_S_M = Unit("N.s/m", kg=1, s=-1)
-N_S2_M2 = Unit("N.s2/m2", kg=1, m=-1)
-N_M_S = Unit("N.m.s/rad", kg=1, m=2, s=-1, rad=-1)
-PER_N = Unit("1/N", kg=-1, m=-1, s=2)
-W = Unit("W", kg=1, m=2, s=-3)
-BAR = Unit("bar")  # pressure enters only as a ratio, so its own dimension never meets kg, m, s
+ONE = Unit("1", display=(DisplayUnit("%", 100.0),), quantity="Ratio")
+KG = Unit("kg", kg=1, quantity="Mass")
+KG_M2 = Unit("kg.m2", kg=1, m=2, quantity="MomentOfInertia")
+M = Unit("m", m=1, display=(DisplayUnit("mm", 1000.0),), quantity="Length")
+PER_M = Unit("1/m", m=-1, quantity="Curvature")
+S = Unit("s", s=1, display=(DisplayUnit("ms", 1000.0),), quantity="Time")
+M_S = Unit("m/s", m=1, s=-1, display=(DisplayUnit("km/h", 3.6),), quantity="Velocity")
+M_S2 = Unit("m/s2", m=1, s=-2, quantity="Acceleration")
+RAD = Unit("rad", rad=1, display=(DisplayUnit("deg", 180 / pi),), quantity="Angle")
+RAD_S = Unit("rad/s", s=-1, rad=1, display=(DisplayUnit("deg/s", 180 / pi),), quantity="AngularVelocity")
+RAD_S2 = Unit("rad/s2", s=-2, rad=1, quantity="AngularAcceleration")
+PER_RAD = Unit("1/rad", rad=-1, quantity="RatioPerAngle")
+N = Unit("N", kg=1, m=1, s=-2, quantity="Force")
+N_RAD = Unit("N/rad", kg=1, m=1, s=-2, rad=-1, quantity="ForcePerAngle")
+N_M = Unit("N.m", kg=1, m=2, s=-2, quantity="Torque")
+N_M_RAD = Unit("N.m/rad", kg=1, m=2, s=-2, rad=-1, quantity="TorquePerAngle")
+N_S_M = Unit("N.s/m", kg=1, s=-1, quantity="LinearDamping")
+N_S2_M2 = Unit("N.s2/m2", kg=1, m=-1, quantity="QuadraticDamping")
+N_M_S = Unit("N.m.s/rad", kg=1, m=2, s=-1, rad=-1, quantity="RotationalDamping")
+PER_N = Unit("1/N", kg=-1, m=-1, s=2, quantity="RatioPerForce")
+W = Unit("W", kg=1, m=2, s=-3, quantity="Power")
+BAR = Unit("bar", quantity="Pressure")  # pressure enters only as a ratio, so its own dimension never meets kg, m, s
+
+
+def per_second(unit: Unit) -> Unit:
+    """The unit of a rate of change."""
+    known = {M: M_S, M_S: M_S2, RAD: RAD_S, RAD_S: RAD_S2}
+    return known.get(unit) or Unit(f"{unit.name}/s", unit.kg, unit.m, unit.s - 1, unit.rad,
+                                   quantity=f"{unit.quantity}Rate")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -149,7 +157,8 @@ class Output(Quantity):
     nominal: float = 1.0
     lower: float = -inf
     upper: float = inf
-    boolean: bool = False
+    boolean: bool = False  # written as an inequality; `margin` is the unit of its two sides
+    margin: Unit = ONE
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -15,7 +15,10 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
+from fmpy.fmi3 import FMU3Slave
 from fmpy.model_description import ModelDescription
+
+from wheelchair_fmu.engine import compiler
 
 DISCARD, ERROR = 2, 3
 
@@ -35,13 +38,17 @@ class Unpacked:
 
     @property
     def library(self) -> Path:
-        return next((self.folder / "binaries" / "linux64").glob("*.so"))
+        return next((self.folder / "binaries").glob(f"*/*{compiler.SUFFIX}"))
 
     def reference(self, name: str) -> int:
         return next(v.valueReference for v in self.description.modelVariables if v.name == name)
 
     def names(self, causality: str, kind: str = "Real") -> list[str]:
         return [v.name for v in self.description.modelVariables if v.causality == causality and v.type == kind]
+
+    @property
+    def derivatives(self) -> list[str]:
+        return [v.name for v in self.description.modelVariables if v.derivative is not None]
 
 
 class Chair:
@@ -98,10 +105,67 @@ class Chair:
     def free(self) -> None:
         self.fmu.fmi2FreeInstance(self.fmu.component)
 
+    def save(self):
+        return self.fmu.getFMUstate()
+
+    def restore(self, state) -> None:
+        self.fmu.setFMUstate(state)
+
+    def drop(self, state) -> None:
+        self.fmu.freeFMUstate(state)
+
+
+class Chair3(Chair):
+    """The same by FMI 3.0. `update`, where given, is called in intermediate updates; see fmi3IntermediateUpdateCallback."""
+
+    def __init__(self, unpacked: Unpacked, name: str = "chair", logging: bool = False, update=None, early: bool = False):
+        d = unpacked.description
+        self.unpacked, self.said, self.time = unpacked, [], 0.0
+        self.types = {v.name: v for v in d.modelVariables}
+        self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name,
+                             modelIdentifier=d.coSimulation.modelIdentifier)  # fmt: skip
+        self.fmu.instantiate(loggingOn=logging, earlyReturnAllowed=early, logMessage=self._log,
+                             intermediateUpdate=update)  # fmt: skip
+
+    def start(self, values: Mapping[str, float] | None = None, time: float = 0.0, **setup) -> Chair3:
+        self.time = time
+        self.set(values or {})
+        self.fmu.enterInitializationMode(startTime=time, **setup)
+        self.fmu.exitInitializationMode()
+        return self
+
+    def set(self, values: Mapping[str, float]) -> None:
+        numbers = {n: v for n, v in values.items() if self.types[n].type == "Float64"}
+        if numbers:
+            self.fmu.setFloat64([self.types[n].valueReference for n in numbers], list(numbers.values()))
+        for n in values.keys() - numbers.keys():
+            self.fmu.setInt64([self.types[n].valueReference], [int(values[n])])
+
+    def get(self, *names: str) -> list[float]:
+        call = {"Float64": self.fmu.getFloat64, "Boolean": self.fmu.getBoolean, "Enumeration": self.fmu.getInt64}
+        return [call[self.types[n].type]([self.types[n].valueReference])[0] for n in names]
+
+    def outputs(self) -> list[float]:
+        return self.get(*self.unpacked.names("output", "Float64"))
+
+    def free(self) -> None:
+        self.fmu.fmi3FreeInstance(self.fmu.component)
+
+    def save(self):
+        return self.fmu.getFMUState()
+
+    def restore(self, state) -> None:
+        self.fmu.setFMUState(state)
+
+    def drop(self, state) -> None:
+        self.fmu.freeFMUState(state)
+
 
 @contextmanager
 def chair(unpacked: Unpacked, **options) -> Iterator[Chair]:
-    made = Chair(unpacked, **options)
+    """An instance by the version of FMI that the archive is for."""
+    kind = Chair if unpacked.description.fmiVersion == "2.0" else Chair3
+    made = kind(unpacked, **options)
     try:
         yield made
     finally:

@@ -34,6 +34,16 @@ def everything(workshop) -> Unpacked:
 
 
 @pytest.fixture(scope="session")
+def native3(workshop) -> Unpacked:
+    return _built(workshop, "native3", fmi="3")
+
+
+@pytest.fixture(scope="session")
+def everything3(workshop) -> Unpacked:
+    return _built(workshop, "everything3", effects="all", fmi="3")
+
+
+@pytest.fixture(scope="session")
 def in_python(workshop) -> Unpacked:
     return _built(workshop, "in_python", flavour="python")
 

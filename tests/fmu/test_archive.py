@@ -29,22 +29,23 @@ from .chair import Unpacked, chair
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("flavour", ["native", "everything", "in_python"])
+@pytest.mark.parametrize("flavour", ["native", "native3", "everything", "everything3", "in_python"])
 def test_fmpy_finds_no_fault(flavour, request):
     assert problems(request.getfixturevalue(flavour).path) == []
 
 
-@pytest.mark.parametrize("flavour", ["native", "in_python"])
-def test_two_builds_are_the_same_bytes(flavour, request, tmp_path):
+@pytest.mark.parametrize(("flavour", "options"), [("native", {}), ("native3", {"fmi": "3"}),
+                                                  ("in_python", {"flavour": "python"})])  # fmt: skip
+def test_two_builds_are_the_same_bytes(flavour, options, request, tmp_path):
     first = request.getfixturevalue(flavour).path
-    again = build(target=tmp_path / "again.fmu", flavour="native" if flavour == "native" else "python")
+    again = build(target=tmp_path / "again.fmu", **options)
     assert first.read_bytes() == again.read_bytes()
 
 
 def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     exported = _lines("nm", "-D", "--defined-only", str(native.library))
-    assert len(exported) > 30
-    assert [line for line in exported if not re.fullmatch(r"\S+ T fmi2\w+", line)] == []
+    assert len(exported) > 100
+    assert [line for line in exported if not re.fullmatch(r"\S+ T fmi[23]\w+", line)] == []
     needed = re.findall(r"\(NEEDED\).*\[(.+)]", "\n".join(_lines("readelf", "-d", str(native.library))))
     assert set(needed) <= {"libc.so.6", "libm.so.6"}
     asked = _lines("nm", "-D", "--undefined-only", str(native.library))
@@ -52,11 +53,13 @@ def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     assert set(memory) <= {"calloc"}  # the importer's, or this one; never malloc or realloc
 
 
-@pytest.mark.parametrize("name", ["fmi2.c", "instance.c", "advance.c", "model_data.c"])
-def test_compiles_without_a_warning(name, native, tmp_path):
+@pytest.mark.parametrize("name", ["fmi2.c", "fmi3.c", "values.c", "motion.c", "derivatives.c", "saved.c", "advance.c",
+                                  "model_data.c"])  # fmt: skip
+def test_compiles_without_a_warning(name, native, native3, tmp_path):
+    archive = native3 if name == "fmi3.c" else native
     done = subprocess.run([*compiler.command(), "-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
                            "-ffp-contract=off", "-fPIC", "-c", f"-I{native_flavour.headers()}",
-                           str(native.folder / "sources" / name), "-o", str(tmp_path / "object.o")],
+                           str(archive.folder / "sources" / name), "-o", str(tmp_path / "object.o")],
                           capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
 
@@ -90,21 +93,26 @@ def test_units_have_the_right_dimensions_and_display_units():
 
 def test_dependencies():
     plain = interface(Variant())
-    on = {name: {v.name: kind for v, kind in known} for name, known in dependencies.outputs(plain).items()}
-    assert on["chair.x"] == {} and on["load.rl"] == {}
+    on = {name: {v.name: kind for v, kind in known} for name, known in dependencies.continuous(plain).items()}
+    assert on["chair.x"] == {"chair.x": "constant"} and on["load.rl"] == {}
     assert on["sensor.a_x"]["push.F_rl"] == "tunable" and on["sensor.a_x"]["brake.rl"] == "dependent"
     assert "push.F_rl" not in on["push.total_needed"]  # it cancels
+    assert on["der(chair.psi)"] == {"chair.psi_dot": "constant"}
+    assert on["der(chair.x)"] == {"chair.psi": "dependent", "chair.u": "dependent", "chair.v": "dependent"}
+    assert {"chair.u", "chair.v", "chair.psi_dot", "push.F_rl", "brake.rl"} <= on["der(chair.psi_dot)"].keys()
     start = {name: {v.name for v, _ in known} for name, known in dependencies.initial(plain).items()}
     assert start["chair.u"] == {"start.u", "speed.u", "speed.mode"}
     assert {"tyre.law", "tyre.C_lambda", "start.psi_dot"} <= start["force.F_srl"]
+    assert {"tyre.law", "chair.I_z", "push.F_rl", "start.v"} <= start["der(chair.psi_dot)"]
     assert "tyre.law" not in start["load.rl"]
 
 
 def test_dependencies_go_through_algebraic_states():
     """Load transfer reads an acceleration that is only known at the end of the line."""
     transfer = interface(Variant().with_effects(["lateral_load_transfer"]))
-    on = {name: {v.name for v, _ in known} for name, known in dependencies.outputs(transfer).items()}
-    assert {"floor.slope_x", "floor.slope_y"} <= on["load.rl"] and "push.F_rl" not in on["load.rl"]
+    on = {name: {v.name for v, _ in known} for name, known in dependencies.continuous(transfer).items()}
+    assert {"floor.slope_x", "floor.slope_y", "chair.v"} <= on["load.rl"] and "push.F_rl" not in on["load.rl"]
+    assert "floor.slope_y" in on["load.lifted.margin"]
     start = {name: {v.name for v, _ in known} for name, known in dependencies.initial(transfer).items()}
     assert {"tyre.law", "tyre.C_lambda", "start.psi_dot", "floor.slope_y"} <= start["load.rl"]
 

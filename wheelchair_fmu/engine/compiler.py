@@ -42,12 +42,16 @@ def version() -> str:
     return _run([*command(), "--version"]).splitlines()[0]
 
 
-def compile_shared(sources: Sequence[Path], target: Path, extra: Sequence[str] = ()) -> Path:
+def compile_shared(
+    sources: Sequence[Path], target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None
+) -> Path:
     """Compile `sources` into the shared library `target`, which appears whole or not at all.
+
+    `cross` is the compiler for another system than this.
 
     Raises BuildError with the compiler's own words.
     """
-    return _compiled([*command(), *FLAGS], sources, target, [*extra, "-lm"])
+    return _compiled([*(cross or command()), *FLAGS], sources, target, [*extra, "-lm"])
 
 
 def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:

@@ -4,9 +4,10 @@
     project(x, w, p)                     → x     one Newton step that puts algebraic rows right
     step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
     output(x, w, p)                      → y
-    forward(x, w, p, dx, dw, dp)         → dy, dr   derivatives along a direction, r = M x'
+    forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
+    rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
 
-These five are all that the Python tools, the FMUs and the report page run.
+These six are all that the Python tools, the FMUs and the report page run.
 """
 
 from __future__ import annotations
@@ -15,12 +16,13 @@ from dataclasses import dataclass
 
 import casadi as cs
 
+from ..errors import ModelError
 from ..model.chassis import ROWS
 from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
 
-NAMES = ("start", "project", "step", "output", "forward")
+NAMES = ("start", "project", "step", "output", "forward", "rate")
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ def kernel(model: Model) -> Kernel:
         "step": cs.Function("step", [x, w, s.w1, s.h, p], cs.cse([s.x1, s.error, s.d2, s.d3])),
         "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
         "forward": _forward(model),
+        "rate": cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
     }
     return Kernel(model, functions)
 
@@ -87,5 +90,24 @@ def _forward(model: Model) -> cs.Function:
     tangent = cs.jtimes(model.f, everything, cs.vertcat(dx_given, dw, dp))
     dx_full = dx_given + _algebraic_change(model, tangent)
     along = cs.vertcat(dx_full, dw, dp)
-    dy, dr = (cs.jtimes(e, everything, along) for e in (model.y, model.f))
-    return cs.Function("forward", [*at, dx, dw, dp], cs.cse([dy, dr]))
+    dy, d_rate = (cs.jtimes(e, everything, along) for e in (model.y, rate(model)))
+    return cs.Function("forward", [*at, dx, dw, dp], cs.cse([dy, d_rate]))
+
+
+def rate(model: Model) -> cs.SX:
+    """x' by M x' = f, and zero where the mass is zero."""
+    rates = cs.SX(model.f)
+    maybe = algebraic(model)
+    for i in range(model.x.numel()):
+        off = model.mass[i] == 0 if i in maybe else 0
+        rates[i] = (1 - off) * model.f[i] / (model.mass[i] + off)
+    return rates
+
+
+def crossings(model: Model) -> cs.SX:
+    """For each result that is true or false, what is positive while it is false."""
+    switches = [model.y[i] for i, o in enumerate(model.outputs) if o.boolean]
+    for s in switches:
+        if s.op() not in (cs.OP_LE, cs.OP_LT):
+            raise ModelError("a result that is true or false is not written as an inequality; write it as a <= b")
+    return cs.vertcat(*(s.dep(0) - s.dep(1) for s in switches))

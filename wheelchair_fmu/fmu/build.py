@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from ..errors import UsageError, unknown
 from ..model.variant import Variant
-from . import native, package, validate
+from . import native, package, reference, validate
+from .platforms import chosen
 from .variables import Interface, interface
 
-Archive = Callable[[Interface], dict[str, bytes]]
+VERSIONS = ("2", "3")  # of FMI
 
 
-def _python(face: Interface) -> dict[str, bytes]:
+def _native(face: Interface, versions: Sequence[str], platforms: str) -> dict[str, dict[str, bytes]]:
+    return native.archives(face, versions, chosen(platforms), reference.files(face))
+
+
+def _python(face: Interface, versions: Sequence[str], platforms: str) -> dict[str, dict[str, bytes]]:
     from . import python_flavour  # needs pythonfmu, which the native flavour does not
 
-    return python_flavour.archive(face)
+    if "3" in versions:
+        raise UsageError("pythonfmu makes FMI 2.0 only; give --fmi 2, or --flavour native")
+    if platforms != "host":
+        raise UsageError("pythonfmu brings its own libraries; leave out --platforms, or give --flavour native")
+    return {"2": python_flavour.archive(face)}
 
 
-FLAVOURS: dict[str, Archive] = {"native": native.archive, "python": _python}
+FLAVOURS = {"native": _native, "python": _python}
 NAMES = {"native": "Wheelchair", "python": "WheelchairPython"}
 
 
@@ -52,15 +61,37 @@ def build(
     effects: str | Iterable[str] = "default",
     equations: str | None = None,
     flavour: str = "native",
+    fmi: str = "2",
+    platforms: str = "host",
 ) -> Path:
-    """Build the FMU of a variant and return its path.
+    """Build the FMU of a variant, for one version of FMI, and return its path. Raises as `build_each`."""
+    return build_each({fmi: Path(target)}, variant, effects=effects, equations=equations, flavour=flavour,
+                      platforms=platforms)[0]  # fmt: skip
 
-    Raises UsageError for an unknown effect or flavour, ModelError for a model that cannot be assembled, and
-    BuildError where it cannot be compiled, written, or is not valid.
+
+def build_each(
+    targets: Mapping[str, Path],
+    variant: Variant | None = None,
+    *,
+    effects: str | Iterable[str] = "default",
+    equations: str | None = None,
+    flavour: str = "native",
+    platforms: str = "host",
+) -> list[Path]:
+    """Build the FMU of a variant for each version of FMI in `targets`, and return the paths.
+
+    `platforms` are "host", "all" or names with commas, see `platforms.PLATFORMS`.
+
+    Raises UsageError for an unknown effect, flavour, version or platform, ModelError for a model that cannot be assembled,
+    and BuildError where it cannot be compiled, written, or is not valid.
     """
     if flavour not in FLAVOURS:
         raise unknown("flavour", flavour, FLAVOURS)
-    chosen = with_chosen_effects(variant or Variant(), effects)
+    for version in targets:
+        if version not in VERSIONS:
+            raise unknown("version of FMI", version, VERSIONS)
+    grown = with_chosen_effects(variant or Variant(), effects)
     if equations:
-        chosen = replace(chosen, choice=replace(chosen.choice, equations=equations))
-    return package.write(Path(target), FLAVOURS[flavour](interface(chosen)), validate.problems)
+        grown = replace(grown, choice=replace(grown.choice, equations=equations))
+    archives = FLAVOURS[flavour](interface(grown), tuple(targets), platforms)
+    return [package.write(path, archives[version], validate.problems) for version, path in targets.items()]

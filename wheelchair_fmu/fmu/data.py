@@ -9,34 +9,36 @@ from tempfile import TemporaryDirectory
 
 import casadi as cs
 
+from ..engine.kernel import crossings
 from ..errors import BuildError
 from ..model.wheelchair import Model
 from .variables import GRID, TOLERANCE, Interface, Variable
 
-LIMITS = {"parameters": 256, "outputs": 128, "states": 32, "inputs": 32}  # as in model.h and advance.h
+LIMITS = {"parameters": 256, "outputs": 128, "states": 32, "inputs": 32, "crossings": 8}  # as in model.h and advance.h
 
 
 def generate(face: Interface) -> dict[str, str]:
     """C files by name, all but the tables, which need the token that depends on these."""
     _refuse_too_large(face.model)
     files = {f"{law}.c": face.c_source(law) for law in face.models}
-    return {**files, "start_forward.c": _start_forward(face.model)}
+    return {**files, "rules.c": _rules(face.model)}
 
 
 def _refuse_too_large(m: Model) -> None:
-    sizes = {"parameters": m.p, "outputs": m.y, "states": m.x, "inputs": m.w}
+    sizes = {"parameters": m.p, "outputs": m.y, "states": m.x, "inputs": m.w, "crossings": crossings(m)}
     for what, symbol in sizes.items():
         if symbol.numel() > LIMITS[what]:
             raise BuildError(f"the model has {symbol.numel()} {what}, more than the {LIMITS[what]} that an instance "
                              f"holds; raise WC_MAX_{what.upper()}")  # fmt: skip
 
 
-def _start_forward(m: Model) -> str:
-    """How the states at the start change along changes of parameters and inputs."""
+def _rules(m: Model) -> str:
+    """How the states at the start change along changes of parameters and inputs; and the mass of each row."""
     dp, dw = cs.SX.sym("dp", m.p.numel()), cs.SX.sym("dw", m.w.numel())
     dx = cs.densify(cs.jtimes(m.start, cs.vertcat(m.p, m.w), cs.vertcat(dp, dw)))
-    generator = cs.CodeGenerator("start_forward.c", {"with_header": False})
+    generator = cs.CodeGenerator("rules.c", {"with_header": False})
     generator.add(cs.Function("wc_start_forward", [m.p, m.w, dp, dw], [dx]))
+    generator.add(cs.Function("wc_mass", [m.p], [cs.densify(m.mass)]))
     with TemporaryDirectory() as folder:
         return Path(generator.generate(folder + "/")).read_text()
 
@@ -51,7 +53,8 @@ def tables(face: Interface, name: str, token: str) -> str:
         "#include <math.h>",
         "",
         f"extern const wc_kernel {', '.join(f'{law}_kernel' for law in face.models)};",
-        "int wc_start_forward(const double **arg, double **res, long long *iw, double *w, int mem);",
+        *(f"int {rule}(const double **arg, double **res, long long *iw, double *w, int mem);"
+          for rule in ("wc_start_forward", "wc_mass")),
         "",
         *(_choices(v) for v in face.variables if v.choices),
         *_array("wc_variable", "variables", map(_variable, face.variables)),
@@ -62,12 +65,15 @@ def tables(face: Interface, name: str, token: str) -> str:
         *_array("wc_watch", "watches", (
             f"{{{w.variables[0].reference}, {len(w.variables)}, limits_{i}, {w.guard.index if w.guard else -1}, "
             f"{_number(w.guard_limit)}, {_string(w.meaning)}}}" for i, w in enumerate(face.watches))),
+        *_array("wc_state", "states", (f"{{{place}, {v.reference}}}" for place, v in face.states.items())),
+        *_array("int", "crossings", (str(v.index) for v in face.of("output") if v.type == "Boolean")),
         f"static const wc_kernel *const kernels[] = {{{kernels}}};",
         "",
         "const wc_model wc_the_model = {",
         f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
         f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
-        f"watches, {_number(TOLERANCE)}, {_number(GRID)}}};",
+        f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
+        f"    {len(face.states)}, states, wc_mass, {len(face.of('indicator'))}, crossings}};",
         "",
     ])  # fmt: skip
 

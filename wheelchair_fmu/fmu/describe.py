@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from math import isfinite
 from xml.etree import ElementTree as ET
 
 from .. import __version__
 from ..quantities import Unit
-from . import dependencies
+from . import dependencies, package
 from .variables import STEP, STOP, TOLERANCE, Interface, Variable
 
 AUTHOR = "the wheelchair-fmu authors"
@@ -22,23 +23,36 @@ LOG_CATEGORIES = {
 }
 
 
-NATIVE = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true",
-          "maxOutputDerivativeOrder": "0", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
-          "providesDirectionalDerivative": "true"}  # fmt: skip
-PYTHON = {"needsExecutionTool": "true", "canHandleVariableCommunicationStepSize": "true",
-          "canNotUseMemoryManagementFunctions": "true", "canGetAndSetFMUstate": "true",
-          "canSerializeFMUstate": "true"}  # fmt: skip
+# Per interface, what each flavour can do; every word of it is tested.
+NATIVE = {
+    "ModelExchange": {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"},
+    "CoSimulation": {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true",
+                     "maxOutputDerivativeOrder": "1", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
+                     "providesDirectionalDerivative": "true"},
+}
+PYTHON = {
+    "CoSimulation": {"needsExecutionTool": "true", "canHandleVariableCommunicationStepSize": "true",
+                     "canNotUseMemoryManagementFunctions": "true", "canGetAndSetFMUstate": "true",
+                     "canSerializeFMUstate": "true"},
+}  # fmt: skip
 
 
-def description(face: Interface, name: str, token: str, abilities: dict[str, str], sources: list[str]) -> bytes:
+def description(face: Interface, name: str, token: str, abilities: Mapping[str, dict[str, str]], sources: list[str]) -> bytes:
     """The XML text. `abilities` are the flavour's; `sources` the C files to compile, where the archive carries some."""
-    root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=name, guid=token, description=face.title,
-                      author=AUTHOR, version=__version__, license="MIT", generationTool=f"wheelchair-fmu {__version__}",
-                      variableNamingConvention="structured", numberOfEventIndicators="0")  # fmt: skip
-    root.append(co_simulation(name, abilities, sources))
-    chosen = [types(face)] if any(v.choices for v in face.variables) else []  # the schema knows no empty list of types
-    root.extend([units(face), *chosen, log_categories(), experiment(), variables(face), structure(face)])
+    root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=name, guid=token, **about(face),
+                      numberOfEventIndicators=str(len(face.of("indicator"))))  # fmt: skip
+    root.extend(_interface(kind, name, able, sources) for kind, able in abilities.items())
+    root.extend([units(face), types(face), log_categories(), experiment(), variables(face), structure(face)])
     return to_bytes(root)
+
+
+def about(face: Interface) -> dict[str, str]:
+    """What both versions say of the model as a whole."""
+    words = {"description": face.title, "author": AUTHOR, "version": __version__, "license": "MIT",
+             "generationTool": f"wheelchair-fmu {__version__}", "variableNamingConvention": "structured"}  # fmt: skip
+    if moment := package.moment():
+        words["generationDateAndTime"] = moment.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return words
 
 
 def to_bytes(root: ET.Element) -> bytes:
@@ -46,8 +60,8 @@ def to_bytes(root: ET.Element) -> bytes:
     return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
 
 
-def co_simulation(name: str, abilities: dict[str, str], sources: list[str]) -> ET.Element:
-    element = ET.Element("CoSimulation", modelIdentifier=name, **abilities)
+def _interface(kind: str, name: str, abilities: dict[str, str], sources: list[str]) -> ET.Element:
+    element = ET.Element(kind, modelIdentifier=name, **abilities)
     if sources:
         files = ET.SubElement(element, "SourceFiles")
         for source in sources:
@@ -75,19 +89,35 @@ def _unit(unit: Unit) -> ET.Element:
 
 
 def type_name(v: Variable) -> str:
-    """TyreLaw for tyre.law: a type may not be called like a variable."""
-    return "".join(part.capitalize() for part in re.split("[._]", v.name))
+    """TyreLaw for tyre.law: a type may not be called like a variable. A number's type is its quantity."""
+    return "".join(part.capitalize() for part in re.split("[._]", v.name)) if v.choices else v.unit.quantity
+
+
+def quantities(face: Interface) -> list[Unit]:
+    """The units that measure a quantity with a name, each once."""
+    return sorted({v.unit for v in face.variables if v.type == "Real" and v.unit.quantity}, key=lambda u: u.quantity)
+
+
+def measure(unit: Unit) -> dict[str, str]:
+    """The attributes that say what a number measures, in which unit and how people read it."""
+    words = {"quantity": unit.quantity, "unit": unit.name, "displayUnit": SHOWN_IN.get(unit.name, "")}
+    return {key: word for key, word in words.items() if word}
 
 
 def types(face: Interface) -> ET.Element:
-    element = ET.Element("TypeDefinitions")
+    element = ET.Element("TypeDefinitions")  # never empty: time is a quantity
+    for unit in quantities(face):
+        ET.SubElement(ET.SubElement(element, "SimpleType", name=unit.quantity), "Real", measure(unit))
     for v in face.variables:
         if v.choices:
             simple = ET.SubElement(element, "SimpleType", name=type_name(v), description=v.description)
-            enumeration = ET.SubElement(simple, "Enumeration")
-            for value, choice in enumerate(v.choices, 1):
-                ET.SubElement(enumeration, "Item", name=choice, value=str(value))
+            items(ET.SubElement(simple, "Enumeration"), v)
     return element
+
+
+def items(enumeration: ET.Element, v: Variable) -> None:
+    for value, choice in enumerate(v.choices, 1):
+        ET.SubElement(enumeration, "Item", name=choice, value=str(value))
 
 
 def log_categories() -> ET.Element:
@@ -104,49 +134,62 @@ def experiment() -> ET.Element:
 
 def variables(face: Interface) -> ET.Element:
     element = ET.Element("ModelVariables")
+    reinit = jumping(face)
     for v in face.variables:
-        element.append(variable(v))
+        element.append(variable(v, v.reference in reinit))
     return element
 
 
-def variable(v: Variable) -> ET.Element:
-    causality = "independent" if v.kind == "time" else v.kind
+def variable(v: Variable, reinit: bool) -> ET.Element:
     element = ET.Element("ScalarVariable", name=v.name, valueReference=str(v.reference), description=v.description,
-                         causality=causality, variability=v.variability)  # fmt: skip
-    if v.kind in ("parameter", "output"):
-        element.set("initial", "exact" if v.kind == "parameter" else "calculated")
-    element.append({"Real": _real, "Enumeration": _enumeration, "Boolean": _boolean}[v.type](v))
+                         causality=v.causality, variability=v.variability)  # fmt: skip
+    if v.initial and v.kind != "input":
+        element.set("initial", v.initial)
+    if v.type == "Real":
+        real = ET.SubElement(element, "Real", number_attributes(v))
+        if v.state is not None:
+            real.set("derivative", str(v.state + 1))
+        if reinit:
+            real.set("reinit", "true")
+    elif v.choices:
+        ET.SubElement(element, "Enumeration", choice_attributes(v))
+    else:
+        ET.SubElement(element, "Boolean")
     return element
 
 
-def _real(v: Variable) -> ET.Element:
-    element = ET.Element("Real", unit=v.unit.name)
-    if v.unit.name in SHOWN_IN:
-        element.set("displayUnit", SHOWN_IN[v.unit.name])
-    for key, value in (("min", v.lower), ("max", v.upper)):
-        if isfinite(value):
-            element.set(key, number(value))
+def number_attributes(v: Variable) -> dict[str, str]:
+    """What both versions say of a number."""
+    words = {"declaredType": v.unit.quantity} if v.unit.quantity else {}
+    words |= measure(v.unit)
+    words |= {key: number(value) for key, value in (("min", v.lower), ("max", v.upper)) if isfinite(value)}
     if v.kind != "time":
-        element.set("nominal", number(v.nominal))
+        words["nominal"] = number(v.nominal)
     if v.start is not None:
-        element.set("start", number(v.start))
-    return element
+        words["start"] = number(v.start)
+    return words
 
 
-def _enumeration(v: Variable) -> ET.Element:
-    return ET.Element("Enumeration", declaredType=type_name(v), min=number(v.lower), max=number(v.upper),
-                      start=number(v.start or v.lower))  # fmt: skip
+def choice_attributes(v: Variable) -> dict[str, str]:
+    return {"declaredType": type_name(v), "min": number(v.lower), "max": number(v.upper), "start": number(v.start or v.lower)}
 
 
-def _boolean(v: Variable) -> ET.Element:
-    return ET.Element("Boolean")
+def jumping(face: Interface) -> set[int]:
+    """References of the states that an event may set."""
+    return {face.states[j.state].reference for j in face.jumps if j.state in face.states}
 
 
 def structure(face: Interface) -> ET.Element:
     element = ET.Element("ModelStructure")
-    for title, known in (("Outputs", dependencies.outputs(face)), ("InitialUnknowns", dependencies.initial(face))):
+    continuous, initial = dependencies.continuous(face), dependencies.initial(face)
+    outputs, derivatives = face.of("output"), face.of("derivative")
+    groups = (("Outputs", outputs, continuous), ("Derivatives", derivatives, continuous),
+              ("InitialUnknowns", (*outputs, *derivatives), initial))  # fmt: skip
+    for title, unknowns, known in groups:
+        if not unknowns:
+            continue
         group = ET.SubElement(element, title)
-        for v in face.of("output"):
+        for v in unknowns:
             on = known[v.name]
             ET.SubElement(group, "Unknown", index=str(v.reference + 1),
                           dependencies=" ".join(str(d.reference + 1) for d, _ in on),

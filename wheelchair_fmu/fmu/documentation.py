@@ -14,10 +14,11 @@ LICENCE = SOURCE / "documentation" / "license.txt"
 
 
 def files(face: Interface) -> dict[str, bytes]:
-    """Documentation, licence and icon by their path in the archive."""
+    """Documentation and licence by their path in the archive."""
     page = (face.pages / "index.html").read_text(encoding="utf-8")
     choice = face.variant.choice
     filled = Template(page).substitute(
+        axes=(SOURCE / "documentation" / "axes.svg").read_text(encoding="utf-8"),
         frames=escape((frames.__doc__ or "").split("::", 1)[1].strip("\n")),
         parameters=_table(face, "parameter"),
         inputs=_table(face, "input"),
@@ -29,8 +30,11 @@ def files(face: Interface) -> dict[str, bytes]:
     return {
         "documentation/index.html": filled.encode(),
         "documentation/licenses/license.txt": LICENCE.read_bytes(),
-        "model.png": (face.pages / "model.png").read_bytes(),
     }
+
+
+def icon(name: str) -> bytes:
+    return (SOURCE / "icons" / f"{name}.png").read_bytes()
 
 
 def _effects(face: Interface) -> str:

@@ -1,24 +1,22 @@
-"""The native flavour: generated C and fmu_src's own, compiled into one library without further needs."""
+"""The native flavour: generated C and fmu_src's own, compiled into one library that speaks both versions of FMI."""
 
 from __future__ import annotations
 
 import hashlib
-import sys
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
 
-from ..engine import compiler
 from ..engine.source import CSRC
 from ..errors import BuildError
-from . import data, describe, documentation
+from . import data, describe, describe3, documentation
+from .platforms import Platform, chosen, compile_for
 from .variables import Interface
 
-HANDWRITTEN = ("fmi2.c", "instance.c", "instance.h", "model.h")
-PLATFORMS = {"win32": "win64", "darwin": "darwin64"}  # else linux64
-PLATFORM = PLATFORMS.get(sys.platform, "linux64")
-# -Bsymbolic: our calls reach our functions, whatever the importer has loaded before.
-LINK = () if sys.platform in PLATFORMS else ("-Wl,-Bsymbolic", "-Wl,--no-undefined", "-s")
+PROTOCOLS = {"2": "fmi2.c", "3": "fmi3.c"}
+HANDWRITTEN = (*PROTOCOLS.values(), "values.c", "motion.c", "derivatives.c", "saved.c", "instance.h", "model.h")
+OPTIONS = ("-ffp-contract=off",)  # what the results depend on; more are our own choice
 
 
 def token_of(face: Interface, texts: dict[str, str]) -> str:
@@ -50,28 +48,58 @@ def headers() -> Path:
     return Path(fmpy.__file__).parent / "c-code"
 
 
-def compile_library(texts: dict[str, str], target: Path) -> Path:
-    """Compile C files, given by name and text, into the shared library `target`."""
+def compile_library(name: str, texts: dict[str, str], platform: Platform) -> bytes:
+    """The shared library `name` of C files, given by name and text."""
     with TemporaryDirectory() as folder:
-        for name, text in texts.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8")
+        for file, text in texts.items():
+            (Path(folder) / file).write_text(text, encoding="utf-8")
         units = [Path(folder) / name for name in units_of(texts)]
-        return compiler.compile_shared(units, target, ["-DSTATIC_LINKED", f"-I{folder}", f"-I{headers()}", *LINK])
+        target = Path(folder) / "out" / f"{name}{platform.suffix}"
+        target.parent.mkdir()
+        compile_for(platform, units, target, ["-DSTATIC_LINKED", f"-I{folder}", f"-I{headers()}"])
+        return target.read_bytes()
 
 
-def units_of(texts: dict[str, str]) -> list[str]:
+def units_of(texts: Iterable[str]) -> list[str]:
     return sorted(name for name in texts if name.endswith(".c"))
 
 
 def archive(face: Interface) -> dict[str, bytes]:
-    """Everything in the archive, by path."""
+    """Everything in the archive for FMI 2.0 on this system, by path."""
+    return archives(face, ("2",), chosen("host"), {})["2"]
+
+
+def archives(
+    face: Interface, versions: Sequence[str], platforms: Sequence[Platform], results: Mapping[str, bytes]
+) -> dict[str, dict[str, bytes]]:
+    """Everything in the archive of each version of FMI, by path; `results` are what it should give, by file name."""
     texts, token = sources(face)
-    library = f"binaries/{PLATFORM}/{face.name}{compiler.SUFFIX}"
-    with TemporaryDirectory() as folder:
-        binary = compile_library(texts, Path(folder) / f"{face.name}{compiler.SUFFIX}").read_bytes()
+    libraries = {p: compile_library(face.name, texts, p) for p in platforms}
+    beside = {f"documentation/{name}": text for name, text in results.items()}
+    made = {}
+    for version in versions:
+        others = {file for other, file in PROTOCOLS.items() if other != version}
+        mine = {name: text for name, text in texts.items() if name not in others}
+        made[version] = {
+            **_described(version, face, token, units_of(mine)),
+            **{f"binaries/{p.folder if version == '2' else p.name}/{face.name}{p.suffix}": b for p, b in libraries.items()},
+            **{f"sources/{name}": text.encode() for name, text in mine.items()},
+            **beside,
+        }
+    return made
+
+
+def _described(version: str, face: Interface, token: str, units: list[str]) -> dict[str, bytes]:
+    pages = documentation.files(face)
+    if version == "2":
+        abilities = {kind: able for kind, able in describe.NATIVE.items() if face.states or kind == "CoSimulation"}
+        description = describe.description(face, face.name, token, abilities, units)
+        return {"modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(), **pages}
     return {
-        "modelDescription.xml": describe.description(face, face.name, token, describe.NATIVE, units_of(texts)),
-        library: binary,
-        **{f"sources/{name}": text.encode() for name, text in texts.items()},
-        **documentation.files(face),
+        "modelDescription.xml": describe3.description(face, face.name, token),
+        "sources/buildDescription.xml": describe3.build_description(face.name, units, " ".join(OPTIONS)),
+        "terminalsAndIcons/terminalsAndIcons.xml": describe3.terminals(face),
+        "terminalsAndIcons/icon.png": (face.pages / "model.png").read_bytes(),
+        **{f"terminalsAndIcons/{name}.png": documentation.icon(name) for name in ("pushrim", "floor")},
+        **pages,
     }

@@ -33,6 +33,7 @@ ENGINE = ("__init__.py", "kernel.py", "lu.py", "rodas.py")
 
 def archive(face: Interface) -> dict[str, bytes]:
     """Everything in the archive, by path."""
+    face = face.without("derivative", "indicator")  # for Model Exchange, which pythonfmu does not do
     modules = _modules(face)
     token = _token(face, modules)
     package = f"wheelchair_python_{token[1:9]}"
@@ -41,7 +42,8 @@ def archive(face: Interface) -> dict[str, bytes]:
         script = _write(source, package, modules, _interface(face, token))
         files = _pythonfmu(script, source / package, Path(folder) / f"{NAME}.fmu")
     description = describe.description(face, NAME, token, describe.PYTHON, [])
-    return {**files, "modelDescription.xml": description, **documentation.files(face)}
+    return {**files, "modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(),
+            **documentation.files(face)}  # fmt: skip
 
 
 def _modules(face: Interface) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
@@ -15,7 +15,7 @@ from ..engine.source import c_source
 from ..errors import BuildError
 from ..model.variant import LAWS, Variant
 from ..model.wheelchair import Model
-from ..quantities import Input, Output, Parameter, S, Unit
+from ..quantities import Input, Output, Parameter, S, Unit, per_second
 
 TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
 GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
@@ -26,13 +26,13 @@ HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a stat
 
 @dataclass(frozen=True)
 class Variable:
-    """One FMI variable. `reference` is its value reference, `index` its place among the model's p, w or y."""
+    """One FMI variable. `reference` is its value reference, `index` its place among the model's p, w, y, x or crossings."""
 
     reference: int
     name: str
     description: str
     unit: Unit
-    kind: str  # time | parameter | input | output
+    kind: str  # time | parameter | input | output | derivative | indicator
     type: str = "Real"  # Real | Enumeration | Boolean
     index: int = 0
     start: float | None = None
@@ -42,6 +42,15 @@ class Variable:
     fixed: bool = False
     choices: tuple[str, ...] = ()
     source: str = ""
+    state: int | None = None  # of a derivative: the value reference of its state
+
+    @property
+    def causality(self) -> str:
+        return {"time": "independent", "derivative": "local", "indicator": "local"}.get(self.kind, self.kind)
+
+    @property
+    def initial(self) -> str | None:
+        return {"parameter": "exact", "input": "exact", "time": None}.get(self.kind, "calculated")
 
     @property
     def variability(self) -> str:
@@ -94,6 +103,20 @@ class Interface:
     def of(self, kind: str) -> tuple[Variable, ...]:
         return tuple(v for v in self.variables if v.kind == kind)
 
+    @cached_property
+    def states(self) -> dict[int, Variable]:
+        """The outputs that are continuous states, by their place among the model's states.
+
+        What is an algebraic row with this variant's values is none.
+        """
+        return {v.index: self.variables[v.state] for v in self.of("derivative") if v.state is not None}
+
+    def without(self, *kinds: str) -> Interface:
+        """The same without its last variables, those of these kinds."""
+        kept = tuple(v for v in self.variables if v.kind not in kinds)
+        assert [v.reference for v in kept] == list(range(len(kept)))
+        return replace(self, variables=kept)
+
     @property
     def choices(self) -> tuple[str, ...]:
         """What the chooser can be, in the order of its numbers; not all have a model in every archive."""
@@ -145,7 +168,22 @@ def interface(variant: Variant) -> Interface:
         table.append(input_variable(len(table), i, w))
     for record, i in zip(model.outputs, range(model.y.numel()), strict=True):
         table.append(output_variable(len(table), i, record))
+    outputs = [v for v in table if v.kind == "output"]
+    for place, unit in _differential(model, starts):
+        state = next(v for v in outputs if cs.is_equal(model.y[v.index], model.x[place]))
+        table.append(Variable(len(table), f"der({state.name})", f"rate of change of {state.name}", unit, "derivative",
+                              index=place, state=state.reference))  # fmt: skip
+    for i, record in enumerate(o for o in model.outputs if o.boolean):
+        table.append(Variable(len(table), f"{record.name}.margin", f"positive while {record.name} is false", record.margin,
+                              "indicator", index=i, nominal=10.0))  # fmt: skip
     return Interface(variant, models, tuple(table))
+
+
+def _differential(model: Model, parameters: Sequence[float]) -> list[tuple[int, Unit]]:
+    """Places of the states whose mass is not zero with these parameters, and the units of their rates."""
+    mass = cs.Function("mass", [model.p], [cs.densify(model.mass)])(parameters).full().ravel()
+    units = [s.unit for s in model.states for _ in s.names]
+    return [(i, per_second(unit)) for i, unit in enumerate(units) if mass[i]]
 
 
 def _without_delays(variant: Variant) -> Variant:

@@ -14,7 +14,7 @@ typedef int (*wc_function)(const double **arg, double **res, long long *iw, doub
 typedef struct {
     int states, inputs, parameters, outputs;
     const double *nominal; /* the size of each state, against which errors are measured */
-    wc_function start, project, step, output, forward;
+    wc_function start, project, step, output, forward, rate;
 } wc_kernel;
 
 typedef enum {

@@ -1,0 +1,75 @@
+"""The systems an archive can carry a library for, and the compiler for each."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..engine import compiler
+from ..errors import BuildError, unknown
+
+# -Bsymbolic: our calls reach our functions, whatever the importer has loaded before.
+ELF = ("-Wl,-Bsymbolic", "-Wl,--no-undefined", "-s")
+MACH = ("-s", "-Wl,-install_name,@rpath/Wheelchair.dylib")
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A system by FMI 3.0's name, FMI 2.0's folder for it, and how to build for it from any other by ziglang."""
+
+    name: str
+    folder: str
+    target: str
+    suffix: str
+    link: tuple[str, ...]
+
+    def command(self) -> tuple[str, ...] | None:
+        """The cross compiler; None where this is the system we run on, whose own compiler serves."""
+        if self.name == HOST:
+            return None
+        if not find_spec("ziglang"):
+            raise BuildError(f"to build for {self.name} on {HOST}, a cross compiler is needed; `pip install ziglang`")
+        return (sys.executable, "-m", "ziglang", "cc", "-target", self.target)
+
+
+# FMI 2.0 has no folder names for ARM; importers that run there look for FMI 3.0's.
+PLATFORMS = {
+    p.name: p
+    for p in (
+        Platform("x86_64-linux", "linux64", "x86_64-linux-gnu.2.17", ".so", ELF),
+        Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", ".so", ELF),
+        Platform("x86_64-windows", "win64", "x86_64-windows-gnu", ".dll", ("-s",)),
+        Platform("x86_64-darwin", "darwin64", "x86_64-macos.11.0", ".dylib", MACH),
+        Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", ".dylib", MACH),
+    )
+}  # fmt: skip
+
+
+def _host() -> str:
+    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
+    return f"{machine}-{ {'win32': 'windows'}.get(sys.platform, sys.platform) }"
+
+
+HOST = _host()
+
+
+def chosen(words: str | Sequence[str]) -> list[Platform]:
+    """Platforms by "host", "all" or their names. Raises UsageError for an unknown one."""
+    names = words.split(",") if isinstance(words, str) else list(words)
+    found: dict[str, Platform] = {}
+    for name in names:
+        wanted = list(PLATFORMS) if name == "all" else [HOST if name == "host" else name]
+        for each in wanted:
+            if each not in PLATFORMS:
+                raise unknown("platform", each, ("host", "all", *PLATFORMS))
+            found[each] = PLATFORMS[each]
+    return list(found.values())
+
+
+def compile_for(p: Platform, sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
+    """Compile C files into the shared library `target` of a platform."""
+    return compiler.compile_shared(sources, target, [*flags, *p.link], p.command())
