@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo test test-browser lint bench bench-diagnosis clean
+.PHONY: help setup demo test test-browser lint bench bench-diagnosis importers nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -14,6 +14,8 @@ help:
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES and LSODA; writes out/bench.json"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
+	@echo "make importers   the FMUs in other people's importers, as a table; these go into $(VENV)-importers"
+	@echo "make nightly     what takes longer: every platform, importers, fuzzing, a minute in real time"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready
@@ -56,6 +58,19 @@ bench-diagnosis: setup
 
 bench: setup
 	$(BIN)/python -m benchmarks.bench
+
+importers: setup $(VENV)-importers/.ready
+	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m benchmarks.importers
+
+$(VENV)-importers/.ready: benchmarks/importers/requirements.txt
+	$(PYTHON) -m venv $(VENV)-importers
+	$(VENV)-importers/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
+
+# Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind; the rest is skipped with its reason.
+nightly: setup $(VENV)-importers/.ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
+	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly
 
 clean:
 	rm -rf dist out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -328,7 +328,9 @@ wc_result wc_get_all(wc_instance *c, const char *function, const unsigned vr[], 
     if (n && (!vr || !values)) return wc_missing(c, function, vr ? "values" : "valueReferences");
     for (size_t i = 0; i < n; i++) {
         double value = 0;
-        const wc_variable *v = wc_find(c, function, vr[i], type);
+        /* Some importers read every output as a real number: what is true or false is then 1 or 0. */
+        int truth = type == WC_REAL && vr[i] < (unsigned)model->variables && model->variable[vr[i]].type == WC_BOOLEAN;
+        const wc_variable *v = wc_find(c, function, vr[i], truth ? WC_BOOLEAN : type);
         if (!v) return WC_FAILED;
         wc_result result = get(c, function, v, &value);
         if (result != WC_DONE) return result;

@@ -124,8 +124,23 @@ class Chair3(Chair):
         self.types = {v.name: v for v in d.modelVariables}
         self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name,
                              modelIdentifier=d.coSimulation.modelIdentifier)  # fmt: skip
-        self.fmu.instantiate(loggingOn=logging, earlyReturnAllowed=early, logMessage=self._log,
-                             intermediateUpdate=update)  # fmt: skip
+        self.failed: list[BaseException] = []
+        self.fmu.instantiate(loggingOn=logging, earlyReturnAllowed=early, logMessage=self._log3,
+                             intermediateUpdate=update and self._guarded(update))  # fmt: skip
+
+    def _log3(self, environment, status, category, text) -> None:
+        self._log(environment, b"", status, category, text)
+
+    def _guarded(self, update):
+        """ctypes swallows what a callback raises; it is kept, and raised when the instance is freed."""
+
+        def guarded(*words) -> None:
+            try:
+                update(*words)
+            except BaseException as error:
+                self.failed.append(error)
+
+        return guarded
 
     def start(self, values: Mapping[str, float] | None = None, time: float = 0.0, **setup) -> Chair3:
         self.time = time
@@ -150,6 +165,8 @@ class Chair3(Chair):
 
     def free(self) -> None:
         self.fmu.fmi3FreeInstance(self.fmu.component)
+        if self.failed:
+            raise self.failed[0]
 
     def save(self):
         return self.fmu.getFMUState()

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from uuid import uuid4
+from tempfile import TemporaryDirectory
 
 from ..errors import BuildError
 
@@ -60,12 +60,10 @@ def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) ->
 
 
 def _compiled(compiler: list[str], sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
-    beside = target.with_name(f".{uuid4().hex}-{target.name}")
-    try:
+    with TemporaryDirectory(dir=target.parent) as folder:
+        beside = Path(folder) / target.name  # some linkers write the file's name into it
         _run([*compiler, *map(str, sources), *flags, "-o", str(beside)])
         beside.replace(target)
-    finally:
-        beside.unlink(missing_ok=True)
     return target
 
 

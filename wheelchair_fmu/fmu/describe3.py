@@ -58,7 +58,7 @@ def _types(face: Interface) -> ET.Element:
         ET.SubElement(element, "Float64Type", name=unit.quantity, **measure(unit))
     for v in face.variables:
         if v.choices:
-            items(ET.SubElement(element, "EnumerationType", name=type_name(v), description=v.description), v)
+            items(ET.SubElement(element, "EnumerationType", name=type_name(v)), v)  # FMPy 0.3.20 knows no description
     return element
 
 

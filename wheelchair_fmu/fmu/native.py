@@ -53,9 +53,8 @@ def compile_library(name: str, texts: dict[str, str], platform: Platform) -> byt
     with TemporaryDirectory() as folder:
         for file, text in texts.items():
             (Path(folder) / file).write_text(text, encoding="utf-8")
-        units = [Path(folder) / name for name in units_of(texts)]
-        target = Path(folder) / "out" / f"{name}{platform.suffix}"
-        target.parent.mkdir()
+        units = [Path(folder) / unit for unit in units_of(texts)]
+        target = Path(folder) / f"{name}{platform.suffix}"
         compile_for(platform, units, target, ["-DSTATIC_LINKED", f"-I{folder}", f"-I{headers()}"])
         return target.read_bytes()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -19,7 +19,7 @@ MACH = ("-s", "-Wl,-install_name,@rpath/Wheelchair.dylib")
 
 @dataclass(frozen=True)
 class Platform:
-    """A system by FMI 3.0's name, FMI 2.0's folder for it, and how to build for it from any other by ziglang."""
+    """A system by FMI 3.0's name, FMI 2.0's folder for it, and what ziglang calls it ("": the system's own compiler)."""
 
     name: str
     folder: str
@@ -28,11 +28,11 @@ class Platform:
     link: tuple[str, ...]
 
     def command(self) -> tuple[str, ...] | None:
-        """The cross compiler; None where this is the system we run on, whose own compiler serves."""
-        if self.name == HOST:
+        """The cross compiler; None where the system's own compiler serves."""
+        if not self.target:
             return None
         if not find_spec("ziglang"):
-            raise BuildError(f"to build for {self.name} on {HOST}, a cross compiler is needed; `pip install ziglang`")
+            raise BuildError(f"to build for {self.name} by name, a cross compiler is needed; `pip install ziglang`")
         return (sys.executable, "-m", "ziglang", "cc", "-target", self.target)
 
 
@@ -51,22 +51,26 @@ PLATFORMS = {
 
 def _host() -> str:
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
-    return f"{machine}-{ {'win32': 'windows'}.get(sys.platform, sys.platform) }"
+    system = {"win32": "windows"}.get(sys.platform, sys.platform)
+    return f"{machine}-{system}"
 
 
 HOST = _host()
 
 
-def chosen(words: str | Sequence[str]) -> list[Platform]:
-    """Platforms by "host", "all" or their names. Raises UsageError for an unknown one."""
-    names = words.split(",") if isinstance(words, str) else list(words)
+def chosen(words: str) -> list[Platform]:
+    """Platforms by "host", "all" or names with commas.
+
+    "host" is built by the system's compiler and needs its libc; the others, this system's own among them, need no newer
+    libc than their target says. Raises UsageError for an unknown one.
+    """
     found: dict[str, Platform] = {}
-    for name in names:
-        wanted = list(PLATFORMS) if name == "all" else [HOST if name == "host" else name]
-        for each in wanted:
-            if each not in PLATFORMS:
-                raise unknown("platform", each, ("host", "all", *PLATFORMS))
-            found[each] = PLATFORMS[each]
+    for word in words.split(","):
+        for name in PLATFORMS if word == "all" else [HOST if word == "host" else word]:
+            if name not in PLATFORMS:
+                raise unknown("platform", name, ("host", "all", *PLATFORMS))
+            platform = PLATFORMS[name]
+            found[name] = replace(platform, target="") if word == "host" else platform
     return list(found.values())
 
 

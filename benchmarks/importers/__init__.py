@@ -1,0 +1,1 @@
+"""The archives in other people's importers."""
