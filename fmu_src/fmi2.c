@@ -72,10 +72,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return c;
 }
 
-void fmi2FreeInstance(fmi2Component instance) {
-    component *c = instance;
-    if (c) c->chair.release(c);
-}
+void fmi2FreeInstance(fmi2Component instance) { wc_end(instance); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t n, const fmi2String names[]) {
     WHERE("fmi2SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi2SetDebugLogging", on, n, names));

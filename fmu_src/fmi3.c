@@ -107,10 +107,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
                        "this FMU is for Co-Simulation and Model Exchange; instantiate one of these");
 }
 
-void fmi3FreeInstance(fmi3Instance instance) {
-    component *c = instance;
-    if (c) c->chair.release(c);
-}
+void fmi3FreeInstance(fmi3Instance instance) { wc_end(instance); }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t n, const fmi3String names[]) {
     WHERE("fmi3SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi3SetDebugLogging", on, n, names));

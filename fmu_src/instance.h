@@ -82,6 +82,12 @@ const char *wc_refuse_instance(const char *name, wc_interface interface, const c
 /* After the host has set standard, log, host, allocate and release. */
 void wc_begin(wc_instance *c, wc_interface interface, int logging);
 
+/* Gives its memory back. Where that stays in the process, later calls find no instance there and fail. */
+void wc_end(void *instance);
+
+/* The instance, or 0 where there is none. */
+wc_instance *wc_alive(void *instance);
+
 /* As after wc_begin; what belongs to the host stays. */
 void wc_reset(wc_instance *c);
 

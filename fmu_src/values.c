@@ -134,9 +134,21 @@ static const struct {
     {WC_TERMINATED, 3, "terminated", "after %sTerminate"},
 };
 
-wc_instance *wc_enter(void *instance, const char *function, int legal) {
+wc_instance *wc_alive(void *instance) {
     wc_instance *c = instance;
-    if (!c) return 0;
+    return c && !memcmp(c->now.magic, WC_MAGIC, sizeof c->now.magic) ? c : 0;
+}
+
+void wc_end(void *instance) {
+    wc_instance *c = wc_alive(instance);
+    if (!c) return;
+    memset(c->now.magic, 0, sizeof c->now.magic);
+    c->release(c);
+}
+
+wc_instance *wc_enter(void *instance, const char *function, int legal) {
+    wc_instance *c = wc_alive(instance);
+    if (!c) return 0; /* and nobody to tell */
     int only = legal & WC_FOR_EXCHANGE ? WC_MODEL_EXCHANGE : legal & WC_FOR_COSIMULATION ? WC_COSIMULATION : 0;
     if (c->now.phase & legal && (!only || only == c->now.interface)) return c;
     if (only && only != c->now.interface) legal = 0;

@@ -54,7 +54,7 @@ class Unpacked:
 class Chair:
     """One instance. `said` collects (status, category, sentence)."""
 
-    def __init__(self, unpacked: Unpacked, name: str = "chair", logging: bool = False):
+    def __init__(self, unpacked: Unpacked, name: str = "chair", logging: bool = False, free=None):
         d = unpacked.description
         self.unpacked, self.said, self.time = unpacked, [], 0.0
         self.types = {v.name: v for v in d.modelVariables}
@@ -63,7 +63,7 @@ class Chair:
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        callbacks.freeMemory = free or fmi2CallbackFreeMemoryTYPE(fmpy.free)
         self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
 
     def _log(self, environment, name, status, category, text, *rest) -> None:

@@ -6,7 +6,8 @@
  * prints median and worst cost of set + doStep + get in nanoseconds, the worst over steps of the
  * smallest of five repeats; memory prints by how many KiB the process has grown and how often the
  * FMU has asked for memory since it was instantiated; reset prints how many of STEPS runs after
- * fmi2Reset differ in any byte from the first.
+ * fmi2Reset differ in any byte from the first; cycles makes and frees STEPS instances, each with a run, and prints the same
+ * and by how many KiB the process has grown since the first tenth of them.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -145,6 +146,23 @@ static long count_different(fmi2Component c, long runs, double h) {
     return different;
 }
 
+static long count_cycles(const char *guid, const fmi2CallbackFunctions *callbacks, long cycles, double h) {
+    double first[MOST], y[MOST];
+    long different = 0, before = 0;
+    for (long r = 0; r < cycles; r++) {
+        fmi2Component c = instantiate("one of many", fmi2CoSimulation, guid, "", callbacks, fmi2False, fmi2False);
+        if (!c) return -1;
+        begin(c);
+        for (long i = 0; i < 5; i++) step(c, i, h, y);
+        if (!r) memcpy(first, y, sizeof first);
+        different += memcmp(first, y, sizeof(double) * outs) != 0;
+        release(c);
+        if (r == cycles / 10) before = resident();
+    }
+    printf("%ld %ld\n", different, resident() - before);
+    return 0;
+}
+
 int main(int n, char **word) {
     if (n < 9 || n - 8 > MOST) return 2;
     void *library = dlopen(word[1], RTLD_NOW | RTLD_LOCAL);
@@ -183,6 +201,8 @@ int main(int n, char **word) {
         printf("%ld %ld\n", resident() - before, allocations - asked);
     } else if (!strcmp(word[3], "reset")) {
         printf("%ld\n", count_different(c, steps, h));
+    } else if (!strcmp(word[3], "cycles")) {
+        if (count_cycles(word[2], &callbacks, steps, h)) return 1;
     } else {
         return 2;
     }

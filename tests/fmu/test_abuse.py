@@ -1,0 +1,151 @@
+"""Whatever a host does: a status and a sentence, never a crash."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import threading
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy.fmi2 import fmi2CallbackFreeMemoryTYPE
+
+from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.fmu.native import headers
+
+from .chair import ERROR, Chair, Unpacked, chair, pushed
+from .test_protocol import refused
+
+HERE = Path(__file__).parent
+NIGHTLY_SEEDS = int(os.environ.get("FUZZ_SEEDS", "20000"))
+
+
+@pytest.fixture(scope="module")
+def fuzz(native, native3, workshop):
+    """The fuzzer compiled together with the FMU's sources: `fuzz(first seed, seeds, sanitized)` runs it."""
+
+    def build(sanitized: bool) -> Path:
+        program = workshop / f"fuzz-{sanitized}"
+        if not program.exists():
+            files = sorted({*(native.folder / "sources").glob("*.c"), native3.folder / "sources" / "fmi3.c"})
+            flags = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"] if sanitized else ["-O2"]
+            done = subprocess.run([*compiler.command(), "-std=gnu11", "-g", *flags, "-ffp-contract=off", f"-I{headers()}",
+                                   f"-I{native.folder / 'sources'}", str(HERE / "fuzz.c"), *map(str, files),
+                                   "-o", str(program), "-lm"], capture_output=True, text=True)  # fmt: skip
+            if done.returncode and "san" in done.stderr:
+                pytest.skip("the C compiler has no sanitizers: `apt-get install gcc`")
+            assert done.returncode == 0, done.stderr
+        return program
+
+    def run(first: int, seeds: int, sanitized: bool = False, under: tuple[str, ...] = ()) -> str:
+        d = native.description
+        words = [*under, str(build(sanitized)), d.guid, str(len(d.modelVariables)), str(d.numberOfContinuousStates), str(first),
+                 str(seeds)]  # fmt: skip
+        done = subprocess.run(words, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr[-4000:]
+        return done.stdout
+
+    return run
+
+
+def test_random_calls_crash_nothing(fuzz):
+    assert int(fuzz(1, 60).split()[0]) > 1000  # that many refusals had a reason
+
+
+@pytest.mark.nightly
+def test_random_calls_are_sound_under_sanitizers(fuzz):
+    fuzz(1, NIGHTLY_SEEDS, sanitized=True)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind: `apt-get install valgrind`")
+def test_random_calls_are_sound_under_valgrind(fuzz):
+    fuzz(1, 30, under=("valgrind", "--quiet", "--error-exitcode=99", "--leak-check=full"))
+
+
+def test_a_freed_instance_is_no_instance(native):
+    """With a host whose memory outlives the instance, so that the calls are no undefined behaviour themselves."""
+    c = Chair(native)
+    later: list[int] = []
+    keep = fmi2CallbackFreeMemoryTYPE(later.append)
+    c.fmu.fmi2FreeInstance(c.fmu.component)
+    c = Chair(native, free=keep)
+    c.start().step(0.01)
+    c.free()
+    assert len(later) == 1
+    refused(ERROR, c.fmu.doStep, 0.01, 0.01)
+    refused(ERROR, c.fmu.getReal, [1])
+    c.free()
+    assert len(later) == 1  # freed once
+
+
+def test_ten_thousand_instances_come_and_go(native, host):
+    different, grown = host(native, "cycles", 10_000, 0.001)
+    assert different == 0 and grown < 512  # KiB, of stdio and stack
+
+
+def test_two_threads_with_an_instance_each(native):
+    def ride(turn: float, into: dict[float, list[float]]) -> None:
+        with chair(native) as c:
+            c.start()
+            for i in range(300):
+                c.set({**pushed(i), "push.M_rl": turn})
+                c.step(0.01)
+            into[turn] = c.outputs()
+
+    alone: dict[float, list[float]] = {}
+    together: dict[float, list[float]] = {}
+    for turn in (1.0, -2.0):
+        ride(turn, alone)
+    threads = [threading.Thread(target=ride, args=(turn, together)) for turn in (1.0, -2.0)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert together == alone
+
+
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_parameters_may_change_while_it_runs(archive, request):
+    """Every tunable parameter to its bounds and back, in the middle of a stroke: no step fails, and nothing is left behind."""
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    with chair(unpacked) as c:
+        c.start({"push.F_rl": 20.0, "push.F_rr": 15.0}).step(0.01, 5)
+        for name, v in c.types.items():
+            if v.causality != "parameter" or v.variability != "tunable":
+                continue
+            old, state = c.get(name)[0], c.save()
+            for value in (v.min, v.max):
+                if value is None or abs(float(value)) > 1e4 or name in ("regularisation.v_eps",):
+                    continue
+                c.set({name: float(value)})
+                try:
+                    c.fmu.doStep(c.time, 0.01)
+                except Exception:
+                    assert "change inputs or parameters" in c.sentences[-1], name
+                c.restore(state)
+                assert c.get(name)[0] == old
+            c.drop(state)
+        c.step(0.01)
+
+
+@pytest.mark.parametrize("what", ["nothing", "text", "no description", "no library"])
+def test_a_bad_archive_gets_a_sentence(what, native, tmp_path):
+    """From the command that reads archives which others have made."""
+    from typer.testing import CliRunner
+
+    from wheelchair_fmu.cli.main import app
+
+    bad = tmp_path / "bad.fmu"
+    if what == "text":
+        bad.write_text("this is no archive")
+    elif what != "nothing":
+        with zipfile.ZipFile(native.path) as good, zipfile.ZipFile(bad, "w") as z:
+            for name in good.namelist():
+                if not name.startswith("modelDescription" if what == "no description" else "binaries"):
+                    z.writestr(name, good.read(name))
+    done = CliRunner().invoke(app, ["simulate", "steady-turn", "--fmu", str(bad), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 1 and "bad.fmu" in done.output + done.stderr
+    assert not isinstance(done.exception, Exception) or isinstance(done.exception, SystemExit)
