@@ -30,14 +30,14 @@ WORST_TARGET = 10.0  # µs
 
 def rows() -> Iterator[Row]:
     with TemporaryDirectory() as folder:
-        host = _host(Path(folder))
+        host = host_program(Path(folder))
         for effects, target in MEDIAN_TARGETS.items():
             medians, worsts = zip(*(_run(host, Path(folder), effects) for _ in range(RUNS)), strict=True)
             yield Row(f"FMU step, --effects {effects}: median", "µs", medians, target)
             yield Row(f"FMU step, --effects {effects}: worst", "µs", worsts, WORST_TARGET)
 
 
-def _host(folder: Path) -> Path:
+def host_program(folder: Path) -> Path:
     program = folder / "host"
     words = [*compiler.command(), "-O2", f"-I{headers()}", str(HOST), "-o", str(program), "-ldl", "-lm"]
     subprocess.run(words, check=True)
@@ -46,12 +46,18 @@ def _host(folder: Path) -> Path:
 
 def _run(host: Path, folder: Path, effects: str) -> tuple[float, float]:
     """Median and worst of the steps' costs [µs]."""
+    median, worst = run_host(host, folder, effects, "time", STEPS)
+    return median / 1e3, worst / 1e3
+
+
+def run_host(host: Path, folder: Path, effects: str, mode: str, steps: int) -> list[float]:
+    """What the host prints in this mode, over so many steps of the FMU with these effects."""
     archive, place = fmu_of(Variant(), effects), folder / effects
     if not place.exists():
         fmpy.extract(str(archive), str(place))
     description = fmpy.read_model_description(str(archive))
     at = {v.name: str(v.valueReference) for v in description.modelVariables}
     library = next((place / "binaries").glob(f"*/*{compiler.SUFFIX}"))
-    words = [str(host), str(library), description.guid, "time", str(STEPS), str(LENGTH), *(at[n] for n in INPUTS + OUTPUTS)]
-    median, worst = subprocess.run(words, check=True, capture_output=True, text=True).stdout.split()
-    return float(median) / 1e3, float(worst) / 1e3
+    words = [str(host), str(library), description.guid, mode, str(steps), str(LENGTH), *(at[n] for n in INPUTS + OUTPUTS)]
+    done = subprocess.run(words, check=True, capture_output=True, text=True)
+    return [float(word) for word in done.stdout.split()]

@@ -7,7 +7,10 @@
  * smallest of five repeats; memory prints by how many KiB the process has grown and how often the
  * FMU has asked for memory since it was instantiated; reset prints how many of STEPS runs after
  * fmi2Reset differ in any byte from the first; cycles makes and frees STEPS instances, each with a run, and prints the same
- * and by how many KiB the process has grown since the first tenth of them.
+ * and by how many KiB the process has grown since the first tenth of them; minute measures as time does, over a ride with
+ * turns, stops and reversals, and also prints the cost at rest in its last eighth over that in motion in its first; ride drives
+ * that ride in real time, each step at its due moment, and prints median, 99.9th percentile and worst cost, how late the worst
+ * step was woken, and how many steps were not done when the next was due.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -114,23 +117,67 @@ static int ascending(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-static void measure(fmi2Component c, long steps, double h) {
-    double y[MOST], *least = malloc(sizeof(double) * (size_t)steps);
+/* A minute of strokes, turns on the spot, coasting to rest, strokes backwards, and rest: pushes at time t. */
+static void ride_push(double t, double whole, fmi2Real w[2]) {
+    double part = t / whole * 8, beat = sin(2 * 3.141592653589793 * t), stroke = beat > 0 ? 60 * beat : 0;
+    double left = part < 2 ? 1 : part < 3 ? 1 : part < 4 ? -1 : part < 5 ? 0 : part < 7 ? -1 : 0;
+    double right = part < 2 ? 1 : part < 3 ? -1 : part < 4 ? 1 : part < 5 ? 0 : part < 7 ? -0.9 : 0;
+    w[0] = left * stroke;
+    w[1] = right * stroke;
+}
+
+static void measure(fmi2Component c, long steps, double h, int riding) {
+    double y[MOST], *least = malloc(sizeof(double) * (size_t)steps), moving = 0, resting = 0;
     for (int r = 0; r < REPEATS; r++) {
         check(reset(c), "fmi2Reset");
         begin(c);
         for (long i = 0; i < steps; i++) {
             fmi2Real w[2];
-            push(i, h, w);
+            if (riding) {
+                ride_push((double)i * h, (double)steps * h, w);
+            } else {
+                push(i, h, w);
+            }
             double before = now();
             step_with(c, i, h, w, y);
             double cost = now() - before;
             if (!r || cost < least[i]) least[i] = cost;
         }
     }
+    for (long i = 0; i < steps / 8; i++) {
+        moving += least[i];
+        resting += least[steps - 1 - i];
+    }
     qsort(least, (size_t)steps, sizeof *least, ascending);
-    printf("%.0f %.0f\n", least[steps / 2], least[steps - 1]);
+    printf("%.0f %.0f", least[steps / 2], least[steps - 1]);
+    printf(riding ? " %.3f\n" : "\n", resting / moving);
     free(least);
+}
+
+static void ride(fmi2Component c, long steps, double h) {
+    double *cost = malloc(sizeof(double) * (size_t)steps), y[MOST], late = 0;
+    long missed = 0;
+    struct timespec due;
+    clock_gettime(CLOCK_MONOTONIC, &due);
+    for (long i = 0; i < steps; i++) {
+        fmi2Real w[2];
+        ride_push((double)i * h, (double)steps * h, w);
+        due.tv_nsec += (long)(h * 1e9);
+        while (due.tv_nsec >= 1000000000) {
+            due.tv_nsec -= 1000000000;
+            due.tv_sec++;
+        }
+        double at = (double)due.tv_sec * 1e9 + (double)due.tv_nsec;
+        if (now() > at) missed++;
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, 0);
+        double before = now();
+        if (before - at > late) late = before - at;
+        step_with(c, i, h, w, y);
+        cost[i] = now() - before;
+    }
+    qsort(cost, (size_t)steps, sizeof *cost, ascending);
+    printf("%.0f %.0f %.0f %.0f %ld\n", cost[steps / 2], cost[(long)((double)steps * 0.999)], cost[steps - 1], late, missed);
+    free(cost);
 }
 
 static long count_different(fmi2Component c, long runs, double h) {
@@ -193,7 +240,7 @@ int main(int n, char **word) {
         for (long i = 0; i < steps; i++) step(c, i, h, y);
         for (size_t i = 0; i < outs; i++) printf("%.17g\n", y[i]);
     } else if (!strcmp(word[3], "time")) {
-        measure(c, steps, h);
+        measure(c, steps, h, 0);
     } else if (!strcmp(word[3], "memory")) {
         for (long i = 0; i < 1000; i++) step(c, i, h, y);
         long before = resident(), asked = allocations;
@@ -201,6 +248,10 @@ int main(int n, char **word) {
         printf("%ld %ld\n", resident() - before, allocations - asked);
     } else if (!strcmp(word[3], "reset")) {
         printf("%ld\n", count_different(c, steps, h));
+    } else if (!strcmp(word[3], "minute")) {
+        measure(c, steps, h, 1);
+    } else if (!strcmp(word[3], "ride")) {
+        ride(c, steps, h);
     } else if (!strcmp(word[3], "cycles")) {
         if (count_cycles(word[2], &callbacks, steps, h)) return 1;
     } else {

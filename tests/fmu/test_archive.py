@@ -14,6 +14,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.errors import BuildError
 from wheelchair_fmu.fmu import dependencies
 from wheelchair_fmu.fmu import native as native_flavour
 from wheelchair_fmu.fmu.build import build, with_chosen_effects
@@ -42,6 +43,20 @@ def test_two_builds_are_the_same_bytes(flavour, options, request, tmp_path):
     assert first.read_bytes() == again.read_bytes()
 
 
+def test_its_date_is_the_one_it_is_given(native3, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    dated = build(target=tmp_path / "dated.fmu", fmi="3")
+    with zipfile.ZipFile(dated) as z:
+        assert {entry.date_time for entry in z.infolist()} == {(2023, 11, 14, 22, 13, 20)}
+        description = z.read("modelDescription.xml").decode()
+    assert 'generationDateAndTime="2023-11-14T22:13:20Z"' in description
+    undated = (native3.folder / "modelDescription.xml").read_text(encoding="utf-8")
+    assert description.replace(' generationDateAndTime="2023-11-14T22:13:20Z"', "") == undated  # the token, too
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    with pytest.raises(BuildError, match="SOURCE_DATE_EPOCH = 'yesterday' is no number of seconds"):
+        build(target=tmp_path / "never.fmu", fmi="3")
+
+
 def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     exported = _lines("nm", "-D", "--defined-only", str(native.library))
     assert len(exported) > 100
@@ -49,8 +64,9 @@ def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     needed = re.findall(r"\(NEEDED\).*\[(.+)]", "\n".join(_lines("readelf", "-d", str(native.library))))
     assert set(needed) <= {"libc.so.6", "libm.so.6"}
     asked = _lines("nm", "-D", "--undefined-only", str(native.library))
-    memory = [line.split()[-1].split("@")[0] for line in asked if "alloc" in line]
-    assert set(memory) <= {"calloc"}  # the importer's, or this one; never malloc or realloc
+    asked = {line.split()[-1].split("@")[0] for line in asked}
+    assert {name for name in asked if "alloc" in name} <= {"calloc"}  # the importer's, or this one; never malloc or realloc
+    assert not {name for name in asked if re.search("lock|thread|sem_|errno", name)}
 
 
 @pytest.mark.parametrize("name", ["fmi2.c", "fmi3.c", "values.c", "motion.c", "derivatives.c", "saved.c", "advance.c",
@@ -175,6 +191,9 @@ def test_a_variant_gives_start_values(tmp_path):
     [
         (["--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
         (["--effects", "push_force_delay"], 2, "shifts recorded pushes in time and is no part of an FMU"),
+        (["--platforms", "x86_64-window"], 2, "no platform 'x86_64-window'; did you mean 'x86_64-windows'?"),
+        (["--fmi", "4"], 2, "no version of FMI '4'"),
+        (["--flavour", "python", "--fmi", "3"], 2, "pythonfmu makes FMI 2.0 only"),
         (["--flavour", "pyton"], 2, "no flavour 'pyton'; did you mean 'python'?"),
         (["--equations", "papr"], 2, "did you mean 'paper'?"),
         (["--variants", "x", "y"], 2, "unrecognized arguments: --variants"),

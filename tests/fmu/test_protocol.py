@@ -363,6 +363,14 @@ def test_steps_are_quick(native, everything, host):
         assert usual < 5 * median and worst < 20 * median, (usual, worst)  # loose: other work on this machine
 
 
+@pytest.mark.nightly
+@pytest.mark.parametrize("archive", ["native", "everything"])
+def test_a_minute_of_riding_has_no_slow_steps(archive, host, request):
+    """Turns, stops, reversals; every step is done within its millisecond, and coming to rest meets no denormal numbers."""
+    median, worst, rest = host(request.getfixturevalue(archive), "minute", 60_000, 0.001)
+    assert median < 2e4 and worst < 1e6 and rest < 3
+
+
 def test_free_of_nothing_is_safe(native):
     library = ctypes.CDLL(str(native.library))
     library.fmi2FreeInstance.argtypes = [ctypes.c_void_p]
