@@ -85,7 +85,8 @@ def _choices(v: Variable) -> str:
 
 def _array(kind: str, name: str, rows: Iterable[str]) -> list[str]:
     # Standard C knows no empty array: one row of zeros, which the count beside it leaves out.
-    return [f"static const {kind} {name}[] = {{", *(f"    {row}," for row in list(rows) or ["{0}"]), "};"]
+    filled = list(rows) or ["0" if kind == "int" else "{0}"]
+    return [f"static const {kind} {name}[] = {{", *(f"    {row}," for row in filled), "};"]
 
 
 def _variable(v: Variable) -> str:
