@@ -247,7 +247,7 @@ def test_stuck_and_empty_channels(campaign):
     folder_faults = data_fault(campaign, change)
     assert folder_faults == [
         "warning: run a.csv column 'yaw_rate [rad/s]': yaw_rate holds only gaps and is left out; remove the column",
-        "warning: run a.csv column 'a_y [m/s2]': a_y never changes from 0.25 m/s2; "
+        "warning: run a.csv column 'a_y [m/s2]': a_y never changes from 0.25 m/s2 and is left out; "
         "check the sensor, or remove the column",
     ]
 

@@ -89,7 +89,7 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
 def _run(draft: Draft, name: str) -> Run:
     entry: Entry = draft.entry
     assert draft.time is not None  # a file without time is an error, so no campaign is made
-    measured = {c: series for c, series in draft.channels.items() if np.isfinite(series).any()}
+    measured = {c: series for c, series in draft.channels.items() if _tells(series) or c in draft.constants}
     return Run(
         name=name,
         file=draft.doc.folder / entry.file,
@@ -101,6 +101,12 @@ def _run(draft: Draft, name: str) -> Run:
         inputs={BY_NAME[c].fmu: series for c, series in draft.inputs.items()},
         channels=measured,
     )
+
+
+def _tells(series: np.ndarray) -> bool:
+    """Does a sensor's record say anything: is there more in it than gaps, or one value over and over?"""
+    finite = series[np.isfinite(series)]
+    return finite.size == 1 or (finite.size > 1 and bool(finite.min() < finite.max()))
 
 
 def _numbers(table: Mapping[str, Any]) -> dict[str, float]:

@@ -7,12 +7,11 @@ from typing import Annotated
 
 import typer
 
-from ..campaign import read
 from ..errors import unknown
 from ..loop.improve import add as add_effect
 from ..model.effects import bundled, load
 from ..model.variant import Variant, read_variant
-from .check import known_parameters
+from .check import measurements
 from .files import print_json
 from .group import Progress, console, working
 from .settings import applied
@@ -38,7 +37,7 @@ def add(
     if effect not in catalogue:
         raise unknown("effect", effect, catalogue)
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
+    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
     with working("calibrating", lines=progress) as say:
         better = add_effect(measured, chair, effect, fixed, say)
     files = write_improved(output, better.variant, better.ladder)

@@ -18,6 +18,8 @@ from ..model.variant import Variant
 from .files import print_json
 from .group import console
 
+MOST = 6  # warnings that other commands repeat
+
 
 def register(app: typer.Typer) -> None:
     app.command()(check)
@@ -26,6 +28,19 @@ def register(app: typer.Typer) -> None:
 def known_parameters() -> dict[str, tuple[float, float]]:
     """Bounds, in SI units, of every parameter that a campaign may name."""
     return {p.name: (p.lower, p.upper) for p in Variant().with_effects(bundled()).parameters()}
+
+
+def measurements(folder: Path) -> Campaign:
+    """A campaign without errors; what `check` would warn of is said on stderr.
+
+    Raises CampaignError with all its faults.
+    """
+    campaign = read(folder, known_parameters())
+    for fault in campaign.warnings[:MOST]:
+        console(stderr=True).print(str(fault))
+    if len(campaign.warnings) > MOST:
+        console(stderr=True).print(f"and {len(campaign.warnings) - MOST} more warnings; see `wheelchair check {folder}`")
+    return campaign
 
 
 def check(

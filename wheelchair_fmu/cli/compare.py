@@ -10,7 +10,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import CHANNELS, Campaign, read
+from ..campaign import CHANNELS, Campaign
 from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of
 from ..loop.evidence import START, Bench, Evidence
@@ -21,7 +21,7 @@ from ..model.wheelchair import REGIMES
 from ..report.figures import overlay_figure, where_figure
 from ..report.saving import save
 from ..studies import Fmu, fmu_of, run_campaign_run
-from .check import known_parameters
+from .check import measurements
 from .files import print_json, written
 from .group import console
 from .settings import applied
@@ -45,7 +45,7 @@ def compare(
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, _ = applied(settings or (), chair, read(campaign, known_parameters()))
+    chair, measured, _ = applied(settings or (), chair, measurements(campaign))
     bench = Bench(measured, chair)
     values = dict(chair.values)
     with console(stderr=True).status("simulating"):

@@ -10,7 +10,6 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import read
 from ..handling.experiments import experiments
 from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
@@ -21,7 +20,7 @@ from ..model.generic import VARIABLES, library, profiles, terms
 from ..model.variant import Variant, read_variant
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from .check import known_parameters
+from .check import measurements
 from .files import written
 from .group import Progress, console, working
 from .settings import applied
@@ -53,7 +52,7 @@ def diagnose(
     """Say which physical effect is missing from the model, with the evidence."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
+    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
     with working("reading", lines=progress) as say:
         found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
     content = story(found)

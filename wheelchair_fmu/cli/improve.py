@@ -14,7 +14,6 @@ from rich.console import Group as Stacked
 from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from ..campaign import read
 from ..handling.experiments import experiments
 from ..loop.diagnose import Step
 from ..loop.improve import after, with_proposal
@@ -22,7 +21,7 @@ from ..loop.verdict import as_json, diagnose
 from ..model.effects import bundled, load
 from ..model.generic import library
 from ..model.variant import Variant, read_variant
-from .check import known_parameters
+from .check import measurements
 from .diagnose import show, write_proposal
 from .files import written
 from .group import console
@@ -59,7 +58,7 @@ def improve(
     """
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
+    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
     files = []
     for attempt in range(MOST_PROPOSALS + 1):
         with _watched() as watch:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..campaign import Campaign, read
+from ..campaign import Campaign
 from ..errors import Failure
 from ..handling.experiments import experiments
 from ..loop.evidence import Colour
@@ -22,7 +22,7 @@ from ..model.variant import Variant, read_variant
 from ..report.content import content
 from ..report.page import page
 from ..report.words import particulars, sentence
-from .check import known_parameters
+from .check import measurements
 from .files import written
 from .group import Progress, working
 from .settings import applied
@@ -46,7 +46,7 @@ def report(
     """Write one self-contained page with the verdict, its evidence, and the model itself to try it on."""
     catalogue = {**bundled(), **(load(effects) if effects else {})}
     chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, read(campaign, known_parameters()))
+    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
     with working("reading", lines=progress) as say:
         told = _read(diagnosis, measured) if diagnosis else story(
             diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))  # fmt: skip

@@ -75,7 +75,7 @@ def stuck(draft: Draft) -> Iterator[Fault]:
     """Pushes may stand still: nobody may have pushed."""
     for name, series in draft.logged.items():
         if name not in draft.inputs and np.isfinite(series).sum() > 1 and np.nanmin(series) == np.nanmax(series):
-            fact = f"{name} never changes from {np.nanmin(series):.6g} {BY_NAME[name].unit.name}"
+            fact = f"{name} never changes from {np.nanmin(series):.6g} {BY_NAME[name].unit.name} and is left out"
             cure = "check the sensor, or remove the column"
             yield run_fault(draft.file, fact, cure, column=draft.header(name), severity=WARNING)
 
