@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 from typer.testing import CliRunner
 
@@ -39,14 +40,18 @@ def test_improve_finds_adds_and_then_finds_nothing(tmp_path):
     assert again.verdict in ("adequate", "cannot_see", "small")
 
 
-def test_the_proposed_run_breaks_the_tie(tmp_path):
-    """Two drags look alike at one speed; a coast-down from 2.5 m/s, simulated by another author's chair, decides."""
-    hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 2.0)}
-    tied = diagnose(read(make(tmp_path / "one", hidden, manoeuvres="straight", seed=5)), experiments=experiments())
+def test_the_proposed_runs_break_the_tie(tmp_path):
+    """Two drags look alike at low speed; coast-downs from 2.5 m/s, made by another author's chair, decide."""
+    hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 1.6)}
+    noisy = {"noise_scale": 3.0, "seed": 7}
+    tied = diagnose(read(make(tmp_path / "one", hidden, manoeuvres="straight", **noisy)), experiments=experiments())
     assert tied.verdict == "tie" and tied.next_experiment is not None
-    assert "coast-down from 2.5" in tied.next_experiment["manoeuvre"]
-    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, FAST], seed=5)))
-    assert decided.verdict == "missing" and decided.effects[0] == "aerodynamic_drag"
+    assert set(tied.effects) == {"aerodynamic_drag", "rolling_resistance_speed"} == set(tied.next_experiment["separates"])
+    assert tied.next_experiment["manoeuvre"] == "a coast-down from 2.5 m/s"
+    more = [replace(FAST, name=f"fast-{i}") for i in range(tied.next_experiment["repeats"])]
+    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, *more], **noisy)))
+    assert decided.verdict == "missing" and decided.ties == ()
+    assert decided.rounds[0].candidates[0].effect == "aerodynamic_drag"
 
 
 def test_improve_adds_the_term_it_proposes(tmp_path):

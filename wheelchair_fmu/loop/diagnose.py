@@ -77,6 +77,16 @@ class Round:
     scores: tuple[Score, ...]
     candidates: tuple[Candidate, ...]
 
+    @property
+    def winner(self) -> Candidate | None:
+        """The best candidate found, unless one that is surely small explains the data better by far."""
+        best = next((c for c in self.candidates if c.found), None)
+        if best is None:
+            return None
+        margin = TIED * correlation_time(best.fit.evidence)
+        better = (c for c in self.candidates if c.small and c.lawful and c.drop > best.drop + margin)
+        return None if any(better) else best
+
 
 @dataclass(frozen=True)
 class Screened:

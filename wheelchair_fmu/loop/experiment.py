@@ -14,6 +14,7 @@ from ..errors import SimulationError
 from .diagnose import TIED, Search
 from .evidence import Bench, Colour
 from .fit import Fit, prior_of
+from .statistics import correlation_time
 
 MOST_REPEATS = 20
 
@@ -40,6 +41,7 @@ def separate(
     its parameters, is −2 log of the odds that one run gives.
     """
     bench = search.workshop.bench([e for e in effects if e in search.workshop.catalogue])
+    needed = TIED * correlation_time(one.evidence)  # as the verdict on a tie has it
     odds = []
     for experiment in among:
         try:
@@ -54,12 +56,12 @@ def separate(
     if not odds:
         return None
     gain, best = max(odds, key=lambda o: o[0])
-    repeats = int(np.ceil(TIED / max(gain, 1e-9)))
+    repeats = int(np.ceil(needed / max(gain, 1e-9)))
     if repeats > MOST_REPEATS:
         return None
     return {"manoeuvre": best.words, "separates": list(effects), "repeats": repeats,
             "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; "
-                   f"{TIED:g} decide"}  # fmt: skip
+                   f"{needed:.0f} decide"}  # fmt: skip
 
 
 def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:

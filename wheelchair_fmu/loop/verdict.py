@@ -101,7 +101,7 @@ def _diagnosed(campaign: Campaign, variant: Variant, generic: Mapping[str, Effec
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
         now = search.round(effects, base, held)
         rounds.append(now)
-        best = next((c for c in now.candidates if c.found), None)
+        best = now.winner
         if best is None:
             break
         effects = (*effects, best.effect)
@@ -140,7 +140,7 @@ def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: S
 
 def _tied(r: Round) -> tuple[str, ...]:
     """The effect a round found, and every other that this campaign cannot tell from it, however small it would be."""
-    leader = next((c for c in r.candidates if c.found), None)
+    leader = r.winner
     if leader is None:
         return ()
     margin = TIED * correlation_time(leader.fit.evidence)
