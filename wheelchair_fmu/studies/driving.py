@@ -22,11 +22,11 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.model_description import ModelDescription, ScalarVariable
-from fmpy.simulation import instantiate_fmu
 
 from ..errors import Failure, SimulationError, UsageError, unknown
 from ..model.variant import number
 from ..quantities import Parameter, Unit
+from .loading import loaded
 
 Values = Mapping[str, float | str]
 WARNING = 1  # fmi2Warning; what is above it stops the run
@@ -170,7 +170,7 @@ class Fmu:
             self._slave.reset()
             return self._slave
         try:
-            self._slave = instantiate_fmu(self._folder, self.description, "CoSimulation", logger=self._log)
+            self._slave = loaded(self._folder, self.description, self._log)
         except Exception as error:  # fmpy raises OSError, FMICallException or a bare Exception
             raise SimulationError(f"{self._name}: cannot be loaded: {self._last_words() or _one_line(error)}") from error
         return self._slave

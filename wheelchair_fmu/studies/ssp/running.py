@@ -19,10 +19,10 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.model_description import ScalarVariable
-from fmpy.simulation import instantiate_fmu
 
 from ...errors import SimulationError, SystemStructureError, UsageError, unknown
 from ..driving import WARNING
+from ..loading import loaded
 from .binding import Values, converted, put_set
 from .checking import check_system
 from .reading import Archive, Fmu, opened
@@ -117,7 +117,7 @@ class _Slave:
         self.name, self.fmu, self.said = name, fmu, list[tuple[int, str]]()
         try:
             fmpy.extract(str(fmu.path), folder)
-            self.call: FMU2Slave = instantiate_fmu(folder, fmu.description, "CoSimulation", logger=self._log)
+            self.call: FMU2Slave = loaded(folder, fmu.description, self._log)
         except Exception as error:  # fmpy raises OSError, FMICallException or a bare Exception
             raise SimulationError(f"{name}: cannot be loaded: {self.last_words() or error}") from error
         shown = [v for v in fmu.description.modelVariables if v.causality == "output" and v.type in SHOWN]
