@@ -1,0 +1,78 @@
+"""`wheelchair sweep`: many chairs through many manoeuvres into one Parquet file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+
+from ..campaign import read
+from ..errors import UsageError, unknown
+from ..loop.evidence import START, Bench
+from ..studies.sweep import ENGINES, Job, Plan, Yardstick, bad, dask, here, is_done, read_plan, sweep
+from .check import known_parameters
+from .compare import TUNING
+from .group import console
+
+
+def register(app: typer.Typer) -> None:
+    app.command("sweep")(run)
+
+
+def run(
+    plan: Annotated[Path, typer.Argument(metavar="PLAN.toml", help="Parameters, manoeuvres, variants.")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT.parquet", help="Where the table goes.")],
+    engine: Annotated[str, typer.Option(help=f"{' or '.join(ENGINES)}, with the same numbers.")] = "kernel",
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes on this machine; all cores unless given.")] = None,
+    address: Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="The scheduler of a Dask cluster.")] = None,
+) -> None:
+    """Simulate every chair of a plan. Killed and run again, it goes on where it stood."""
+    if engine not in ENGINES:
+        raise unknown("engine", engine, ENGINES)
+    if address and workers:
+        raise UsageError("--workers is for this machine, --dask for a cluster; give one of them")
+    if output.suffix != ".parquet":
+        raise UsageError(f"-o {output}: the table is Parquet; give a name that ends in .parquet")
+    planned = read_plan(plan)
+    job = _job(planned, engine)
+    pool = dask(address) if address else here(workers or _cores())
+    if is_done(job, output):
+        console(stderr=True).print(f"{output}: already done by this plan")
+    with _bar() as bar:
+        task = bar.add_task("runs", total=planned.runs)
+        sweep(job, output, pool, lambda runs: bar.advance(task, runs))
+    print(output)
+    count, first = bad(output)
+    if count:
+        console(stderr=True).print(f"{count} of {planned.runs} runs gave nothing (see column error), the first: {first}")
+
+
+def _cores() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _bar() -> Bar:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    return Bar(*columns, console=console(stderr=True))
+
+
+def _job(plan: Plan, engine: str) -> Job:
+    if plan.campaign is None:
+        return Job(plan, engine)
+    measured = read(plan.campaign, known_parameters())
+    yardsticks = {}
+    with console(stderr=True).status("reading the campaign"):
+        for chair in plan.chairs:
+            bench = Bench(measured, chair.variant())
+            found = bench.evidence(measured.runs, chair.variant().values, (), tune_start=TUNING)
+            yardsticks[chair.label] = tuple(
+                Yardstick(e.run, e.channels, e.measured, e.scale, measured.known,
+                          {**e.run.set, **{name: e.start[name] for name in START}})
+                for e in found.runs
+            )  # fmt: skip
+    return Job(plan, engine, yardsticks, measured.name, measured.fingerprint)

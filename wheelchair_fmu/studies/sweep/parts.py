@@ -1,0 +1,96 @@
+"""Parts of a result beside it, so that a sweep that was killed goes on where it stood; at the end one file."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ...errors import Failure
+from .pools import Pool
+from .running import ERROR, Job
+
+FINGERPRINT = b"fingerprint"
+
+
+def folder(out: Path) -> Path:
+    """Where the parts of `out` are kept until it is there."""
+    return out.with_name(out.name + ".parts")
+
+
+def is_done(job: Job, out: Path) -> bool:
+    """Whether `out` is this job's result already."""
+    try:
+        return (pq.read_schema(out).metadata or {}).get(FINGERPRINT) == job.fingerprint.encode()
+    except (FileNotFoundError, pa.ArrowInvalid):
+        return False
+
+
+def sweep(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda runs: None) -> None:
+    """Do what is not done yet, and put the parts together as `out`. `told` hears how many runs are done, as they are.
+
+    Raises Failure where the parts beside `out` are another plan's.
+    """
+    if is_done(job, out):
+        told(job.plan.runs)
+        return
+    place = _claimed(job, out)
+    missing = []
+    for n in range(job.chunks):
+        if _part(place, n).exists():
+            told(job.rows(n))
+        else:
+            missing.append(n)
+    for n, table in pool(job, missing):
+        with _beside(_part(place, n)) as beside:
+            pq.write_table(table, beside)
+        told(table.num_rows)
+    _assemble(job, place, out)
+    shutil.rmtree(place)
+
+
+def bad(out: Path) -> tuple[int, str]:
+    """How many runs gave nothing, and the first reason."""
+    count, first = 0, ""
+    for batch in pq.ParquetFile(out).iter_batches(columns=[ERROR]):
+        reasons = batch.column(0).drop_null()
+        first = first or (reasons[0].as_py() if len(reasons) else "")
+        count += len(reasons)
+    return count, first
+
+
+def _claimed(job: Job, out: Path) -> Path:
+    place = folder(out)
+    place.mkdir(parents=True, exist_ok=True)
+    owner = place / "fingerprint"
+    if not owner.exists():
+        with _beside(owner) as beside:
+            beside.write_text(job.fingerprint)
+    elif owner.read_text() != job.fingerprint:
+        raise Failure(f"{place}: parts of another plan, engine or version; remove this folder, or give another -o")
+    return place
+
+
+def _part(place: Path, number: int) -> Path:
+    return place / f"{number:08d}.parquet"
+
+
+def _assemble(job: Job, place: Path, out: Path) -> None:
+    with _beside(out) as beside, pq.ParquetWriter(beside, job.schema()) as writer:
+        for n in range(job.chunks):
+            writer.write_table(pq.read_table(_part(place, n)))
+
+
+@contextmanager
+def _beside(path: Path) -> Iterator[Path]:
+    beside = path.with_name(f".{os.getpid()}-{path.name}")
+    try:
+        yield beside
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)

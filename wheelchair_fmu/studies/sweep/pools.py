@@ -1,0 +1,107 @@
+"""Who does the chunks: processes on this machine, or a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from itertools import islice
+from multiprocessing import get_context, parent_process
+
+import pyarrow as pa
+
+from ...errors import Failure, UsageError
+from .running import Job, run_chunk
+
+Pool = Callable[[Job, Iterable[int]], Iterator[tuple[int, pa.Table]]]
+AHEAD = 2  # chunks given out for each worker: one at work, one waiting
+
+
+def here(workers: int) -> Pool:
+    """All chunks in `workers` processes of this machine."""
+
+    def chunks(job: Job, numbers: Iterable[int]) -> Iterator[tuple[int, pa.Table]]:
+        # spawned, not forked: this process has threads
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin, (job,))
+        waiting: dict[Future[pa.Table], int] = {}
+        rest = iter(numbers)
+        try:
+            while True:
+                waiting |= {pool.submit(_chunk, n): n for n in islice(rest, AHEAD * workers - len(waiting))}
+                if not waiting:
+                    return
+                for done in wait(waiting, return_when=FIRST_COMPLETED).done:
+                    yield waiting.pop(done), done.result()
+        except BrokenProcessPool as error:
+            raise Failure("a worker process was killed, perhaps for want of memory; run the same command again to go on, "
+                          "with fewer --workers if it happens again") from error  # fmt: skip
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+    return chunks
+
+
+_job: Job | None = None
+
+
+def _begin(job: Job) -> None:
+    global _job
+    _job = job
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that gives the work out
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
+
+
+def _chunk(number: int) -> pa.Table:
+    assert _job is not None
+    return run_chunk(_job, number)
+
+
+def dask(address: str, wait_seconds: float = 60.0) -> Pool:
+    """All chunks on the Dask cluster whose scheduler is at `address`.
+
+    A chunk whose worker dies is given to another one. Raises UsageError without Dask, Failure where there is no cluster.
+    """
+    try:
+        from distributed import Client, as_completed
+    except ImportError:
+        raise UsageError("--dask needs Dask; install it with pip install 'wheelchair-fmu[dask]'") from None
+
+    def chunks(job: Job, numbers: Iterable[int]) -> Iterator[tuple[int, pa.Table]]:
+        rest = iter(numbers)
+        with _connected(Client, address, wait_seconds) as client:
+            given = client.scatter(job, broadcast=True, hash=False)
+
+            def submit(n: int) -> list[tuple[int, object]]:
+                return [client.submit(_numbered, given, number, pure=False) for number in islice(rest, n)]
+
+            done = as_completed(submit(AHEAD * sum(client.nthreads().values())), with_results=True)
+            for _, result in done:
+                yield result
+                for future in submit(1):
+                    done.add(future)
+
+    return chunks
+
+
+def _numbered(job: Job, number: int) -> tuple[int, pa.Table]:
+    return number, run_chunk(job, number)
+
+
+def _connected(client: Callable, address: str, seconds: float):
+    try:
+        connection = client(address, timeout=seconds)
+        connection.wait_for_workers(1, timeout=seconds)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise Failure(f"no Dask cluster with a worker at {address} ({error}); give its scheduler, as in "
+                      "tcp://127.0.0.1:8786") from error  # fmt: skip
+    return connection
