@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import os
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
+import pandas as pd
 import typer
+from rich import box
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
+from rich.table import Table
 
 from ..campaign import read
 from ..errors import UsageError, unknown
 from ..loop.evidence import START, Bench
-from ..studies.sweep import ENGINES, Job, Plan, Yardstick, bad, dask, here, is_done, read_plan, sweep
+from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, bad, dask, here, indices, is_done, prepare, read_plan, sweep
 from .check import known_parameters
 from .compare import TUNING
+from .files import written
 from .group import console
 
 
@@ -38,17 +43,49 @@ def run(
     if output.suffix != ".parquet":
         raise UsageError(f"-o {output}: the table is Parquet; give a name that ends in .parquet")
     planned = read_plan(plan)
+    _needs_salib(planned)
     job = _job(planned, engine)
     pool = dask(address) if address else here(workers or _cores())
     if is_done(job, output):
         console(stderr=True).print(f"{output}: already done by this plan")
+    else:
+        with console(stderr=True).status("compiling"):
+            prepare(job)
     with _bar() as bar:
         task = bar.add_task("runs", total=planned.runs)
         sweep(job, output, pool, lambda runs: bar.advance(task, runs))
     print(output)
+    _tell_bad(output, planned.runs)
+    table = indices(planned, output)
+    if table is not None:
+        _tell_indices(table, output)
+
+
+def _tell_bad(output: Path, runs: int) -> None:
     count, first = bad(output)
     if count:
-        console(stderr=True).print(f"{count} of {planned.runs} runs gave nothing (see column error), the first: {first}")
+        console(stderr=True).print(f"{count} of {runs} runs gave nothing (see column error), the first: {first}")
+
+
+def _tell_indices(table: pd.DataFrame, output: Path) -> None:
+    file = output.with_name(f"{output.stem}-indices.csv")
+    with written(file) as beside:
+        table.to_csv(beside, index=False, float_format="%.6g", lineterminator="\n")
+    print(file)
+    total = "mu_star" if "mu_star" in table else "ST"
+    for (variant, manoeuvre), case in table.dropna(subset=[total]).groupby(["variant", "manoeuvre"], sort=False):
+        shown = Table(box=box.SIMPLE, title=f"{variant}, {manoeuvre}: {total}, by parameter", title_justify="left")
+        names = list(dict.fromkeys(case.parameter))
+        for name in ("quantity", *names):
+            shown.add_column(name, justify="left" if name == "quantity" else "right")
+        for quantity, rows in case.groupby("quantity", sort=False):
+            shown.add_row(str(quantity), *(f"{value:.3g}" for value in rows[total]))
+        console().print(shown)
+
+
+def _needs_salib(plan: Plan) -> None:
+    if plan.design.method in INDICES and find_spec("SALib") is None:
+        raise UsageError(f"method {plan.design.method} needs SALib; install it with pip install 'wheelchair-fmu[sweep]'")
 
 
 def _cores() -> int:

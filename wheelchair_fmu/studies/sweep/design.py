@@ -77,7 +77,8 @@ class Design:
         if self.method == "random":
             return np.random.Generator(np.random.PCG64(self.seed).advance(start * k)).random((n, k))
         if self.method == "sobol":
-            return qmc.Sobol(k, seed=self.seed).fast_forward(start).random(n)
+            sequence = qmc.Sobol(k, seed=self.seed)
+            return (sequence.fast_forward(start) if start else sequence).random(n)
         return _salib(self.method, k, self.samples, self.seed)[start:stop]
 
     def points(self, start: int, stop: int) -> np.ndarray:

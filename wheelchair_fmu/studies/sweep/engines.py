@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Protocol
 
 import numpy as np
@@ -23,31 +23,27 @@ class Engine(Protocol):
 
 
 class KernelEngine:
-    """The compiled step map, called in this process; one library for each tyre law that is asked for."""
+    """The compiled step map, called in this process; one library for each of the tyre `laws`, by their numbers."""
 
-    def __init__(self, variant: Variant):
-        self._variant, self._own = variant, variant.vector()
+    def __init__(self, variant: Variant, laws: Iterable[int] = ()):
+        self._own = variant.vector()
         self._places = {p.name: i for i, p in enumerate(variant.parameters())}
-        self._simulators: dict[int, Simulator] = {}
+        own = int(self._own[self._places["tyre.law"]])
+        self._simulators = {n: Simulator(variant.with_values({"tyre.law": LAWS["tyre"][n - 1]})) for n in {own, *laws}}
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
         p = self._own.copy()
         for name, value in values.items():
             p[self._places[name]] = value
-        simulator = self._simulator(int(p[self._places["tyre.law"]]))
+        simulator = self._simulators[int(p[self._places["tyre.law"]])]
         trajectory = simulator.run(time, simulator.inputs(len(time), inputs), p, tolerance=TOLERANCE)
         return dict(zip(trajectory.names, trajectory.results.T, strict=True))
-
-    def _simulator(self, law: int) -> Simulator:
-        if law not in self._simulators:
-            self._simulators[law] = Simulator(self._variant.with_values({"tyre.law": LAWS["tyre"][law - 1]}))
-        return self._simulators[law]
 
 
 class FmuEngine:
     """The FMU that `build_fmu.py` makes of the variant, with its default effects, driven by fmpy."""
 
-    def __init__(self, variant: Variant):
+    def __init__(self, variant: Variant, laws: Iterable[int] = ()):
         self._fmu = Fmu(fmu_of(variant))
         self._own = {name: value for name, value in variant.values.items() if name in self._fmu.parameters}
         self._own["tyre.law"] = 1 + LAWS["tyre"].index(variant.choice.tyre)

@@ -39,11 +39,11 @@ def indices(plan: Plan, out: Path) -> pd.DataFrame | None:
             values = case[name].to_numpy()
             if np.isfinite(values).any():
                 rows += [{"variant": variant, "manoeuvre": manoeuvre, "quantity": name, **row}
-                         for row in _of(plan.design, values)]  # fmt: skip
+                         for row in indices_of(plan.design, values)]  # fmt: skip
     return pd.DataFrame(rows)
 
 
-def _of(design: Design, values: np.ndarray) -> Iterator[dict[str, object]]:
+def indices_of(design: Design, values: np.ndarray) -> Iterator[dict[str, object]]:
     """Indices of one quantity, (chairs,), by each parameter."""
     groups = values.reshape(-1, design.group)
     good = np.isfinite(groups).all(axis=1)

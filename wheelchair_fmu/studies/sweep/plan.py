@@ -140,13 +140,13 @@ class _Reader:
         return Plan(design, courses, tuple(c.with_effects(effects) for c in chairs), campaign)
 
     def fault(self, key: str, fact: str, cure: str) -> None:
-        self.faults.append(Fault(self.path.name, self._line(key), key or None, fact, cure))
+        self.faults.append(Fault(self.path.name, self._line(key), None, fact, cure))
 
     def refused(self, key: str, error: WheelchairError) -> None:
         """The fault of what something else has refused in a sentence of fact and cure."""
         words = re.sub(r"--([a-z][a-z-]*)", lambda option: option[1].replace("-", "_"), str(error))
-        fact, _, cure = words.partition("; ")
-        self.fault(key, fact, cure or "correct this")
+        fact, _, cure = words.partition("; " if "; " in words else ": ")
+        self.fault(key, fact, cure)
 
     def _line(self, key: str) -> int | None:
         while key and key not in self.lines:
@@ -163,7 +163,10 @@ class _Reader:
         except UnicodeDecodeError as error:
             self.faults.append(not_utf8(self.path.name, raw, error))
         except tomllib.TOMLDecodeError as error:
-            self.fault("", f"not valid TOML: {error}", "correct this line")
+            place = re.search(r" \(at line (\d+), column \d+\)", str(error))
+            line = int(place[1]) if place else text.count("\n") + 1
+            self.faults.append(Fault(self.path.name, line, None, f"not valid TOML: {str(error).partition(' (at ')[0].lower()}",
+                                     "correct this line"))  # fmt: skip
         else:
             self.lines = _lines(text)
             return True
@@ -189,13 +192,13 @@ class _Reader:
         method = sweep.get("method", "grid")
         if method not in METHODS:
             self.fault("sweep.method", f"no method {method!r}", suggestion(str(method), METHODS))
-            method = "grid"
+            method = ""  # whatever is said for one that is known would be said in vain
         axes = tuple(self._axes(method, chairs))
         if not self._table("parameters"):
-            if method != "grid":
+            if method not in ("grid", ""):
                 self.fault("sweep.method", f"{method} needs parameters to vary", "add [parameters] with a range for each")
             return Design("grid", ())
-        samples = self._whole(sweep, "samples", 1) if method != "grid" else 1
+        samples = self._whole(sweep, "samples", 2 if method in INDICES else 1) if method not in ("grid", "") else 1
         if method == "grid" and "samples" in sweep:
             self.fault("sweep.samples", "a grid has no samples", "leave it out; each parameter has its own steps or list")
         elif method in BALANCED and samples & (samples - 1):
@@ -213,7 +216,7 @@ class _Reader:
         return least
 
     def _axes(self, method: str, chairs: tuple[Chair, ...]) -> Iterator[Axis]:
-        given = dict(_flat(self._table("parameters")))
+        given = dict(_flat(self._table("parameters"), set(_records((BARE,), tuple(bundled())))))
         records = _records(chairs or (BARE,), _effects_of(given))
         for name, value in given.items():
             key = f"parameters.{name}"
@@ -229,7 +232,8 @@ class _Reader:
             except WheelchairError as error:
                 self.refused(key, error)
             except ValueError as error:
-                self.fault(key, *error.args)
+                fact, cure = error.args
+                self.fault(key, f"{name}: {fact}", cure)
 
     def _axis(self, method: str, record: Parameter, value: Any) -> Axis:
         """Raises ValueError(fact, cure), or what `number` raises."""
@@ -261,7 +265,7 @@ class _Reader:
             raise ValueError(f"the range goes from {lower:g} to {upper:g}", "let it rise")
         if method == "grid" and (not isinstance(steps, int) or isinstance(steps, bool) or steps < 2):
             raise ValueError("a grid needs steps, a whole number of at least 2", "write { from = …, to = …, steps = 5 }")
-        if method != "grid" and "steps" in value:
+        if method not in ("grid", "") and "steps" in value:
             raise ValueError(f"steps mean nothing for {method}", "leave them out; samples says how many points there are")
         if not isinstance(log, bool) or (log and lower <= 0):
             raise ValueError(f"log = {log!r} from {lower:g}", "give true or false, and true only for ranges above 0")
@@ -358,13 +362,12 @@ def _records(chairs: tuple[Chair, ...], effects: tuple[str, ...]) -> dict[str, P
     return optional | {name: p for name, p in own[0].items() if all(name in other for other in own)}
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Dotted names and their lists or ranges: a range is a table whose keys are not all tables or lists."""
+def _flat(table: Mapping[str, Any], known: set[str], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted names and their lists or ranges: [parameters.chair] m and [parameters] "chair.m" are both chair.m."""
     for key, value in table.items():
         name = f"{prefix}.{key}" if prefix else key
-        nested = isinstance(value, dict) and value and all(isinstance(v, dict | list) for v in value.values())
-        if nested and not set(value) & set(RANGE_KEYS):
-            yield from _flat(value, name)
+        if isinstance(value, dict) and name not in known and not set(value) & set(RANGE_KEYS):
+            yield from _flat(value, known, name)
         else:
             yield name, value
 

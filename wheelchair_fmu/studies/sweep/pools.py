@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from multiprocessing import get_context, parent_process
@@ -72,25 +72,33 @@ def dask(address: str, wait_seconds: float = 60.0) -> Pool:
     A chunk whose worker dies is given to another one. Raises UsageError without Dask, Failure where there is no cluster.
     """
     try:
-        from distributed import Client, as_completed
+        from distributed import Client, KilledWorker, as_completed
     except ImportError:
         raise UsageError("--dask needs Dask; install it with pip install 'wheelchair-fmu[dask]'") from None
 
     def chunks(job: Job, numbers: Iterable[int]) -> Iterator[tuple[int, pa.Table]]:
         rest = iter(numbers)
         with _connected(Client, address, wait_seconds) as client:
-            given = client.scatter(job, broadcast=True, hash=False)
+            given = client.submit(_same, job, pure=False)  # not scattered: what a dead worker held is made again
 
             def submit(n: int) -> list[tuple[int, object]]:
                 return [client.submit(_numbered, given, number, pure=False) for number in islice(rest, n)]
 
             done = as_completed(submit(AHEAD * sum(client.nthreads().values())), with_results=True)
-            for _, result in done:
-                yield result
-                for future in submit(1):
-                    done.add(future)
+            try:
+                for _, result in done:
+                    yield result
+                    for future in submit(1):
+                        done.add(future)
+            except (KilledWorker, CancelledError) as error:
+                raise Failure("the cluster lost its workers again and again; see their logs, and run the same command again "
+                              "to go on") from error  # fmt: skip
 
     return chunks
+
+
+def _same(job: Job) -> Job:
+    return job
 
 
 def _numbered(job: Job, number: int) -> tuple[int, pa.Table]:

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
 
 from ... import __version__
@@ -43,8 +42,8 @@ class Job:
 
     @property
     def stride(self) -> int:
-        """Chairs in a chunk."""
-        return max(1, CHUNK // max(1, self.plan.cases))
+        """Chairs in a chunk: a power of two, as pieces of a Sobol' sequence should be."""
+        return 1 << (max(1, CHUNK // self.plan.cases).bit_length() - 1)
 
     @property
     def chunks(self) -> int:
@@ -73,6 +72,12 @@ class Job:
               for name, (unit, meaning) in QUANTITIES.items()),
             pa.field(ERROR, pa.string(), metadata={"meaning": "why this run gave nothing; empty where it did"}),
         ], metadata={"wheelchair-fmu": __version__, "fingerprint": self.fingerprint})  # fmt: skip
+
+
+def prepare(job: Job) -> None:
+    """Compile or build what the runs need, once for all processes that share the cache."""
+    for chair in job.plan.chairs:
+        _bench(job, chair)
 
 
 def run_chunk(job: Job, chunk: int) -> pa.Table:
@@ -104,7 +109,8 @@ class _Bench:
 
     def __init__(self, job: Job, chair: Chair):
         self.variant = chair.variant()
-        self.engine: Engine = ENGINES[job.engine](self.variant)
+        laws = {int(v) for axis in job.plan.design.axes if axis.name == "tyre.law" for v in axis.values}
+        self.engine: Engine = ENGINES[job.engine](self.variant, laws)
         self.own = dict(zip((p.name for p in self.variant.parameters()), self.variant.vector(), strict=True))
         self.yardsticks = job.yardsticks.get(chair.label, ())
         self.courses: dict[str, tuple[Manoeuvre, dict[str, float]]] = {}

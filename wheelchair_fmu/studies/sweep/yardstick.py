@@ -18,8 +18,8 @@ from .engines import Engine, encoded
 @dataclass(frozen=True, eq=False)
 class Yardstick:
     """One recorded run: `channels` measured (n, nz), NaN in gaps, and `scale` (n, nz), one over the standard deviation
-    of each reading. `known` is what the campaign says of the chair and goes before a variant's own values only where
-    it must: `fixed` (what the run itself sets, and where it starts) before everything."""
+    of each reading. `known` is what the campaign says of the chair, over which a variant's values and the plan's go;
+    `fixed`, what the run itself sets and where it starts, goes over everything."""
 
     run: Run
     channels: tuple[str, ...]
@@ -43,7 +43,8 @@ def whitened(engine: Engine, variant: Variant, runs: Sequence[Yardstick], values
             raise SimulationError(f"run {y.run.name}: {error}") from error
         e = (y.measured - np.stack([results[PREDICTS[c]] for c in y.channels], axis=1)) * y.scale
         errors[y.run.role].append(e[np.isfinite(e)])
-    return {"rms": _rms(sum(errors.values(), [])), "rms_fit": _rms(errors["fit"]), "rms_holdout": _rms(errors["holdout"])}
+    fit, holdout = errors["fit"], errors["holdout"]
+    return {"rms": _rms([*fit, *holdout]), "rms_fit": _rms(fit), "rms_holdout": _rms(holdout)}
 
 
 def _rms(errors: list[np.ndarray]) -> float:
