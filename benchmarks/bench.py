@@ -14,11 +14,11 @@ from rich.console import Console
 from wheelchair_fmu.cli.files import written
 from wheelchair_fmu.engine import compiler
 
-from . import run_cost, step_cost
+from . import run_cost, step_cost, sweep_cost
 from .rows import table
 
 TARGET = Path("out/bench.json")
-PACKAGES = ("casadi", "numpy", "scipy", "fmpy")
+PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 
 def machine() -> dict[str, str]:
@@ -41,7 +41,7 @@ def main() -> int:
     on = machine()
     rows = []
     with Console(stderr=True).status("measuring"):
-        for group in (step_cost, run_cost):
+        for group in (step_cost, run_cost, sweep_cost):
             rows += list(group.rows())
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))

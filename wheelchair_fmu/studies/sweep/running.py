@@ -33,17 +33,18 @@ class Job:
     yardsticks: Mapping[str, tuple[Yardstick, ...]] = field(default_factory=dict)
     campaign: str = ""
     measured: str = ""  # the campaign's fingerprint: with the plan it decides the yardsticks
+    chunk: int = CHUNK
 
     @cached_property
     def fingerprint(self) -> str:
         """Two jobs with the same one have the same result."""
-        words = (__version__, sources(), str(CHUNK), repr(self.plan), self.engine, self.measured)
+        words = (__version__, sources(), str(self.chunk), repr(self.plan), self.engine, self.measured)
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
     @property
     def stride(self) -> int:
         """Chairs in a chunk: a power of two, as pieces of a Sobol' sequence should be."""
-        return 1 << (max(1, CHUNK // self.plan.cases).bit_length() - 1)
+        return 1 << (max(1, self.chunk // self.plan.cases).bit_length() - 1)
 
     @property
     def chunks(self) -> int:

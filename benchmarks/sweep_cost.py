@@ -1,0 +1,117 @@
+"""What a chair of a sweep costs, beside fmpy's own loop on the same cores.
+
+A steady turn of 10 s at 100 Hz, a random design over three parameters: 10 000 chairs by `wheelchair sweep` with all that it
+does (processes started, results written, parts put together), fewer by `fmpy.simulate_fmu`, for its time grows with their
+number alone. fmpy gets what makes it fastest: the FMU unpacked once in each process, one instance that is reset, only the outputs
+that the quantities need, and the same chunks on as many processes. Its time counts from when the processes are ready.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stdout
+from io import StringIO
+from multiprocessing import get_context
+from os import cpu_count
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import fmpy
+import numpy as np
+import pyarrow.parquet as pq
+from fmpy.simulation import instantiate_fmu
+
+from wheelchair_fmu.handling.manoeuvres import Manoeuvre, manoeuvre
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.studies import fmu_of
+from wheelchair_fmu.studies.sweep import Job, Plan, here, prepare, sweep
+from wheelchair_fmu.studies.sweep.design import Axis, Design
+from wheelchair_fmu.studies.sweep.engines import encoded
+from wheelchair_fmu.studies.sweep.plan import BARE, Course
+
+from .rows import Row
+
+CHAIRS, FEWER, REPEATS, TARGET = 10_000, 64, 3, 50.0
+OUTPUTS = ["chair.x", "chair.y", "chair.u", "chair.psi_dot", "chair.curvature", "slip.rl", "slip.rr", "push.total_needed",
+           "load.lifted"]  # fmt: skip
+AXES = (Axis("tyre.C_lambda", lower=2500, upper=10_000), Axis("chair.m", lower=60, upper=100),
+        Axis("tyre.C_m_lambda", lower=50, upper=200))  # fmt: skip
+
+
+def job() -> Job:
+    return Job(Plan(Design("random", AXES, CHAIRS, 1), (Course("steady-turn", "steady-turn", ()),), (BARE,)))
+
+
+class _Loop:
+    """fmpy's loop, ready to run in one process."""
+
+    def __init__(self, path: str):
+        self.folder = fmpy.extract(path)
+        self.description = fmpy.read_model_description(self.folder)
+        self.instance = instantiate_fmu(self.folder, self.description, "CoSimulation")
+        self.course: Manoeuvre = manoeuvre("steady-turn")
+        self.values = encoded(Variant(), self.course.values)
+        self.signals = np.rec.fromarrays([self.course.time, *self.course.inputs.values()],
+                                         names=["time", *self.course.inputs])  # fmt: skip
+
+    def run(self, values: dict[str, float]) -> float:
+        """The curvature at the end."""
+        self.instance.reset()
+        done = fmpy.simulate_fmu(
+            self.folder, stop_time=self.course.time[-1], output_interval=0.01, start_values={**self.values, **values},
+            input=self.signals, output=OUTPUTS, model_description=self.description, fmu_instance=self.instance,
+        )  # fmt: skip
+        return float(done["chair.curvature"][-1])
+
+
+_loop: Any = None
+
+
+def _begin(path: str) -> None:
+    global _loop
+    _loop = _Loop(path)
+
+
+def _some(chairs: list[dict[str, float]]) -> list[float]:
+    with redirect_stdout(StringIO()):  # fmpy says each time which inputs are left at their start values
+        return [_loop.run(values) for values in chairs]
+
+
+def _theirs(points: np.ndarray, workers: int) -> tuple[list[float], np.ndarray]:
+    """Seconds of each repeat, and curvatures (n,)."""
+    chairs = [dict(zip((axis.name for axis in AXES), map(float, row), strict=True)) for row in points]
+    chunks = [chairs[i::workers] for i in range(workers)]
+    seconds = []
+    with ProcessPoolExecutor(workers, get_context("spawn"), _begin, (str(fmu_of(Variant())),)) as pool:
+        list(pool.map(_some, [chunk[:2] for chunk in chunks]))  # starts the processes, loads the FMU
+        for _ in range(REPEATS):
+            start = perf_counter()
+            found = list(pool.map(_some, chunks))
+            seconds.append(perf_counter() - start)
+    curvature = np.empty(len(points))
+    for i, part in enumerate(found):
+        curvature[i::workers] = part
+    return seconds, curvature
+
+
+def rows() -> Iterator[Row]:
+    workers = cpu_count() or 1
+    ours = job()
+    prepare(ours)
+    seconds = []
+    with tempfile.TemporaryDirectory() as place:
+        for i in range(REPEATS):
+            out = Path(place) / f"{i}.parquet"
+            start = perf_counter()
+            sweep(ours, out, here(workers))
+            seconds.append(perf_counter() - start)
+        curvature = pq.read_table(out, columns=["curvature"]).column(0).to_numpy()[:FEWER]
+    theirs, reference = _theirs(ours.plan.design.points(0, FEWER), workers)
+    off = float(np.abs(curvature / reference - 1).max())
+    per_chair = [1e3 * s / FEWER for s in theirs]
+    yield Row(f"a chair of a sweep of {CHAIRS}", "ms", [1e3 * s / CHAIRS for s in seconds], TARGET, float(np.median(per_chair)),
+              f"beside fmpy's loop on {workers} cores; curvatures agree to {off:.0e}")  # fmt: skip
+    yield Row(f"a chair by fmpy's loop, of {FEWER}", "ms", per_chair)

@@ -1,0 +1,69 @@
+"""`wheelchair sweep` as a user meets it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from wheelchair_fmu.cli.main import app
+
+SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
+PLAN = f"""
+[sweep]
+method = "morris"
+samples = 2
+campaign = "{SAMPLE}"
+[parameters]
+"effect.rolling_resistance_asymmetry.D" = {{ from = 0, to = 4 }}
+"chair.m" = {{ from = 70, to = 90 }}
+[[manoeuvre]]
+name = "spin"
+time = 2
+"""
+
+
+def wheelchair(*words):
+    return CliRunner().invoke(app, [str(w) for w in words])
+
+
+def test_sweep_writes_a_table_and_its_indices(tmp_path):
+    (tmp_path / "plan.toml").write_text(PLAN)
+    done = wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "out.parquet", "--workers", 1)
+    assert done.exit_code == 0, done.output
+    table = pd.read_parquet(tmp_path / "out.parquet")
+    assert len(table) == 12 and set(table.manoeuvre) == {"spin time=2", "campaign open-06-left-drag"}
+    measured = table[table.rms.notna()]
+    assert len(measured) == 6 and (measured.rms > 0.9).all() and measured.drift.isna().all()
+    indices = pd.read_csv(tmp_path / "out-indices.csv")
+    assert {"drift", "rms", "rms_holdout"} <= set(indices.quantity) and (indices.left_out == 0).all()
+    assert "mu_star, by parameter" in done.output
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["out-indices.csv", "out.parquet", "plan.toml"]
+    again = wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "out.parquet")
+    assert again.exit_code == 0 and "already done by this plan" in again.stderr
+
+
+def test_the_rms_is_that_of_compare(tmp_path):
+    (tmp_path / "plan.toml").write_text(f'[sweep]\ncampaign = "{SAMPLE}"\n')
+    assert wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "o.parquet", "--workers", 1).exit_code == 0
+    (row,) = pd.read_parquet(tmp_path / "o.parquet").to_dict("records")
+    shown = wheelchair("compare", SAMPLE).output
+    assert f"fitted runs together: {row['rms_fit']:.3f}" in shown
+    assert f"held-out runs together: {row['rms_holdout']:.3f}" in shown
+
+
+@pytest.mark.parametrize(("words", "code", "sentence"), [
+    (("plan.toml", "-o", "out.csv"), 2, "the table is Parquet; give a name that ends in .parquet"),
+    (("plan.toml", "-o", "o.parquet", "--engine", "fmi"), 2, "no engine 'fmi'; did you mean 'fmu'?"),
+    (("plan.toml", "-o", "o.parquet", "--dask", "x", "--workers", 2), 2, "give one of them"),
+    (("none.toml", "-o", "o.parquet"), 1, "none.toml: no such file"),
+    (("plan.toml",), 2, "--output"),
+])  # fmt: skip
+def test_sweep_refuses_in_one_sentence(tmp_path, monkeypatch, words, code, sentence):
+    monkeypatch.chdir(tmp_path)
+    Path("plan.toml").write_text(PLAN)
+    done = wheelchair("sweep", *words)
+    assert done.exit_code == code and sentence in done.stderr and "Traceback" not in done.output
+    assert [file.name for file in tmp_path.iterdir()] == ["plan.toml"]
