@@ -2,8 +2,8 @@
 
 A steady turn of 10 s at 100 Hz, a random design over three parameters: 10 000 chairs by `wheelchair sweep` with all that it
 does (processes started, results written, parts put together), fewer by `fmpy.simulate_fmu`, for its time grows with their
-number alone. fmpy gets what makes it fastest: the FMU unpacked once in each process, one instance that is reset, only the outputs
-that the quantities need, and the same chunks on as many processes. Its time counts from when the processes are ready.
+number alone. fmpy gets what makes it fastest: the FMU unpacked once in each process, one instance that is reset, only the
+outputs that the quantities need, and as many processes. Its time counts from when the processes are ready.
 """
 
 from __future__ import annotations

@@ -54,6 +54,16 @@ def test_the_rms_is_that_of_compare(tmp_path):
     assert f"held-out runs together: {row['rms_holdout']:.3f}" in shown
 
 
+def test_the_examples_indices_say_what_the_paper_says(tmp_path):
+    """Slip goes inversely with the cornering stiffness; the radius hardly notices it (section 6.1)."""
+    done = wheelchair("sweep", SAMPLE.parent / "sweep.toml", "-o", tmp_path / "out.parquet")
+    assert done.exit_code == 0, done.output
+    table = pd.read_csv(tmp_path / "out-indices.csv").set_index(["manoeuvre", "quantity", "parameter"]).ST
+    turn = table["steady-turn delta_force=10"]
+    assert turn["slip_peak_rl"].idxmax() == turn["slip_peak_rr"].idxmax() == "tyre.C_lambda"
+    assert turn["radius"]["tyre.C_lambda"] < 0.05 and turn["radius"].idxmax() == "chair.b"
+
+
 @pytest.mark.parametrize(("words", "code", "sentence"), [
     (("plan.toml", "-o", "out.csv"), 2, "the table is Parquet; give a name that ends in .parquet"),
     (("plan.toml", "-o", "o.parquet", "--engine", "fmi"), 2, "no engine 'fmi'; did you mean 'fmu'?"),

@@ -51,9 +51,13 @@ def run(
     else:
         with console(stderr=True).status("compiling"):
             prepare(job)
-    with _bar() as bar:
-        task = bar.add_task("runs", total=planned.runs)
-        sweep(job, output, pool, lambda runs: bar.advance(task, runs))
+    try:
+        with _bar() as bar:
+            task = bar.add_task("runs", total=planned.runs)
+            sweep(job, output, pool, lambda runs: bar.advance(task, runs))
+    except KeyboardInterrupt:
+        console(stderr=True).print(f"what is done is kept beside {output}; the same command goes on from there")
+        raise
     print(output)
     _tell_bad(output, planned.runs)
     table = indices(planned, output)

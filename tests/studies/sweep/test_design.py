@@ -45,7 +45,7 @@ def test_a_list_is_sampled_evenly():
 
 
 def test_saltellis_indices_of_ishigamis_function():
-    """Ishigami and Homma: closed forms for sin x₁ + 7 sin² x₂ + 0.1 x₃⁴ sin x₁ on ±π."""
+    """Ishigami1990: closed forms for sin x₁ + 7 sin² x₂ + 0.1 x₃⁴ sin x₁ on ±π."""
     axes = tuple(Axis(f"x{i}", lower=-np.pi, upper=np.pi) for i in range(3))
     design = Design("saltelli", axes, 4096, seed=1)
     x = design.points(0, design.chairs)

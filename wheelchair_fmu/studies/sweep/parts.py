@@ -16,6 +16,7 @@ from .pools import Pool
 from .running import ERROR, Job
 
 FINGERPRINT = b"fingerprint"
+ROW_GROUP = 65_536  # rows, about, that are in memory together when the parts are put together
 
 
 def folder(out: Path) -> Path:
@@ -82,8 +83,10 @@ def _part(place: Path, number: int) -> Path:
 
 def _assemble(job: Job, place: Path, out: Path) -> None:
     with _beside(out) as beside, pq.ParquetWriter(beside, job.schema()) as writer:
-        for n in range(job.chunks):
-            writer.write_table(pq.read_table(_part(place, n)))
+        together = max(1, ROW_GROUP // job.rows(0))
+        for first in range(0, job.chunks, together):
+            parts = range(first, min(first + together, job.chunks))
+            writer.write_table(pa.concat_tables([pq.read_table(_part(place, n)) for n in parts]))
 
 
 @contextmanager
