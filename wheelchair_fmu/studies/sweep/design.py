@@ -1,6 +1,7 @@
 """Which chairs: axes over parameters, and the points on them.
 
-Morris' trajectories (Morris1991) and Saltelli's points (Saltelli2010) are SALib's, Sobol' points SciPy's. Every design gives any of its chairs from their numbers alone, so chunks of a sweep may be done in any order, by any worker.
+Morris' trajectories (Morris1991) and Saltelli's points (Saltelli2010) are SALib's, Sobol' points SciPy's. Every design
+gives any of its chairs from their numbers alone, so chunks of a sweep may be done in any order, by any worker.
 """
 
 from __future__ import annotations
