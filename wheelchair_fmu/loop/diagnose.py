@@ -26,6 +26,7 @@ HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less i
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
+SAME = 1.002  # ratio of two RMS errors that do not differ
 LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
@@ -52,7 +53,7 @@ class Candidate:
     estimate: np.ndarray
     se: np.ndarray
     p: float
-    falls: bool  # does the RMS over all fitted runs not rise?
+    falls: bool  # does the RMS over all fitted runs, or over those held out, not rise?
     visible: float  # largest fall of a channel's RMS in a run
     gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
     heldout: Evidence | None
@@ -329,7 +330,7 @@ class Search:
             estimate=estimate,
             se=np.sqrt(np.maximum(np.diag(covariance), 0)),
             p=min(1.0, tests * p),
-            falls=found.evidence.rms < 1.002 * base.evidence.rms,
+            falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
             visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
             gain=held_out_gain(base_held, held) if held is not None else None,
             heldout=held,
