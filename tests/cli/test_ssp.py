@@ -58,6 +58,16 @@ def test_check_tells_faults_and_fails(archive, tmp_path):
     assert done.exit_code == 1 and not (tmp_path / "out").exists()
 
 
+def test_parameters_of_a_chair_with_an_effect_of_ones_own(tmp_path):
+    folder, variant, target = tmp_path / "effects", tmp_path / "own.toml", tmp_path / "own.ssv"
+    assert CliRunner().invoke(app, ["effects", "new", "my_drag", "-o", str(folder)]).exit_code == 0
+    variant.write_text('[laws]\neffects = ["my_drag"]\n[values]\n"effect.my_drag.q" = 5.0\n')
+    assert "no effect 'my_drag'" in wheelchair("parameters", variant, "-o", target).output
+    done = wheelchair("parameters", variant, "--effects", folder, "-o", target)
+    assert done.exit_code == 0, done.output
+    assert 'name="effect.my_drag.q"' in target.read_text()
+
+
 @pytest.mark.parametrize("source", ["low-cost-tyre", "ssp/parameters/fitted.toml"])
 def test_parameters_writes_a_set_that_a_run_can_bind(source, archive, tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)

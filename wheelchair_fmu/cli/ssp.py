@@ -12,6 +12,7 @@ from rich.table import Table
 
 from ..errors import SystemStructureError
 from ..fmu import parameter_set
+from ..model.effects import bundled, load
 from ..model.variant import read_variant
 from ..report.course import PLAYED, Course, course_figure, course_frames
 from ..report.saving import save, save_film
@@ -44,12 +45,13 @@ def build_ssp(
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The chair: laws, effects and values.")] = None,
     parameters: Annotated[list[str] | None, typer.Option("--parameters", metavar="SET",
         help=f"Bind a set: {', '.join(sources.parameter_sets())}, or a .toml; again for more.")] = None,
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     replay: Annotated[Path | None, typer.Option(metavar="CSV", help="The pusher replays this recording.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE.ssp", help="Where to write it.")] = None,
 ) -> None:  # fmt: skip
     """Build the archive of a system: three FMUs, connections, parameter sets."""
     recording = read_recording(replay) if replay else None
-    chair = read_variant(variant) if variant else None
+    chair = read_variant(variant, {**bundled(), **(load(effects) if effects else {})}) if variant else None
     with console(stderr=True).status("building the FMUs"):
         path = build(system, output, version=version, variant=chair, parameters=parameters or (), recording=recording)
     print(path)
@@ -97,10 +99,11 @@ def parameters(
     source: Annotated[str, typer.Argument(metavar="TOML|SET",
         help=f"A variant, as `wheelchair add` writes it, or {', '.join(sources.parameter_sets())}.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.ssv", help="Where to write it.")],
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     version: Annotated[str, VERSION] = "1",
 ) -> None:  # fmt: skip
     """Write a variant's values as an SSP parameter set, which other tools bind to the FMU."""
-    found = sources.parameter_set(source)[1]
+    found = sources.parameter_set(source, {**bundled(), **(load(effects) if effects else {})})[1]
     with written(output) as beside:
         beside.write_bytes(parameter_set.text(found, sources.version(version)))
     print(output)

@@ -10,6 +10,7 @@ from typing import Any
 
 from ...errors import Failure, UsageError, unknown
 from ...fmu.parameter_set import ParameterSet, from_values, from_variant, reference
+from ...model.stage import Effect
 from ...model.variant import number, read_variant
 from ...quantities import Parameter
 from ...surroundings import floor, pusher
@@ -62,15 +63,16 @@ def system(name: str) -> Source:
     return Source(path.stem, str(table["title"]), float(table["stop"]), float(table["step"]), values)
 
 
-def parameter_set(name: str) -> tuple[str, ParameterSet]:
-    """The component that a set is for, and the set: by name, or in a TOML file as `wheelchair add` writes it."""
+def parameter_set(name: str, catalogue: Mapping[str, Effect] | None = None) -> tuple[str, ParameterSet]:
+    """The component that a set is for, and the set: by name, or in a TOML file as `wheelchair add` writes it, whose effects
+    are of this `catalogue` (the bundled one unless given)."""
     if name == "reference":
         return "Chair", reference()
     path = _path(name, "parameters", parameter_sets(), "parameter set")
     table = _load(path)
     component, title = str(table.get("for", "Chair")), str(table.get("title", ""))
     if component == "Chair":
-        return component, replace(from_variant(read_variant(path), path.stem), description=title)
+        return component, replace(from_variant(read_variant(path, catalogue), path.stem), description=title)
     if component not in RECORDS:
         raise unknown(f"component in {path}", component, COMPONENTS)
     known = {p.name: p for p in RECORDS[component]}
