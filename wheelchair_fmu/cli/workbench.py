@@ -57,4 +57,5 @@ def _listen(port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         raise UsageError(f"port {port} cannot be used ({getattr(error, 'strerror', None) or error}); "
                          "give another by --port, or 0") from None  # fmt: skip
+    listening.listen()  # so that whoever opens the address at once waits, and is not refused
     return listening
