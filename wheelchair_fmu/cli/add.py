@@ -9,13 +9,10 @@ import typer
 
 from ..errors import unknown
 from ..loop.improve import add as add_effect
-from ..model.effects import bundled, load
-from ..model.variant import Variant, read_variant
-from .check import measurements
 from .files import print_json
 from .group import Progress, console, working
-from .settings import applied
-from .staircase import finite, staircase_table, write_improved
+from .settings import catalogue, subject
+from .staircase import staircase_table, write_improved
 
 
 def register(app: typer.Typer) -> None:
@@ -33,16 +30,15 @@ def add(
     progress: Progress = False,
 ) -> None:
     """Refit with one more effect, print and draw the staircase, and write the improved variant."""
-    catalogue = {**bundled(), **(load(effects) if effects else {})}
-    if effect not in catalogue:
-        raise unknown("effect", effect, catalogue)
-    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
+    known = catalogue(effects)
+    if effect not in known:
+        raise unknown("effect", effect, known)
+    chair, measured, fixed = subject(campaign, variant, effects, settings)
     with working("calibrating", lines=progress) as say:
         better = add_effect(measured, chair, effect, fixed, say)
     files = write_improved(output, better.variant, better.ladder)
     if as_json:
-        steps = [{"step": s.name, "fit": s.fit, "heldout": finite(s.heldout)} for s in better.ladder]
+        steps = [step.as_json() for step in better.ladder]
         print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output)})
         return
     console().print(staircase_table(better.ladder))

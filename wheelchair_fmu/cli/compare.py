@@ -15,16 +15,15 @@ from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of
 from ..loop.evidence import START, Bench, Evidence
 from ..loop.fit import fit, start_value
-from ..model.effects import bundled, load
-from ..model.variant import Variant, read_variant
+from ..loop.statistics import finite
+from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..report.figures import overlay_figure, where_figure
 from ..report.saving import save
 from ..studies import Fmu, fmu_of, run_campaign_run
-from .check import measurements
 from .files import print_json, written
 from .group import console
-from .settings import applied
+from .settings import subject
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
 
@@ -43,9 +42,7 @@ def compare(
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where figures go.")] = None,
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
-    catalogue = {**bundled(), **(load(effects) if effects else {})}
-    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, _ = applied(settings or (), chair, measurements(campaign))
+    chair, measured, _ = subject(campaign, variant, effects, settings)
     bench = Bench(measured, chair)
     values = dict(chair.values)
     with console(stderr=True).status("simulating"):
@@ -96,16 +93,12 @@ def _notes(measured: Campaign) -> list[str]:
 def _content(measured: Campaign, c: Comparison, values: dict[str, float], calibrate: str) -> dict[str, Any]:
     return {
         "campaign": measured.name,
-        "rms": {"fit": _number(c.rms("fit")), "holdout": _number(c.rms("holdout"))},
+        "rms": {"fit": finite(c.rms("fit")), "holdout": finite(c.rms("holdout"))},
         "runs": [{"run": r.name, "role": r.role, "rms": r.rms} for r in c.runs],
         "excess": {n: [{"from": a, "to": b, "share": s} for a, b, s in c.excess_by(n)] for n in c.runs[0].regime},
         "values": values,
         "calibrated": [n for n in calibrate.split(",") if n],
     }
-
-
-def _number(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate: str) -> None:

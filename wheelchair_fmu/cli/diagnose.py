@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,15 +14,12 @@ from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
 from ..loop.verdict import UNEXPLAINED, Diagnosis
 from ..loop.verdict import diagnose as run_diagnosis
-from ..model.effects import bundled, load
 from ..model.generic import VARIABLES, library, profiles, terms
-from ..model.variant import Variant, read_variant
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from .check import measurements
-from .files import written
+from .files import write_json, written
 from .group import Progress, console, working
-from .settings import applied
+from .settings import subject
 from .staircase import staircase_table
 
 SENTENCES = {
@@ -50,15 +46,12 @@ def diagnose(
     progress: Progress = False,
 ) -> None:
     """Say which physical effect is missing from the model, with the evidence."""
-    catalogue = {**bundled(), **(load(effects) if effects else {})}
-    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
+    chair, measured, fixed = subject(campaign, variant, effects, settings)
     with working("reading", lines=progress) as say:
         found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
     content = story(found)
     if json_file:
-        with written(json_file) as beside:
-            beside.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        write_json(json_file, content)
     show(found, content)
     if output:
         for file in _files(found, content, output):

@@ -36,6 +36,16 @@ def write_table(path: Path, columns: Mapping[str, np.ndarray]) -> None:
         writer.writerows([f"{value:.10g}" for value in row] for row in zip(*columns.values(), strict=True))
 
 
+def write_json(path: Path, content: Any) -> None:
+    """As `print_json`, into a file."""
+    with written(path) as beside:
+        beside.write_text(_json(content) + "\n", encoding="utf-8")
+
+
 def print_json(content: Any) -> None:
     """To stdout, with two spaces and letters as they are."""
-    print(json.dumps(content, indent=2, ensure_ascii=False))
+    print(_json(content))
+
+
+def _json(content: Any) -> str:
+    return json.dumps(content, indent=2, ensure_ascii=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -18,14 +17,12 @@ from ..handling.experiments import experiments
 from ..loop.diagnose import Step
 from ..loop.improve import after, with_proposal
 from ..loop.verdict import as_json, diagnose
-from ..model.effects import bundled, load
+from ..model.effects import load
 from ..model.generic import library
-from ..model.variant import Variant, read_variant
-from .check import measurements
 from .diagnose import show, write_proposal
-from .files import written
+from .files import write_json
 from .group import console
-from .settings import applied
+from .settings import subject
 from .staircase import staircase_table, write_improved
 
 MOST_PROPOSALS = 2
@@ -56,9 +53,7 @@ def improve(
     Where the catalogue does not suffice, the best generic term is written as an effect file into a folder beside the
     variant, and added.
     """
-    catalogue = {**bundled(), **(load(effects) if effects else {})}
-    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
+    chair, measured, fixed = subject(campaign, variant, effects, settings)
     files = []
     for attempt in range(MOST_PROPOSALS + 1):
         with _watched() as watch:
@@ -72,8 +67,7 @@ def improve(
         chair = with_proposal(found, replace(chair, catalogue={**chair.catalogue, **load(folder)}), measured, name)
     better = after(found, chair, measured)
     if json_file:
-        with written(json_file) as beside:
-            beside.write_text(json.dumps(as_json(found), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        write_json(json_file, as_json(found))
     show(found, as_json(found))
     console().print(ENDS["missing" if found.verdict == "adequate" and found.included else found.verdict])
     for file in (*write_improved(output, better, found.ladder), *files):

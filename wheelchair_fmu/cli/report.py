@@ -16,16 +16,14 @@ from ..handling.experiments import experiments
 from ..loop.evidence import Colour
 from ..loop.story import story
 from ..loop.verdict import diagnose
-from ..model.effects import bundled, load
 from ..model.generic import library
-from ..model.variant import Variant, read_variant
+from ..model.variant import Variant
 from ..report.content import content
 from ..report.page import page
 from ..report.words import particulars, sentence
-from .check import measurements
 from .files import written
 from .group import Progress, working
-from .settings import applied
+from .settings import subject
 
 
 def register(app: typer.Typer) -> None:
@@ -44,9 +42,7 @@ def report(
     progress: Progress = False,
 ) -> None:
     """Write one self-contained page with the verdict, its evidence, and the model itself to try it on."""
-    catalogue = {**bundled(), **(load(effects) if effects else {})}
-    chair = read_variant(variant, catalogue) if variant else Variant(catalogue=catalogue)
-    chair, measured, fixed = applied(settings or (), chair, measurements(campaign))
+    chair, measured, fixed = subject(campaign, variant, effects, settings)
     with working("reading", lines=progress) as say:
         told = _read(diagnosis, measured) if diagnosis else story(
             diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))  # fmt: skip

@@ -12,7 +12,6 @@ from rich.table import Table
 
 from ..errors import SystemStructureError
 from ..fmu import parameter_set
-from ..model.effects import bundled, load
 from ..model.variant import read_variant
 from ..report.course import PLAYED, Course, course_figure, course_frames
 from ..report.saving import save, save_film
@@ -24,6 +23,7 @@ from ..studies.ssp.records import MAIN
 from ..studies.ssp.running import Trace, run
 from .files import print_json, write_table, written
 from .group import console
+from .settings import catalogue
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None,
                   help="Systems of FMUs by the SSP standard: the chair with a pusher and a floor.")  # fmt: skip
@@ -51,7 +51,7 @@ def build_ssp(
 ) -> None:  # fmt: skip
     """Build the archive of a system: three FMUs, connections, parameter sets."""
     recording = read_recording(replay) if replay else None
-    chair = read_variant(variant, {**bundled(), **(load(effects) if effects else {})}) if variant else None
+    chair = read_variant(variant, catalogue(effects)) if variant else None
     with console(stderr=True).status("building the FMUs"):
         path = build(system, output, version=version, variant=chair, parameters=parameters or (), recording=recording)
     print(path)
@@ -103,7 +103,7 @@ def parameters(
     version: Annotated[str, VERSION] = "1",
 ) -> None:  # fmt: skip
     """Write a variant's values as an SSP parameter set, which other tools bind to the FMU."""
-    found = sources.parameter_set(source, {**bundled(), **(load(effects) if effects else {})})[1]
+    found = sources.parameter_set(source, catalogue(effects))[1]
     with written(output) as beside:
         beside.write_bytes(parameter_set.text(found, sources.version(version)))
     print(output)

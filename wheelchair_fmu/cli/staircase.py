@@ -31,16 +31,11 @@ def staircase_table(ladder: Sequence[Step]) -> Table:
     return table
 
 
-def finite(value: float) -> float | None:
-    """A number as JSON has it: None where there is none."""
-    return value if math.isfinite(value) else None
-
-
 def write_improved(output: Path, variant: Variant, ladder: Sequence[Step]) -> list[Path]:
     """The variant as TOML, and its staircase beside it as PNG."""
     with written(output) as beside:
         beside.write_text(variant_text(variant), encoding="utf-8")
     picture = output.with_suffix(".png")
     with written(picture) as beside:
-        save(staircase_figure([{"step": s.name, "fit": s.fit, "heldout": finite(s.heldout)} for s in ladder]), beside)
+        save(staircase_figure([step.as_json() for step in ladder]), beside)
     return [output, picture]

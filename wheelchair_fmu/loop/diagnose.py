@@ -13,7 +13,7 @@ from .evidence import Bench, Evidence
 from .fit import Fit, Prior, fit, prior_of, start_value
 from .noise import colour_of
 from .screen import Score, projector, score
-from .statistics import alike, correlation_time, held_out_gain, sandwich, seen_directions
+from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
 from .workshop import Workshop
 
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
@@ -41,6 +41,10 @@ class Step:
     name: str
     fit: float
     heldout: float
+
+    def as_json(self) -> dict[str, str | float | None]:
+        """The keys that are fixed for a step of the `ladder`."""
+        return {"step": self.name, "fit": self.fit, "heldout": finite(self.heldout)}
 
 
 @dataclass(frozen=True)
@@ -118,10 +122,9 @@ class Search:
 
     # -- models ---------------------------------------------------------------------------------------------
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> tuple[Fit, Bench]:
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters."""
-        bench = self.workshop.bench(effects)
-        return fit(bench, self.names(effects), start, here), bench
+        return fit(self.workshop.bench(effects), self.names(effects), start, here)
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""
@@ -131,15 +134,14 @@ class Search:
 
     def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
         """The model with these effects, which the variant has already, estimated anew."""
-        found, _ = self.refit(effects, {**self.workshop.given, **base.values})
-        return self.settled(effects, found)
+        return self.settled(effects, self.refit(effects, {**self.workshop.given, **base.values}))
 
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
         bench = self.workshop.bench(effects)
         bench.evidence(self.workshop.campaign.runs, found.values, (), tune_start=2)
         self.workshop.remember(bench)
-        again, bench = self.refit(effects, found.values)
+        again = self.refit(effects, found.values)
         held = self.heldout(bench, again.values)
         self.workshop.remember(bench)
         return again, held
@@ -148,7 +150,7 @@ class Search:
         """Backward: leave out every effect but the last that the others have made needless."""
         for effect in effects[:-1]:
             fewer = tuple(e for e in effects if e != effect)
-            without, _ = self.refit(fewer, found.values)
+            without = self.refit(fewer, found.values)
             margin = TIED * correlation_time(found.evidence) * float(np.mean(found.evidence.r**2))
             if without.misfit - found.misfit < margin:
                 return self.pruned(fewer, without)
@@ -211,8 +213,10 @@ class Search:
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
         """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
-        own = evidence.S[:, [evidence.by.index(n) for n in self.workshop.parameters(effect)]]
         offsets = [n for n in self.offsets if n in evidence.by]
+        if not offsets:
+            return False
+        own = evidence.S[:, [evidence.by.index(n) for n in self.workshop.parameters(effect)]]
         columns = evidence.S[:, [evidence.by.index(n) for n in offsets]]
         rest = columns - own @ np.linalg.lstsq(own, columns, rcond=None)[0]
         same = np.linalg.norm(rest, axis=0) < 1e-6 * np.linalg.norm(columns, axis=0)
@@ -267,7 +271,7 @@ class Search:
         fits = []
         for start, here in self._starts(bench, base, s):
             try:
-                fits.append(self.refit((*effects, effect), start, here)[0])
+                fits.append(self.refit((*effects, effect), start, here))
             except SimulationError:
                 continue
         if not fits:

@@ -126,8 +126,7 @@ class _Problem:
         return found.x, latest[found.x.tobytes()]
 
 
-def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, *,
-        most: int = MOST) -> Fit:  # fmt: skip
+def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> Fit:
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
     Raises SimulationError where the model cannot be simulated at the start.
@@ -135,7 +134,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     problem = _Problem(bench, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
-    for _ in range(most if names else 0):
+    for _ in range(MOST if names else 0):
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
         if fall < STRAIGHT:

@@ -11,6 +11,11 @@ from .screen import SEEN, Score, robust_variance
 RESAMPLES = 400
 
 
+def finite(value: float) -> float | None:
+    """A number as JSON has it: None where there is none."""
+    return float(value) if np.isfinite(value) else None
+
+
 def alike(one: Score, other: Score) -> float:
     """Cosine between two effects' signatures; 0 where either has none."""
     comparable = len(one.signature) == len(other.signature) > 0

@@ -17,7 +17,7 @@ from .diagnose import CALIBRATED, MOST_EFFECTS, TIED, Candidate, Round, Search, 
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
-from .statistics import alike, correlation_time, difference_blocks, resampled_totals, sandwich
+from .statistics import alike, correlation_time, difference_blocks, finite, resampled_totals, sandwich
 from .workshop import Workshop
 
 ENOUGH_POWER = 0.8
@@ -56,6 +56,7 @@ class Diagnosis:
                      and not (self.proposal and step.name[1:] == self.proposal.effect))  # fmt: skip
 
 
+@threadpool_limits.wrap(limits=1)  # runs are what is shared among the cores; BLAS threads would only wait for one another
 def diagnose(
     campaign: Campaign,
     variant: Variant | None = None,
@@ -72,13 +73,7 @@ def diagnose(
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
     what is being done, in words, and `climbed` each step of the staircase.
     """
-    with threadpool_limits(1):  # runs are what is shared among the cores; BLAS threads would only wait for one another
-        return _diagnosed(campaign, variant or Variant(), generic or {}, calibrated, progress, experiments, fixed, climbed)
-
-
-def _diagnosed(campaign: Campaign, variant: Variant, generic: Mapping[str, Effect], calibrated: Sequence[str],
-               progress: Callable[[str], None], experiments: Sequence[Experiment],
-               fixed: Iterable[str], climbed: Callable[[Step], None]) -> Diagnosis:  # fmt: skip
+    variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
     workshop = Workshop(campaign, variant, fixed)
     search = Search(workshop, calibrated, progress)
@@ -229,7 +224,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "effects": list(d.effects),
         "ties": [list(t) for t in d.ties],
         "ranking": ranking(d),
-        "ladder": [{"step": s.name, "fit": s.fit, "heldout": _number(s.heldout)} for s in d.ladder],
+        "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
         "notes": list(d.notes),
@@ -256,7 +251,7 @@ def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
     records = d.search.records
     estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
     parameters = {
-        name.rpartition(".")[2]: {"estimate": float(v), "se": _number(e), "unit": records[name].unit.name,
+        name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
                                   "smallest_interesting": records[name].smallest_interesting}
         for name, v, e in zip(s.names, estimate, se, strict=True)
     }  # fmt: skip
@@ -268,8 +263,8 @@ def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
         "power": s.power,
         "lr": c.drop if c else s.drop,
         "hidden_in_fit": s.hidden,
-        "heldout_before": _number(before),
-        "heldout_after": _number(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
+        "heldout_before": finite(before),
+        "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
         "rivals": _rivals(s, d.rounds[0].scores),
         "verdict": _row_verdict(d, s, c),
     }
@@ -301,9 +296,5 @@ def leftover_json(d: Diagnosis) -> dict[str, Any]:
     worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
     out = {"p": best.p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
     if d.proposal:
-        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": _number(best.se[0])}
+        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
     return out
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

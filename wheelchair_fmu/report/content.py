@@ -12,6 +12,7 @@ from ..campaign import CHANNELS, Campaign, Run
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import module
 from ..loop.evidence import START, TOLERANCE, Colour, prior_start, start_sd
+from ..loop.statistics import finite
 from ..loop.workshop import Workshop
 from ..model.stage import Effect
 from ..model.variant import Variant
@@ -91,7 +92,7 @@ def _effect(effect: Effect) -> dict[str, Any]:
 
 
 def _parameter(p: Parameter) -> dict[str, Any]:
-    return {**_quantity(p.name, p.unit, p.meaning), "lower": _finite(p.lower), "upper": _finite(p.upper),
+    return {**_quantity(p.name, p.unit, p.meaning), "lower": finite(p.lower), "upper": finite(p.upper),
             "default": p.default, "delta": p.smallest_interesting, "source": p.source}  # fmt: skip
 
 
@@ -111,10 +112,6 @@ def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
     """Where the wheels are, for drawing the chair."""
     values = {p.name: p.default for p in variant.parameters()} | dict(variant.values) | campaign.known
     return {n.rpartition(".")[2]: values[n] for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "wheel.R")}
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _series(values: Iterable[float]) -> dict[str, str]:
