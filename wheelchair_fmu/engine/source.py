@@ -28,7 +28,7 @@ TANGENT_RECORD = """
 
 static const int {prefix}_rows[] = {{{rows}}};
 const wc_tangent {prefix}_tangent = {{
-    {columns}, {sensors}, {prefix}_rows,
+    {columns}, {sensors}, {curvatures}, {prefix}_rows,
     {functions}}};
 """
 
@@ -56,6 +56,7 @@ def tangent_source(tangent: Tangent, prefix: str) -> str:
         rows=", ".join(map(str, tangent.rows)),
         columns=len(tangent.columns),
         sensors=len(tangent.rows),
+        curvatures=tangent.length("curvature_all"),
         functions=", ".join(f"{prefix}_{name}" for name in TANGENT_NAMES),
     )
 

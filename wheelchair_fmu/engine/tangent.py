@@ -8,14 +8,18 @@ With U_i as in `rodas`, differentiating  W U_i = f(x_i, w_i, p) + M Σ (c_ij/h) 
 for every direction at once. These are the functions it needs; `csrc/tangent.c` does the sums. A model
 with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
 
-    stages(x, w0, w1, h, p)    → U (nx, 6), W (nx, nx)
-    slopes(x, w, p)            → F (nx, nx + 4)                by states and pushes
-    bend(x, w, p, U, dw)       → d[J U + F_w dw] (nx, nx + 4)
-    slopes_p(x, w, p)          → F_p (nx, nc)                  by parameters, not run where nobody asks for any
-    bend_p(x, w, p, U, dw)     → d[J U + F_w dw] (nx, nc)
-    readout(x, w, p)           → dy of the sensors (ns, nx + 4 + nc)
-    masses(p)                  → M (nx), dM (nx, nc)
-    begin(x, w, p)             → derivative of the consistent start x (nx, nc)
+d[J U_i + γ_i F_w Δw] is linear in U_i and Δw, and J's own derivatives are at the step's start whatever the stage,
+so these are evaluated once a step.
+
+    stages(x, w0, w1, h, p)  → U (nx, 6), W (nx, nx)
+    slopes(x, w, p)          → F (nx, nx + 4)          by states and pushes
+    curvature(x, w, p)       → d[∂f/∂x, ∂f/∂w] by states and pushes, those that are not zero
+    bend(curvature, U, dw)   → d[J U + F_w dw] (nx, nx + 4)
+    readout(x, w, p)         → dy of the sensors (ns, nx + 4 + nc)
+    masses(p)                → M (nx), dM (nx, nc)
+    begin(x, w, p)           → derivative of the consistent start x (nx, nc)
+
+`slopes_all`, `curvature_all` and `bend_all` go on with nc columns by parameters, and are run only where somebody asks for any.
 """
 
 from __future__ import annotations
@@ -30,7 +34,7 @@ from ..quantities import Parameter
 from .kernel import _algebraic_change
 from .rodas import GAMMA, step
 
-NAMES = ("stages", "slopes", "bend", "slopes_p", "bend_p", "readout", "masses", "begin")
+NAMES = ("stages", "slopes", "curvature", "bend", "slopes_all", "curvature_all", "bend_all", "readout", "masses", "begin")
 SENSORS = "sensor."
 SENSED = ("chair.u", "chair.v")  # results that are also measured directly
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
@@ -43,6 +47,10 @@ class Tangent:
     columns: tuple[Parameter, ...]
     rows: tuple[int, ...]
     functions: dict[str, cs.Function]
+
+    def length(self, name: str) -> int:
+        """How many numbers a function gives."""
+        return int(self.functions[name].numel_out(0))
 
 
 def differentiable(model: Model) -> tuple[Parameter, ...]:
@@ -65,29 +73,41 @@ def tangent(model: Model, only: Sequence[str] | None = None) -> Tangent:
     if only is not None:
         columns = tuple(c for c in columns if c.name in only)
     places = [model.parameters.index(c) for c in columns]
-    at = [x, w, p]
-
-    def by_motion(e: cs.SX) -> cs.SX:
-        return cs.densify(cs.horzcat(cs.jacobian(e, x), cs.jacobian(e, w)[:, :PUSHES]))
+    at, motion = [x, w, p], cs.vertcat(x, w[:PUSHES])
+    everything = cs.vertcat(motion, p[places])
 
     def by_columns(e: cs.SX) -> cs.SX:
-        return cs.densify(cs.jacobian(e, p)[:, places])
+        return cs.densify(cs.jacobian(e, p[places]))
 
     s, y = step(model), model.y[list(rows)]
     W = cs.diag(model.mass) / (s.h * GAMMA) - cs.jacobian(model.f, x)
-    U, dw = cs.SX.sym("U", x.numel()), cs.SX.sym("dw", w.numel())
-    directional = cs.jtimes(model.f, cs.vertcat(x, w), cs.vertcat(U, dw))
     functions = {
         "stages": cs.Function("stages", [x, w, s.w1, s.h, p], cs.cse([cs.horzcat(*s.U), _rows(cs.densify(W))])),
-        "slopes": cs.Function("slopes", at, cs.cse([_rows(by_motion(model.f))])),
-        "bend": cs.Function("bend", [*at, U, dw], cs.cse([_rows(by_motion(directional))])),
-        "slopes_p": cs.Function("slopes_p", at, cs.cse([_rows(by_columns(model.f))])),
-        "bend_p": cs.Function("bend_p", [*at, U, dw], cs.cse([_rows(by_columns(directional))])),
-        "readout": cs.Function("readout", at, cs.cse([_rows(cs.horzcat(by_motion(y), by_columns(y)))])),
+        **_bending(model, motion, ""),
+        **_bending(model, everything, "_all"),
+        "readout": cs.Function("readout", at, cs.cse([_rows(cs.densify(cs.jacobian(y, everything)))])),
         "masses": cs.Function("masses", [p], [cs.densify(model.mass), _rows(by_columns(model.mass))]),
         "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
     }  # fmt: skip
     return Tangent(columns, rows, functions)
+
+
+def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:
+    """`slopes`, `curvature` and `bend` by some of the model's variables (k,)."""
+    at, nx = [model.x, model.w, model.p], model.x.numel()
+    J = cs.jacobian(model.f, cs.vertcat(model.x, model.w))
+    row, column = J.sparsity().get_triplet()
+    dJ = cs.jacobian(cs.vertcat(*J.nonzeros()), by)
+    curvature = cs.SX.sym("curvature", dJ.nnz())
+    U, dw = cs.SX.sym("U", nx), cs.SX.sym("dw", model.w.numel())
+    along = cs.SX(cs.Sparsity.triplet(nx, J.nnz(), row, list(range(J.nnz()))), cs.vertcat(U, dw)[column])
+    bend = cs.densify(along @ cs.SX(dJ.sparsity(), curvature))
+    outputs = {
+        "slopes": (at, _rows(cs.densify(cs.jacobian(model.f, by)))),
+        "curvature": (at, cs.vertcat(*dJ.nonzeros())),
+        "bend": ([curvature, U, dw], _rows(bend)),
+    }
+    return {n + suffix: cs.Function(n + suffix, given, cs.cse([result])) for n, (given, result) in outputs.items()}
 
 
 def _rows(matrix: cs.SX) -> cs.SX:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -122,9 +123,10 @@ class Search:
 
     # -- models ---------------------------------------------------------------------------------------------
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> Fit:
-        """The campaign's best values of the calibrated and these effects' parameters."""
-        return fit(self.workshop.bench(effects), self.names(effects), start, here)
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None,
+              rival: float = math.inf) -> Fit:  # fmt: skip
+        """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
+        return fit(self.workshop.bench(effects), self.names(effects), start, here, rival)
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""
@@ -263,17 +265,18 @@ class Search:
     # -- refits ---------------------------------------------------------------------------------------------
 
     def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
-                  tests: int) -> Candidate | None:  # fmt: skip
-        """Refit with one more effect, from the expected change and from sizes of interest."""
+                  tests: int, rival: float = math.inf) -> Candidate | None:  # fmt: skip
+        """Refit with one more effect, from the expected change and from sizes of interest; `rival` is the best misfit yet."""
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self._base(effect, effects, base, base_held)
         fits = []
         for start, here in self._starts(bench, base, s):
             try:
-                fits.append(self.refit((*effects, effect), start, here))
+                fits.append(self.refit((*effects, effect), start, here, rival))
             except SimulationError:
                 continue
+            rival = min(rival, fits[-1].misfit)
         if not fits:
             return None
         found = min(fits, key=lambda f: f.misfit)
@@ -354,7 +357,8 @@ class Search:
             if self._linear(s.score.effect) and s.score.drop < HOPELESS * leader:
                 continue
             self.say(f"refitting {s.score.effect}")
-            c = self.candidate(base, base_held, effects, s, len(screened))
+            rival = min((c.fit.misfit for c in candidates), default=math.inf)
+            c = self.candidate(base, base_held, effects, s, len(screened), rival)
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)

@@ -6,6 +6,7 @@ simulation; where it ends everything is linearised anew, until a descent gains n
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -101,6 +102,16 @@ class _Problem:
         """What a descent makes small: squared innovations, and the prior's."""
         return float(here.r @ here.r + np.sum(self.prior.rows(theta) ** 2))
 
+    def misfit(self, here: Evidence, theta: np.ndarray) -> float:
+        """−2 log likelihood, with the prior."""
+        return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
+
+    def expected(self, here: Evidence, theta: np.ndarray) -> float:
+        """How much the squares would fall at most, if slopes held all the way."""
+        rows, slopes = self.prior.rows(theta), self.prior.slopes
+        g = here.S.T @ here.r + slopes @ rows
+        return float(g @ np.linalg.pinv(here.S.T @ here.S + slopes**2, hermitian=True) @ g)
+
     def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
         """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
         slopes = -np.concatenate([here.S, self.prior.slopes])
@@ -126,18 +137,23 @@ class _Problem:
         return found.x, latest[found.x.tobytes()]
 
 
-def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None) -> Fit:
+def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None,
+        rival: float = math.inf) -> Fit:  # fmt: skip
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
+    `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end.
     Raises SimulationError where the model cannot be simulated at the start.
     """
     problem = _Problem(bench, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
-    for _ in range(MOST if names else 0):
+    for _ in range(MOST):
+        if not names or problem.expected(here, theta) < STRAIGHT:
+            break
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
-        if fall < STRAIGHT:
+        behind = problem.misfit(there, to) - rival
+        if fall < max(STRAIGHT, behind / MOST):
             theta, here = to, there
             break
         further = _taken(problem, theta, here, to)
@@ -146,8 +162,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
         theta, here = further
     A = here.S.T @ here.S + problem.prior.slopes**2
     covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
-    misfit = here.misfit + float(np.sum(problem.prior.rows(theta) ** 2))
-    return Fit(problem.names, problem.values(theta), covariance, here, misfit, problem.prior.slopes)
+    return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 
 def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:

@@ -193,7 +193,7 @@ class _Assembly:
         defined = {q.symbol: q for s in line(self.choice) for q in s.defines}
         unit, mirror = defined[symbol].unit, defined[symbol].mirror
         guess = cs.SX.sym(f"foreseen_{symbol}")
-        state = State(f"foreseen.{symbol}", unit, f"{symbol} as the loads use it", mirror)
+        state = State(f"foreseen.{symbol}", unit, f"{symbol} as the loads use it", mirror, nominal=10.0)
         self.foreseen.append((state, guess))
         self.known[f"foreseen {symbol}"] = guess
         return guess

@@ -9,13 +9,13 @@ typedef struct {
     const wc_tangent *g;
     const wc_derivatives *out;
     const double *p;
-    int nx, m; /* states, and directions carried */
+    int nx, m, span; /* states, directions carried, and columns of `slopes` */
     double length;   /* of the interval between samples */
     double *D;       /* nx x m: [x(i) | pushes at i | pushes at i+1 | parameters] -> x now */
     double *dU;      /* STAGES x nx x m */
     double *at, *dM;
-    double *slopes, *first, *bend; /* nx x (nx + pushes) */
-    double *slopes_p, *bend_p;     /* nx x columns */
+    double *slopes, *first, *bend; /* nx x span: states, pushes and, where any is asked for, all columns */
+    double *curvature;
     double mass[WC_MAX_STATES];
 } carrier;
 
@@ -64,8 +64,8 @@ static void solve(int n, int m, const double *W, const int *exchange, double *ri
     }
 }
 
-static void call(wc_function f, const double *x, const double *w, const double *p, double *result) {
-    const double *arg[] = {x, w, p};
+static void call(wc_function f, const double *a, const double *b, const double *c, double *result) {
+    const double *arg[] = {a, b, c};
     double *res[] = {result};
     f(arg, res, 0, 0, 0);
 }
@@ -78,7 +78,7 @@ static void add_stages(int rows, const double *a, int stages, const double *U, d
 /* Right side of stage i in all directions. */
 static void stage_right(carrier *c, int i, double h, const double *V, const double *part,
                         const double *slopes, double *right) {
-    int nx = c->nx, m = c->m, span = nx + WC_PUSHES;
+    int nx = c->nx, m = c->m, span = c->span;
     const double *first = c->first, *bend = c->bend;
     const double *D = c->D;
     for (int r = 0; r < nx; r++) {
@@ -98,8 +98,8 @@ static void stage_right(carrier *c, int i, double h, const double *V, const doub
             }
         }
         for (int a = 0; c->out->forced && a < c->out->active; a++) {
-            int at = r * c->g->columns + c->out->which[a];
-            row[nx + 2 * WC_PUSHES + a] += c->slopes_p[at] + c->bend_p[at] + c->dM[at] * V[r];
+            int column = c->out->which[a], at = r * span + nx + WC_PUSHES + column;
+            row[nx + 2 * WC_PUSHES + a] += slopes[at] + bend[at] + c->dM[r * c->g->columns + column] * V[r];
         }
     }
 }
@@ -112,8 +112,12 @@ static void carry(void *context, const double *x, const double *wa, const double
     const double *arg[] = {x, wa, wb, &h, c->p};
     double *res[] = {U, W};
     double part[2] = {done / c->length, (done + h) / c->length};
+    wc_function curved = c->out->forced ? c->g->curvature_all : c->g->curvature;
+    wc_function sloped = c->out->forced ? c->g->slopes_all : c->g->slopes;
+    wc_function bent = c->out->forced ? c->g->bend_all : c->g->bend;
     c->g->stages(arg, res, 0, 0, 0);
     factorise(nx, W, exchange);
+    call(curved, x, wa, c->p, c->curvature);
     for (int i = 0; i < STAGES; i++) {
         double *dU = c->dU + (long)i * nx * m, *slopes = i ? c->slopes : c->first;
         memcpy(xs, x, sizeof(double) * (size_t)nx);
@@ -125,14 +129,8 @@ static void carry(void *context, const double *x, const double *wa, const double
             ws[q] = wa[q] + wc_ALPHA[i] * (wb[q] - wa[q]);
             dw[q] = wc_GAMMA_I[i] * (wb[q] - wa[q]);
         }
-        const double *bend_arg[] = {x, wa, c->p, U + i * nx, dw};
-        double *bend_res[] = {c->bend}, *bend_p_res[] = {c->bend_p};
-        call(c->g->slopes, xs, ws, c->p, slopes);
-        c->g->bend(bend_arg, bend_res, 0, 0, 0);
-        if (c->out->forced) {
-            call(c->g->slopes_p, xs, ws, c->p, c->slopes_p);
-            c->g->bend_p(bend_arg, bend_p_res, 0, 0, 0);
-        }
+        call(sloped, xs, ws, c->p, slopes);
+        call(bent, c->curvature, U + i * nx, dw, c->bend);
         memcpy(c->at, c->D, sizeof(double) * (size_t)(nx * m));
         add_stages(nx * m, wc_A[i], i, c->dU, c->at);
         stage_right(c, i, h, V, part, slopes, dU);
@@ -171,31 +169,31 @@ static void read_out(carrier *c, long i, const double *x, const double *w, doubl
 
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
     long nx = k->states, m = nx + 2 * WC_PUSHES + active, motion = nx + WC_PUSHES, nc = g->columns;
-    return (STAGES + 2) * nx * m + 3 * nx * motion + 3 * nx * nc + g->sensors * (motion + nc);
+    return (STAGES + 2) * nx * m + 3 * nx * (motion + nc) + nx * nc + g->curvatures + g->sensors * (motion + nc);
 }
 
 wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
                          const double *t, const double *w, double *x, double *y, const wc_derivatives *out,
                          double *work, long *reached) {
-    int nx = k->states, nw = k->inputs, m = nx + 2 * WC_PUSHES + out->active, motion = nx + WC_PUSHES;
-    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m};
+    int nx = k->states, nw = k->inputs, m = nx + 2 * WC_PUSHES + out->active;
+    int widest = nx + WC_PUSHES + g->columns, span = out->forced ? widest : nx + WC_PUSHES;
+    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m, .span = span};
     c.D = work;
     c.dU = c.D + nx * m;
     c.at = c.dU + STAGES * nx * m;
     c.slopes = c.at + nx * m;
-    c.first = c.slopes + nx * motion;
-    c.bend = c.first + nx * motion;
-    c.slopes_p = c.bend + nx * motion;
-    c.bend_p = c.slopes_p + nx * g->columns;
-    c.dM = c.bend_p + nx * g->columns;
-    double *readout = c.dM + nx * g->columns, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
+    c.first = c.slopes + nx * widest;
+    c.bend = c.first + nx * widest;
+    c.dM = c.bend + nx * widest;
+    c.curvature = c.dM + nx * g->columns;
+    double *readout = c.curvature + g->curvatures, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
     *reached = 0;
     wc_status status = wc_start(k, p, w, x);
     if (status != WC_OK) return status;
     const double *mass_arg[] = {p};
     double *mass_res[] = {c.mass, c.dM};
     g->masses(mass_arg, mass_res, 0, 0, 0);
-    double *begin = c.slopes_p; /* free until the first step */
+    double *begin = c.slopes; /* free until the first step */
     call(g->begin, x, w, p, begin);
     memset(c.D, 0, sizeof(double) * (size_t)(nx * m));
     for (int r = 0; r < nx; r++) {

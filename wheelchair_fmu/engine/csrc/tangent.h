@@ -8,8 +8,9 @@
 
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
+    int curvatures;       /* numbers that `curvature_all` gives; `curvature` gives fewer */
     const int *rows;      /* places of those results */
-    wc_function stages, slopes, bend, slopes_p, bend_p, readout, masses, begin;
+    wc_function stages, slopes, curvature, bend, slopes_all, curvature_all, bend_all, readout, masses, begin;
 } wc_tangent;
 
 /* What is wanted of a run, and where it goes. All matrices are stored by rows. */

@@ -52,7 +52,7 @@ EFFECT = Effect(
         adds("read_a_x", jerk_back),
     ),
     rows=(
-        Row(State("felt_push", N, "total push as the trunk follows it", nominal=10.0, symbol="felt"), lambda: 1.0, felt_rate,
+        Row(State("felt_push", N, "total push as the trunk follows it", nominal=80.0, symbol="felt"), lambda: 1.0, felt_rate,
             lambda F_t: cs.sum1(F_t)),
         Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
     ),
