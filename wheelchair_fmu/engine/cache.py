@@ -6,7 +6,7 @@ import ctypes
 import hashlib
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -30,18 +30,18 @@ def folder() -> Path:
     return path
 
 
-def library(choice: Choice, effects: Iterable[Effect], *, derivatives: bool = False) -> ctypes.CDLL:
+def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None) -> ctypes.CDLL:
     """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions.
 
-    With `derivatives` also `wc_tangent tangent_tangent` and `tangent.h`'s.
+    With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s.
     """
     effects = sorted(effects, key=lambda e: e.id)
-    words = "\n".join((_toolchain(), repr(choice), str(derivatives), *map(effect_key, effects)))
+    words = "\n".join((_toolchain(), repr(choice), repr(columns), *map(effect_key, effects)))
     key = hashlib.sha256(words.encode()).hexdigest()[:24]
     target = folder() / f"{key}{compiler.SUFFIX}"
     if not target.exists():
         with tempfile.TemporaryDirectory(dir=folder()) as place:
-            _compile(choice, effects, derivatives, Path(place), target)
+            _compile(choice, effects, columns, Path(place), target)
     return ctypes.CDLL(str(target))
 
 
@@ -55,15 +55,15 @@ def helper(name: str) -> ctypes.CDLL:
     return ctypes.CDLL(str(target))
 
 
-def _compile(choice: Choice, effects: list[Effect], derivatives: bool, place: Path, target: Path) -> None:
+def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, place: Path, target: Path) -> None:
     model = assemble(choice, effects)
     sources = {"model.c": c_source(kernel(model), "model")}
-    if derivatives:
-        sources |= {"tangent_model.c": tangent_source(tangent(model), "tangent"), "coefficients.h": coefficients()}
+    if columns is not None:
+        sources |= {"tangent_model.c": tangent_source(tangent(model, columns), "tangent"), "coefficients.h": coefficients()}
     for name, text in sources.items():
         (place / name).write_text(text)
-    hand_written = CSRC / ("tangent.c" if derivatives else "advance.c")
-    first = ["-include", str(place / "coefficients.h"), "-O3"] if derivatives else []
+    hand_written = CSRC / ("tangent.c" if columns is not None else "advance.c")
+    first = ["-include", str(place / "coefficients.h"), "-O3"] if columns is not None else []
     c_files = [place / name for name in sources if name.endswith(".c")]
     compiler.compile_shared([*c_files, hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -42,12 +42,12 @@ class Trajectory:
 class Simulator:
     """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
 
-    `derivatives`: use the library that also has the model's derivatives, where that is at hand anyway.
+    `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway.
     """
 
-    def __init__(self, variant: Variant = Variant(), *, derivatives: bool = False):
+    def __init__(self, variant: Variant = Variant(), columns: Sequence[str] | None = None):
         self.variant = variant
-        self._library = cache.library(variant.choice, variant.active(), derivatives=derivatives)
+        self._library = cache.library(variant.choice, variant.active(), columns)
         self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
 
     @cached_property

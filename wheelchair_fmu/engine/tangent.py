@@ -53,11 +53,13 @@ class Tangent:
         return int(self.functions[name].numel_out(0))
 
 
-def differentiable(model: Model) -> tuple[Parameter, ...]:
-    """Parameters that a fit may touch: no choices, regularisations, gravity or fixed constants."""
+def differentiable(model: Model, names: Sequence[str] | None = None) -> tuple[Parameter, ...]:
+    """Parameters that a fit may touch, or those of them that have these `names`: no choices, regularisations, gravity or
+    fixed constants."""
     return tuple(
         p for p in model.parameters
         if not p.choices and p.estimated and not p.name.startswith(("regularisation.", "speed.")) and p.name != "g"
+        and (names is None or p.name in names)
     )  # fmt: skip
 
 
@@ -66,12 +68,10 @@ def sensed(model: Model) -> tuple[int, ...]:
     return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS) or o.name in SENSED)
 
 
-def tangent(model: Model, only: Sequence[str] | None = None) -> Tangent:
-    """Derive the functions of a model, by all its differentiable parameters or `only` these."""
+def tangent(model: Model, names: Sequence[str]) -> Tangent:
+    """Derive the functions of a model, by those parameters that have these `names`, in the model's order."""
     x, w, p = model.x, model.w, model.p
-    columns, rows = differentiable(model), sensed(model)
-    if only is not None:
-        columns = tuple(c for c in columns if c.name in only)
+    columns, rows = differentiable(model, names), sensed(model)
     places = [model.parameters.index(c) for c in columns]
     at, motion = [x, w, p], cs.vertcat(x, w[:PUSHES])
     everything = cs.vertcat(motion, p[places])
@@ -97,14 +97,14 @@ def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:
     at, nx = [model.x, model.w, model.p], model.x.numel()
     J = cs.jacobian(model.f, cs.vertcat(model.x, model.w))
     row, column = J.sparsity().get_triplet()
-    dJ = cs.jacobian(cs.vertcat(*J.nonzeros()), by)
+    dJ = cs.jacobian(J.nz[:], by)
     curvature = cs.SX.sym("curvature", dJ.nnz())
     U, dw = cs.SX.sym("U", nx), cs.SX.sym("dw", model.w.numel())
     along = cs.SX(cs.Sparsity.triplet(nx, J.nnz(), row, list(range(J.nnz()))), cs.vertcat(U, dw)[column])
     bend = cs.densify(along @ cs.SX(dJ.sparsity(), curvature))
     outputs = {
         "slopes": (at, _rows(cs.densify(cs.jacobian(model.f, by)))),
-        "curvature": (at, cs.vertcat(*dJ.nonzeros())),
+        "curvature": (at, dJ.nz[:]),
         "bend": ([curvature, U, dw], _rows(bend)),
     }
     return {n + suffix: cs.Function(n + suffix, given, cs.cse([result])) for n, (given, result) in outputs.items()}

@@ -17,7 +17,6 @@ from .screen import Score, projector, score
 from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
 from .workshop import Workshop
 
-CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
 SIGNIFICANT = 0.05
 TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
@@ -110,13 +109,11 @@ class Screened:
 
 
 class Search:
-    """The state of a diagnosis: a workshop, what is calibrated, and the rounds so far."""
+    """The search for what is missing, in a workshop."""
 
-    def __init__(self, workshop: Workshop, calibrated: Sequence[str] = CALIBRATED,
-                 progress: Callable[[str], None] = lambda words: None):  # fmt: skip
+    def __init__(self, workshop: Workshop, progress: Callable[[str], None] = lambda words: None):
         self.workshop, self.say = workshop, progress
         self.offsets = tuple(workshop.bench().offsets)
-        self.calibrated = tuple(n for n in calibrated if n not in workshop.fixed)
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self._twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
@@ -132,7 +129,7 @@ class Search:
         """What a model with these effects has to be fitted by."""
         twins = frozenset().union(*(self._twins.get(e, ()) for e in effects))
         offsets = (n for n in self.offsets if n not in twins)
-        return [*self.calibrated, *offsets, *(n for e in effects for n in self.workshop.parameters(e))]
+        return [*self.workshop.calibrated, *offsets, *(n for e in effects for n in self.workshop.parameters(e))]
 
     def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
         """The model with these effects, which the variant has already, estimated anew."""

@@ -112,12 +112,14 @@ class Bench:
     """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
 
     `variant` has every effect that may be asked for; effects at zero change nothing. `colour` is the noise. Sensor offsets
-    that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name.
+    that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
+    the parameters that sensitivities may be asked by, all if not given; the start is among them in any case.
     """
 
-    def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None):
+    def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None,
+                 columns: Sequence[str] | None = None):  # fmt: skip
         self.campaign, self.variant = campaign, variant
-        self.sensitivities = Sensitivities(variant)
+        self.sensitivities = Sensitivities(variant, columns and (*columns, *START))
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
         channels = {c.name: c for c in CHANNELS if any(c.name in r.channels for r in campaign.runs)}

@@ -166,14 +166,17 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
 
 
 def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
-    """The step from `theta`, or the half, the quarter … of it that lowers the squares once all is linearised anew."""
-    before = problem.squares(here, theta)
+    """The step from `theta`, or the half, the quarter … of it that is more likely once all is linearised anew.
+
+    A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
+    """
+    before = problem.misfit(here, theta)
     for shrink in (1.0, 0.5, 0.25, 0.125):
         trial = theta + shrink * (to - theta)
         try:
             found = problem.linearised(trial)
         except SimulationError:
             continue
-        if problem.squares(found, trial) < before:
+        if problem.misfit(found, trial) < before:
             return trial, found
     return None

@@ -13,12 +13,12 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import CALIBRATED, MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin
+from .diagnose import MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .statistics import alike, correlation_time, difference_blocks, finite, resampled_totals, sandwich
-from .workshop import Workshop
+from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
@@ -75,8 +75,8 @@ def diagnose(
     """
     variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
-    workshop = Workshop(campaign, variant, fixed)
-    search = Search(workshop, calibrated, progress)
+    workshop = Workshop(campaign, variant, fixed, calibrated)
+    search = Search(workshop, progress)
     base, held, ladder, notes = begin(search, progress)
 
     def climb(effect: str) -> None:
@@ -163,7 +163,7 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
         return None, None
     search.say("looking for what no effect explains")
     wider = search.workshop.widened(generic)
-    generic_search = Search(wider, search.calibrated, search.say)
+    generic_search = Search(wider, search.say)
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
@@ -183,7 +183,7 @@ def _clear(c: Candidate) -> bool:
 def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate,
             ladder: list[Step]) -> tuple[tuple[str, ...], Candidate, list[Step]]:  # fmt: skip
     """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
-    wider = Search(search.workshop.widened(generic), search.calibrated, search.say)
+    wider = Search(search.workshop.widened(generic), search.say)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
     every, found = wider.pruned((*beside, proposal.effect), proposal.fit)
     found, held = wider.settled(every, found)

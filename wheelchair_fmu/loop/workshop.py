@@ -15,16 +15,19 @@ from ..model.variant import Variant
 from ..model.wheelchair import adds_state
 from .evidence import Bench, Colour
 
+CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
+
 
 class Workshop:
     """A campaign, the variant it is compared with, and a bench for every question.
 
-    `fixed` are parameters that nobody estimates. `given` are the values that the variant's own effects have for a start;
-    they are estimated again, unless they are fixed.
+    `calibrated` are the parameters that every fit estimates, `fixed` those that nobody estimates. `given` are the values that
+    the variant's own effects have for a start; they are estimated again, unless they are fixed.
     """
 
-    def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = ()):
+    def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = (), calibrated: Iterable[str] = CALIBRATED):
         self.fixed = frozenset(fixed)
+        self.calibrated = tuple(n for n in calibrated if n not in self.fixed)
         self.given = {n: v for n, v in variant.values.items() if n.startswith("effect.") and n not in self.fixed}
         self.campaign = campaign
         self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
@@ -40,7 +43,9 @@ class Workshop:
         """The bench on which these effects, and all light ones, may be on."""
         wanted = frozenset(e for e in (*effects, *self.variant.effects) if e not in self.light)
         if wanted not in self._benches:
-            self._benches[wanted] = Bench(self.campaign, self.variant.with_effects((*self.light, *sorted(wanted))))
+            variant = self.variant.with_effects((*self.light, *sorted(wanted)))
+            columns = (*self.calibrated, *(n for e in self.catalogue for n in self.parameters(e)))
+            self._benches[wanted] = Bench(self.campaign, variant, columns=columns)
         bench = self._benches[wanted]
         bench.colour = self.colour
         bench.starts.update(self.starts)
@@ -52,7 +57,8 @@ class Workshop:
 
     def widened(self, more: Mapping[str, Effect]) -> Workshop:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
-        other = Workshop(self.campaign, replace(self.variant, catalogue={**self.catalogue, **more}), self.fixed)
+        variant = replace(self.variant, catalogue={**self.catalogue, **more})
+        other = Workshop(self.campaign, variant, self.fixed, self.calibrated)
         other.colour, other.starts = self.colour, dict(self.starts)
         return other
 
