@@ -15,6 +15,7 @@ from .fit import Fit, Prior, fit, prior_of, start_value
 from .noise import colour_of
 from .screen import Score, projector, score
 from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
+from .timing import late
 from .workshop import Workshop
 
 SIGNIFICANT = 0.05
@@ -384,15 +385,30 @@ def _straight(prior: Prior, calibrated: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step], list[str]]:
-    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps, notes)."""
+    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps, notes).
+
+    Runs whose pushes belong to another time are left out, if others are there to be fitted.
+    """
     say("calibrating")
     base, held, nominal, nominal_held = search.calibrate()
     w = search.workshop
-    w.colour, notes = colour_of(base.evidence, w.campaign.noise)
-    if w.colour.ar or notes:
+    shifted = {**late(w.bench(), base.evidence, base.values), **late(w.bench(), held, base.values)}
+    spared = any(r.name not in shifted for r in w.campaign.fit)
+    if shifted and spared:
+        w.leave_out(shifted)
         base, held, nominal, nominal_held = search.calibrate()
+    w.colour, contradicted = colour_of(base.evidence, w.campaign.noise)
+    if w.colour.ar or contradicted:
+        base, held, nominal, nominal_held = search.calibrate()
+    notes = [*(_late(run, seconds, spared) for run, seconds in shifted.items()), *contradicted]
     ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
     return base, held, ladder, notes
+
+
+def _late(run: str, seconds: float, left_out: bool) -> str:
+    after = "the run is left out" if left_out else "no other run is there to be fitted, so no verdict can be trusted"
+    return (f"{run}: its pushes seem to be recorded {abs(seconds):.1f} s too {'early' if seconds > 0 else 'late'} for what was "
+            f"measured; {after}. Correct its time column")  # fmt: skip
 
 
 def shortlist(screened: Sequence[Screened], most: int) -> list[Screened]:

@@ -6,7 +6,7 @@ none, and of the others only those asked for.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
 from ..campaign import Campaign
@@ -50,6 +50,11 @@ class Workshop:
         bench.colour = self.colour
         bench.starts.update(self.starts)
         return bench
+
+    def leave_out(self, runs: Container[str]) -> None:
+        """Go on without these runs."""
+        self.campaign = replace(self.campaign, runs=tuple(r for r in self.campaign.runs if r.name not in runs))
+        self._benches.clear()
 
     def remember(self, bench: Bench) -> None:
         """Keep the starts a bench has found, for the next one."""
