@@ -64,7 +64,6 @@ typedef struct {
     double tolerance, grid; /* of the internal steps, unless the importer asks for another tolerance */
     int states; /* 0: this model is for Co-Simulation only */
     const wc_state *state;
-    wc_function mass; /* p → the mass of each row of a kernel; which are zero is decided when the FMU is built */
     int crossings;
     const int *crossing; /* the outputs, true or false, that switch where the kernel's z crosses zero */
 } wc_model;

@@ -241,14 +241,15 @@ static wc_result refuse_value(const wc_instance *c, const wc_variable *v, double
 
 /* In Model Exchange an algebraic row may not become a differential one, nor the other way. */
 static wc_result refuse_new_states(const wc_instance *c, const wc_variable *v, double value) {
+    const wc_kernel *k = wc_kernel_of(c);
     double p[WC_MAX_PARAMETERS], mass[WC_MAX_STATES];
     memcpy(p, c->now.p, sizeof p);
     p[v->index] = value;
     const double *arg[] = {p};
     double *res[] = {mass};
-    model->mass(arg, res, 0, 0, 0);
+    k->mass(arg, res, 0, 0, 0);
     int differential = 0, state = 0;
-    for (int i = 0; i < wc_kernel_of(c)->states; i++) differential += mass[i] != 0;
+    for (int i = 0; i < k->states; i++) differential += mass[i] != 0;
     for (int i = 0; i < model->states; i++) state += mass[model->state[i].place] != 0;
     if (differential == model->states && state == model->states) return WC_DONE;
     wc_say(c, WC_LOG_DISCARD, "%s = %s would change the number of continuous states, which Model Exchange fixes when the "

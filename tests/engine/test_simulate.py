@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.kit import variant_with
-from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.engine.simulate import Simulator, Trajectory
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
@@ -84,6 +84,33 @@ def test_off_the_grid_it_hardly_matters(period):
         w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 5.0})
         ends.append(simulator.run(t, w, grid=1e-3, hold=True).states[-1])
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
+
+
+def reversing(period: float) -> tuple[np.ndarray, np.ndarray]:
+    """Two seconds on the spot, pushed one way and the other: each wheel stops and turns back six times."""
+    t = np.append(np.arange(0, 2 - period / 2, period), 2.0)
+    return t, np.where(np.floor(t / 0.3 + 1e-9) % 2 == 0, 15.0, -15.0)
+
+
+def turned_back(variant: Variant, period: float, tolerance: float = 1e-7) -> Trajectory:
+    simulator = Simulator(variant)
+    t, push = reversing(period)
+    start = np.zeros(simulator.model.x.numel())
+    return simulator.run(t, simulator.inputs(len(t), {"push.F_rl": push, "push.F_rr": -0.9 * push}), variant.vector(),
+                         start=start, tolerance=tolerance, grid=1e-3, hold=True)  # fmt: skip
+
+
+def test_a_wheel_that_turns_back_takes_few_steps():
+    """Its dry resistance turns round within 0.1 ms, and with it, at once, the accelerations that the loads read."""
+    variant = variant_with("lateral_load_transfer", "longitudinal_load_transfer")
+    variant = variant.with_values({f"effect.{way}_load_transfer.h": 0.6 for way in ("lateral", "longitudinal")})
+    fine, few, truth = turned_back(variant, 1e-3), turned_back(variant, 0.1), turned_back(variant, 1e-3, tolerance=1e-12)
+    assert 2000 < fine.steps == few.steps < 2400
+    np.testing.assert_allclose(fine.states[::100], few.states, atol=1e-9)
+    np.testing.assert_allclose(fine.states[:, :6], truth.states[:, :6], atol=1e-6)
+    places = {state.name: -1 - i for i, state in enumerate(reversed(variant.model().states))}
+    foreseen = fine.states[:, places["foreseen.a_y"]]
+    np.testing.assert_allclose(foreseen[1:], fine["sensor.a_y"][1:], atol=1e-7)
 
 
 def test_algebraic_states_stay_in_place():

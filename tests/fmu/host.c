@@ -10,10 +10,12 @@
  * and by how many KiB the process has grown since the first tenth of them; minute measures as time does, over a ride with
  * turns, stops and reversals, and also prints the cost at rest in its last eighth over that in motion in its first; ride drives
  * that ride in real time, each step at its due moment, and prints median, 99.9th percentile and worst cost, how late the worst
- * step was woken, and how many steps were not done when the next was due.
+ * step was woken, and how many steps were not done when the next was due; underflow prints how many steps of that ride meet a
+ * result too small for a normal number.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <fenv.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -180,6 +182,19 @@ static void ride(fmi2Component c, long steps, double h) {
     free(cost);
 }
 
+static long count_underflows(fmi2Component c, long steps, double h) {
+    double y[MOST];
+    long count = 0;
+    for (long i = 0; i < steps; i++) {
+        fmi2Real w[2];
+        ride_push((double)i * h, (double)steps * h, w);
+        feclearexcept(FE_UNDERFLOW);
+        step_with(c, i, h, w, y);
+        count += fetestexcept(FE_UNDERFLOW) != 0;
+    }
+    return count;
+}
+
 static long count_different(fmi2Component c, long runs, double h) {
     double first[MOST], y[MOST];
     long different = 0;
@@ -252,6 +267,8 @@ int main(int n, char **word) {
         measure(c, steps, h, 1);
     } else if (!strcmp(word[3], "ride")) {
         ride(c, steps, h);
+    } else if (!strcmp(word[3], "underflow")) {
+        printf("%ld\n", count_underflows(c, steps, h));
     } else if (!strcmp(word[3], "cycles")) {
         if (count_cycles(word[2], &callbacks, steps, h)) return 1;
     } else {

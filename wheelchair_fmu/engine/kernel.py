@@ -6,8 +6,9 @@
     output(x, w, p)                      → y
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
+    mass(p)                              → m     of each row; zero where it is algebraic
 
-These six are all that the Python tools, the FMUs and the report page run.
+These seven are all that the Python tools, the FMUs and the report page run.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
 
-NAMES = ("start", "project", "step", "output", "forward", "rate")
+NAMES = ("start", "project", "step", "output", "forward", "rate", "mass")
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ def kernel(model: Model) -> Kernel:
         "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
         "forward": _forward(model),
         "rate": cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
+        "mass": cs.Function("mass", [p], [cs.densify(model.mass)]),
     }
     return Kernel(model, functions)
 

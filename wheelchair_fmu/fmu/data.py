@@ -33,12 +33,11 @@ def _refuse_too_large(m: Model) -> None:
 
 
 def _rules(m: Model) -> str:
-    """How the states at the start change along changes of parameters and inputs; and the mass of each row."""
+    """How the states at the start change along changes of parameters and inputs."""
     dp, dw = cs.SX.sym("dp", m.p.numel()), cs.SX.sym("dw", m.w.numel())
     dx = cs.densify(cs.jtimes(m.start, cs.vertcat(m.p, m.w), cs.vertcat(dp, dw)))
     generator = cs.CodeGenerator("rules.c", {"with_header": False})
     generator.add(cs.Function("wc_start_forward", [m.p, m.w, dp, dw], [dx]))
-    generator.add(cs.Function("wc_mass", [m.p], [cs.densify(m.mass)]))
     with TemporaryDirectory() as folder:
         return Path(generator.generate(folder + "/")).read_text()
 
@@ -53,8 +52,7 @@ def tables(face: Interface, name: str, token: str) -> str:
         "#include <math.h>",
         "",
         f"extern const wc_kernel {', '.join(f'{law}_kernel' for law in face.models)};",
-        *(f"int {rule}(const double **arg, double **res, long long *iw, double *w, int mem);"
-          for rule in ("wc_start_forward", "wc_mass")),
+        "int wc_start_forward(const double **arg, double **res, long long *iw, double *w, int mem);",
         "",
         *(_choices(v) for v in face.variables if v.choices),
         *_array("wc_variable", "variables", map(_variable, face.variables)),
@@ -73,7 +71,7 @@ def tables(face: Interface, name: str, token: str) -> str:
         f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
         f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
         f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
-        f"    {len(face.states)}, states, wc_mass, {len(face.of('indicator'))}, crossings}};",
+        f"    {len(face.states)}, states, {len(face.of('indicator'))}, crossings}};",
         "",
     ])  # fmt: skip
 

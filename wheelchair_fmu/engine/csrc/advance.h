@@ -14,7 +14,7 @@ typedef int (*wc_function)(const double **arg, double **res, long long *iw, doub
 typedef struct {
     int states, inputs, parameters, outputs;
     const double *nominal; /* the size of each state, against which errors are measured */
-    wc_function start, project, step, output, forward, rate;
+    wc_function start, project, step, output, forward, rate, mass;
 } wc_kernel;
 
 typedef enum {
@@ -26,7 +26,8 @@ typedef enum {
 
 typedef struct {
     double tolerance; /* of each step, relative to nominal + |x| */
-    double grid;      /* > 0: no step crosses a multiple of this, and none remembers the last */
+    double grid;      /* > 0: no step crosses a multiple of this, and none remembers the last; where a whole cell is no step
+                         * within the tolerance, algebraic rows are put right at its end and not tested on the way */
 } wc_accuracy;
 
 /* States at the start for parameters p and inputs w, algebraic ones in place. */
