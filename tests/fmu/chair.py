@@ -114,6 +114,18 @@ class Chair:
     def drop(self, state) -> None:
         self.fmu.freeFMUstate(state)
 
+    def serialized(self) -> bytes:
+        """The state as it is now."""
+        state = self.save()
+        made = self.fmu.serializeFMUstate(state)
+        self.drop(state)
+        return made
+
+    def revive(self, serialized: bytes) -> None:
+        state = self.fmu.deSerializeFMUstate(serialized)
+        self.restore(state)
+        self.drop(state)
+
 
 class Chair3(Chair):
     """The same by FMI 3.0. `update`, where given, is called in intermediate updates; see fmi3IntermediateUpdateCallback."""
@@ -176,6 +188,17 @@ class Chair3(Chair):
 
     def drop(self, state) -> None:
         self.fmu.freeFMUState(state)
+
+    def serialized(self) -> bytes:
+        state = self.save()
+        made = self.fmu.serializeFMUState(state)
+        self.drop(state)
+        return made
+
+    def revive(self, serialized: bytes) -> None:
+        state = self.fmu.deserializeFMUState(serialized)
+        self.restore(state)
+        self.drop(state)
 
 
 @contextmanager

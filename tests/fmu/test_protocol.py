@@ -180,10 +180,7 @@ from tests.fmu.chair import Unpacked, chair, pushed
 import fmpy
 unpacked = Unpacked(Path(sys.argv[1]), Path(sys.argv[2]), fmpy.read_model_description(sys.argv[1]))
 with chair(unpacked) as c:
-    c.start()
-    state = c.fmu.deSerializeFMUstate(Path(sys.argv[3]).read_bytes())
-    c.fmu.setFMUstate(state)
-    c.fmu.freeFMUstate(state)
+    c.revive(Path(sys.argv[3]).read_bytes())
     c.time = float(sys.argv[4])
     for i in range(137, 260):
         c.set(pushed(i))
@@ -193,7 +190,7 @@ os._exit(0)
 """
 
 
-@pytest.mark.parametrize("archive", ["everything", "in_python"])
+@pytest.mark.parametrize("archive", ["everything", "everything3", "in_python"])
 def test_a_saved_state_goes_on_in_another_process_bit_for_bit(archive, request, tmp_path):
     unpacked: Unpacked = request.getfixturevalue(archive)
     with chair(unpacked) as c:
@@ -202,18 +199,17 @@ def test_a_saved_state_goes_on_in_another_process_bit_for_bit(archive, request, 
             c.set(pushed(i))
             c.step(0.01)
         c.set({"chair.m": 85.0})  # a jump not yet settled is part of the state
-        state = c.fmu.getFMUstate()
-        (tmp_path / "state").write_bytes(c.fmu.serializeFMUstate(state))
-        now = c.time
+        state, now = c.save(), c.time
+        (tmp_path / "state").write_bytes(c.serialized())
         ends = []
         for _ in range(2):
             for i in range(137, 260):
                 c.set(pushed(i))
                 c.step(0.01)
             ends.append([v.hex() for v in c.outputs()])
-            c.fmu.setFMUstate(state)
+            c.restore(state)
             c.time = now
-        c.fmu.freeFMUstate(state)
+        c.drop(state)
     assert ends[0] == ends[1]
     done = subprocess.run([sys.executable, "-c", CONTINUE, str(unpacked.path), str(unpacked.folder), str(tmp_path / "state"),
                            repr(now)], capture_output=True, text=True, cwd=ROOT)  # fmt: skip
