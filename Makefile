@@ -67,7 +67,8 @@ $(VENV)-importers/.ready: benchmarks/importers/requirements.txt
 	$(VENV)-importers/bin/python -m pip install --quiet --disable-pip-version-check -r $<
 	@touch $@
 
-# Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind; the rest is skipped with its reason.
+# Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind, clang with libclang-rt-dev; the rest is skipped
+# with its reason.
 nightly: setup $(VENV)-importers/.ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
 	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly

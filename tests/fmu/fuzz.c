@@ -5,6 +5,9 @@
  * Each seed is one life of four instances, two by each version of FMI, of 400 calls. Compiled together with the FMU's
  * sources under a sanitizer, so that a fault stops the program; the last line on stderr names the seed. Every status must be
  * one of OK, Warning, Discard, Error, and whatever happens, a reset instance must afterwards step as a new one does.
+ *
+ * With -DLIBFUZZER -fsanitize=fuzzer each life is an input of libFuzzer's: every eight bytes are the seed of one call, so that
+ * lives which reach new code are kept and go on in other ways. TOKEN, VARIABLES and STATES then come from the environment.
  */
 #include <math.h>
 #include <stdint.h>
@@ -207,8 +210,24 @@ static double run2(fmi2Component c) {
     return sum;
 }
 
+/* The lives' own seeds, or libFuzzer's input. */
+static const uint8_t *food;
+static size_t left;
+
+static int feed(void) {
+    if (!food) return 1;
+    if (left < sizeof random_state) return 0;
+    memcpy(&random_state, food, sizeof random_state);
+    if (!random_state) random_state = 1; /* from which xorshift would not move */
+    food += sizeof random_state;
+    left -= sizeof random_state;
+    return 1;
+}
+
 static void live(uint64_t seed) {
     random_state = seed * 0x9E3779B97F4A7C15u + 1;
+    memset(bytes, 0, sizeof bytes);
+    saved2 = saved3 = 0;
     fmi2CallbackFunctions callbacks = {heard2, calloc, free, 0, 0};
     fmi2Component c2[2];
     fmi3Instance c3[2];
@@ -218,7 +237,7 @@ static void live(uint64_t seed) {
     c3[1] = fmi3InstantiateModelExchange("me", token, 0, false, true, 0, heard3);
     if (!c2[0] || !c2[1] || !c3[0] || !c3[1]) abort();
     double fresh = run2(c2[0]);
-    for (int i = 0; i < CALLS; i++) {
+    for (int i = 0; i < CALLS && feed(); i++) {
         if (below(2)) {
             call2(c2[below(2)]);
         } else {
@@ -238,6 +257,21 @@ static void live(uint64_t seed) {
     }
 }
 
+#ifdef LIBFUZZER
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    token = getenv("TOKEN");
+    variables = (unsigned)atoi(getenv("VARIABLES"));
+    states = (unsigned)atoi(getenv("STATES"));
+    food = data;
+    left = size;
+    live(1);
+    if (bad_status) abort();
+    return 0;
+}
+
+#else
+
 int main(int n, char **word) {
     if (n != 6) return 2;
     token = word[1];
@@ -252,3 +286,5 @@ int main(int n, char **word) {
     printf("%llu sentences\n", (unsigned long long)sentences);
     return bad_status ? 1 : 0;
 }
+
+#endif

@@ -20,34 +20,39 @@ from .test_protocol import refused
 
 HERE = Path(__file__).parent
 NIGHTLY_SEEDS = int(os.environ.get("FUZZ_SEEDS", "20000"))
+SANITIZERS = "address,undefined"
 
 
 @pytest.fixture(scope="module")
 def fuzz(native, native3, workshop):
     """The fuzzer compiled together with the FMU's sources: `fuzz(first seed, seeds, sanitized)` runs it."""
 
-    def build(sanitized: bool) -> Path:
-        program = workshop / f"fuzz-{sanitized}"
-        if not program.exists():
-            files = sorted({*(native.folder / "sources").glob("*.c"), native3.folder / "sources" / "fmi3.c"})
-            flags = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"] if sanitized else ["-O2"]
-            done = subprocess.run([*compiler.command(), "-std=gnu11", "-g", *flags, "-ffp-contract=off", f"-I{headers()}",
-                                   f"-I{native.folder / 'sources'}", str(HERE / "fuzz.c"), *map(str, files),
-                                   "-o", str(program), "-lm"], capture_output=True, text=True)  # fmt: skip
-            if done.returncode and "san" in done.stderr:
-                pytest.skip("the C compiler has no sanitizers: `apt-get install gcc`")
-            assert done.returncode == 0, done.stderr
-        return program
-
     def run(first: int, seeds: int, sanitized: bool = False, under: tuple[str, ...] = ()) -> str:
-        d = native.description
-        words = [*under, str(build(sanitized)), d.guid, str(len(d.modelVariables)), str(d.numberOfContinuousStates), str(first),
-                 str(seeds)]  # fmt: skip
-        done = subprocess.run(words, capture_output=True, text=True)
+        flags = ["-O1", f"-fsanitize={SANITIZERS}", "-fno-sanitize-recover=all"] if sanitized else ["-O2"]
+        program = _fuzzer(native, native3, workshop / f"fuzz-{sanitized}", [*compiler.command(), *flags])
+        done = subprocess.run([*under, str(program), *_facts(native), str(first), str(seeds)], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr[-4000:]
         return done.stdout
 
     return run
+
+
+def _fuzzer(native: Unpacked, native3: Unpacked, program: Path, compile_it: list[str]) -> Path:
+    if not program.exists():
+        files = sorted({*(native.folder / "sources").glob("*.c"), native3.folder / "sources" / "fmi3.c"})
+        words = [*compile_it, "-std=gnu11", "-g", "-ffp-contract=off", f"-I{headers()}", f"-I{native.folder / 'sources'}"]
+        words += [str(HERE / "fuzz.c"), *map(str, files), "-o", str(program), "-lm"]
+        done = subprocess.run(words, capture_output=True, text=True)
+        if done.returncode and ("san" in done.stderr or "fuzzer" in done.stderr):
+            pytest.skip(f"{compile_it[0]} lacks a library of its sanitizers: `apt-get install gcc clang libclang-rt-dev`")
+        assert done.returncode == 0, done.stderr
+    return program
+
+
+def _facts(native: Unpacked) -> list[str]:
+    """Token, number of variables, number of states."""
+    d = native.description
+    return [d.guid, str(len(d.modelVariables)), str(d.numberOfContinuousStates)]
 
 
 def test_random_calls_crash_nothing(fuzz):
@@ -63,6 +68,18 @@ def test_random_calls_are_sound_under_sanitizers(fuzz):
 @pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind: `apt-get install valgrind`")
 def test_random_calls_are_sound_under_valgrind(fuzz):
     fuzz(1, 30, under=("valgrind", "--quiet", "--error-exitcode=99", "--leak-check=full"))
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not shutil.which("clang"), reason="no clang: `apt-get install clang libclang-rt-dev`")
+def test_calls_that_seek_new_code_are_sound(native, native3, workshop, tmp_path):
+    """By libFuzzer, which keeps the lives that reached code no other had and goes on from them."""
+    flags = ["-DLIBFUZZER", "-O1", f"-fsanitize=fuzzer,{SANITIZERS}", "-fno-sanitize-recover=all"]
+    program = _fuzzer(native, native3, workshop / "libfuzzer", ["clang", *flags])
+    facts = dict(zip(("TOKEN", "VARIABLES", "STATES"), _facts(native), strict=True))
+    words = [str(program), "-seed=1", "-len_control=0", "-max_len=3200", f"-runs={2 * NIGHTLY_SEEDS}"]
+    done = subprocess.run(words, capture_output=True, text=True, env={**os.environ, **facts}, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr[-4000:]
 
 
 def test_a_freed_instance_is_no_instance(native):
