@@ -86,15 +86,11 @@ def test_off_the_grid_it_hardly_matters(period):
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
 
 
-def reversing(period: float) -> tuple[np.ndarray, np.ndarray]:
-    """Two seconds on the spot, pushed one way and the other: each wheel stops and turns back six times."""
-    t = np.append(np.arange(0, 2 - period / 2, period), 2.0)
-    return t, np.where(np.floor(t / 0.3 + 1e-9) % 2 == 0, 15.0, -15.0)
-
-
 def turned_back(variant: Variant, period: float, tolerance: float = 1e-7) -> Trajectory:
+    """Two seconds on the spot, pushed one way and the other: each wheel stops and turns back several times."""
     simulator = Simulator(variant)
-    t, push = reversing(period)
+    t = np.append(np.arange(0, 2 - period / 2, period), 2.0)
+    push = np.where(np.floor(t / 0.3 + 1e-9) % 2 == 0, 15.0, -15.0)
     start = np.zeros(simulator.model.x.numel())
     return simulator.run(t, simulator.inputs(len(t), {"push.F_rl": push, "push.F_rr": -0.9 * push}), variant.vector(),
                          start=start, tolerance=tolerance, grid=1e-3, hold=True)  # fmt: skip

@@ -37,14 +37,15 @@ def fuzz(native, native3, workshop):
     return run
 
 
-def _fuzzer(native: Unpacked, native3: Unpacked, program: Path, compile_it: list[str]) -> Path:
+def _fuzzer(native: Unpacked, native3: Unpacked, program: Path, command: list[str]) -> Path:
+    """fuzz.c and the FMU's sources in one program, by this compiler with these flags."""
     if not program.exists():
         files = sorted({*(native.folder / "sources").glob("*.c"), native3.folder / "sources" / "fmi3.c"})
-        words = [*compile_it, "-std=gnu11", "-g", "-ffp-contract=off", f"-I{headers()}", f"-I{native.folder / 'sources'}"]
+        words = [*command, "-std=gnu11", "-g", "-ffp-contract=off", f"-I{headers()}", f"-I{native.folder / 'sources'}"]
         words += [str(HERE / "fuzz.c"), *map(str, files), "-o", str(program), "-lm"]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode and ("san" in done.stderr or "fuzzer" in done.stderr):
-            pytest.skip(f"{compile_it[0]} lacks a library of its sanitizers: `apt-get install gcc clang libclang-rt-dev`")
+            pytest.skip(f"{command[0]} lacks a library of its sanitizers: `apt-get install gcc clang libclang-rt-dev`")
         assert done.returncode == 0, done.stderr
     return program
 
