@@ -19,6 +19,7 @@ import numpy as np
 from ..campaign import CHANNELS, Campaign, Run
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
+from ..errors import SimulationError
 from ..model.variant import Variant
 from ..quantities import Parameter
 
@@ -138,8 +139,14 @@ class Bench:
 
         `tune_start`: how often to move the simulated start to where the readings want it.
         """
-        found = _each(lambda run: self._tuned(run, values, tuple(by), tune_start), runs)
-        return Evidence(tuple(found), tuple(by))
+
+        def one(run: Run) -> RunEvidence:
+            try:
+                return self._tuned(run, values, tuple(by), tune_start)
+            except SimulationError as error:
+                raise SimulationError(f"run {run.name}: {error}") from error
+
+        return Evidence(tuple(_each(one, runs)), tuple(by))
 
     def again(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""

@@ -78,7 +78,7 @@ def start_value(bench: Bench, record: Parameter) -> float:
     return bench.campaign.known.get(record.name, bench.variant.values.get(record.name, record.default))
 
 
-class _Problem:
+class Problem:
     """Parameters to fit on a bench: their bounds, scale and prior."""
 
     def __init__(self, bench: Bench, names: Sequence[str]):
@@ -144,7 +144,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end.
     Raises SimulationError where the model cannot be simulated at the start.
     """
-    problem = _Problem(bench, names)
+    problem = Problem(bench, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
     for _ in range(MOST):
@@ -165,7 +165,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 
-def _taken(problem: _Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
+def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
     """The step from `theta`, or the half, the quarter … of it that is more likely once all is linearised anew.
 
     A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
