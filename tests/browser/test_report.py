@@ -92,6 +92,7 @@ def test_dragging_follows_at_once(reader):
     page.check(f"#effect-{HIDDEN}")
     reader.settle()
     slider = page.locator(f'[id="slider-effect.{HIDDEN}.D"]')
+    slider.scroll_into_view_if_needed()
     box = slider.bounding_box()
     page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
     page.mouse.down()
@@ -172,6 +173,12 @@ def test_it_fits(browser: Any, report_file: Path, width, scheme):
     contrast = reader.page.evaluate(Path(__file__).with_name("contrast.js").read_text())
     assert min(contrast.values()) >= 4.5, contrast
     reader.close()
+
+
+def test_each_model_is_small(reader):
+    sizes = reader.page.evaluate("report.campaign.models.map(m => atob(m.wasm).length)")
+    print(f"\nWebAssembly: {', '.join(map(str, sizes))} bytes")
+    assert max(sizes) <= 100_000
 
 
 def test_one_file_small_and_shut(report_file):

@@ -62,10 +62,10 @@ def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | Non
         sources |= {"tangent_model.c": tangent_source(tangent(model, columns), "tangent"), "coefficients.h": coefficients()}
     for name, text in sources.items():
         (place / name).write_text(text)
-    hand_written = CSRC / ("tangent.c" if columns is not None else "advance.c")
+    hand_written = [CSRC / name for name in (("tangent.c", "rodas.c") if columns is not None else ("advance.c",))]
     first = ["-include", str(place / "coefficients.h"), "-O3"] if columns is not None else []
     c_files = [place / name for name in sources if name.endswith(".c")]
-    compiler.compile_shared([*c_files, hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
+    compiler.compile_shared([*c_files, *hand_written], target, ["-fvisibility=default", f"-I{CSRC}", *first])
 
 
 def _toolchain() -> str:

@@ -8,7 +8,8 @@
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
     mass(p)                              → m     of each row; zero where it is algebraic
 
-These seven are all that the Python tools, the FMUs and the report page run.
+These seven are all that the Python tools and the FMUs run; the report page takes the same steps in loops over
+their stages (`csrc/rodas.c`), which is less code.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import casadi as cs
@@ -13,6 +14,7 @@ from .tangent import NAMES as TANGENT_NAMES
 from .tangent import Tangent
 
 CSRC = Path(__file__).parent / "csrc"
+NOTHING = "0"  # instead of a function that nobody calls
 RECORD = """
 #include "advance.h"
 
@@ -26,17 +28,21 @@ const wc_kernel {prefix}_kernel = {{
 TANGENT_RECORD = """
 #include "tangent.h"
 
-static const int {prefix}_rows[] = {{{rows}}};
+static const int {prefix}_rows[] = {{{rows}}}, {prefix}_places[] = {{{places}}};
 const wc_tangent {prefix}_tangent = {{
-    {columns}, {sensors}, {curvatures}, {prefix}_rows,
+    {columns}, {sensors}, {curvatures}, {prefix}_rows, {prefix}_places,
     {functions}}};
 """
 
 
-def c_source(kernel: Kernel, prefix: str) -> str:
-    """C text that defines `const wc_kernel <prefix>_kernel`, and no other name without the prefix."""
-    model = kernel.model
-    text = _generated(kernel.functions, NAMES, prefix)
+def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = None) -> str:
+    """C text that defines `const wc_kernel <prefix>_kernel`, and no other name without the prefix.
+
+    `by_hand` names C functions that stand for some of the kernel's.
+    """
+    model, by_hand = kernel.model, by_hand or {}
+    names = [name for name in NAMES if name not in by_hand]
+    text = _generated(kernel.functions, names, prefix) + _declared(by_hand)
     nominal = [s.nominal for s in model.states for _ in s.names]
     return text + RECORD.format(
         prefix=prefix,
@@ -45,20 +51,28 @@ def c_source(kernel: Kernel, prefix: str) -> str:
         inputs=model.w.numel(),
         parameters=model.p.numel(),
         outputs=model.y.numel(),
-        functions=", ".join(f"{prefix}_{name}" for name in NAMES),
+        functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in NAMES),
     )
 
 
-def tangent_source(tangent: Tangent, prefix: str) -> str:
-    """C text that defines `const wc_tangent <prefix>_tangent`."""
-    return _generated(tangent.functions, TANGENT_NAMES, prefix) + TANGENT_RECORD.format(
+def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | None = None) -> str:
+    """C text that defines `const wc_tangent <prefix>_tangent`; `by_hand` as in `c_source`."""
+    by_hand = by_hand or {}
+    names = [name for name in TANGENT_NAMES if name not in by_hand]
+    return _generated(tangent.functions, names, prefix) + _declared(by_hand) + TANGENT_RECORD.format(
         prefix=prefix,
         rows=", ".join(map(str, tangent.rows)),
+        places=", ".join(map(str, tangent.places)) or "0",
         columns=len(tangent.columns),
         sensors=len(tangent.rows),
         curvatures=tangent.length("curvature_all"),
-        functions=", ".join(f"{prefix}_{name}" for name in TANGENT_NAMES),
+        functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in TANGENT_NAMES),
     )
+
+
+def _declared(by_hand: Mapping[str, str]) -> str:
+    return "".join(f"extern int {name}(const double **, double **, long long *, double *, int);\n"
+                   for name in by_hand.values() if name != NOTHING)  # fmt: skip
 
 
 def coefficients() -> str:
@@ -72,10 +86,11 @@ def coefficients() -> str:
         return f"static const double wc_{name}[6][6] = {{\n{lines}}};\n"
 
     return (f"static const double wc_GAMMA = {rodas.GAMMA!r};\n" + numbers("ALPHA", rodas.ALPHA)
-            + numbers("GAMMA_I", rodas.GAMMA_I) + triangle("A", rodas.A) + triangle("C", rodas.C))  # fmt: skip
+            + numbers("GAMMA_I", rodas.GAMMA_I) + numbers("DENSE_2", rodas.DENSE_2) + numbers("DENSE_3", rodas.DENSE_3)
+            + triangle("A", rodas.A) + triangle("C", rodas.C))  # fmt: skip
 
 
-def _generated(functions: dict[str, cs.Function], names: tuple[str, ...], prefix: str) -> str:
+def _generated(functions: dict[str, cs.Function], names: Sequence[str], prefix: str) -> str:
     # Not a header: the functions are seen by the record that follows and by nobody else.
     generator = cs.CodeGenerator(f"{prefix}.c", {"with_header": False})
     for name in names:

@@ -5,13 +5,14 @@ With U_i as in `rodas`, differentiating  W U_i = f(x_i, w_i, p) + M Σ (c_ij/h) 
     W dU_i = F_x(i) (dx + Σ a_ij dU_j) + F_w(i) dw_i + F_p(i) dp + M Σ (c_ij/h) dU_j + γ_i F_w d(Δw)
              + d[J U_i + γ_i F_w Δw] + dM (Σ (c_ij/h) U_j − U_i/(hγ))
 
-for every direction at once. These are the functions it needs; `csrc/tangent.c` does the sums. A model
-with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
+for every direction at once. These are the functions it needs; `csrc/tangent.c` does the sums, of the U_i too. A
+model with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
 
 d[J U_i + γ_i F_w Δw] is linear in U_i and Δw, and J's own derivatives are at the step's start whatever the stage,
 so these are evaluated once a step.
 
-    stages(x, w0, w1, h, p)  → U (nx, 6), W (nx, nx)
+    motion(x, w, p)          → f (nx)
+    ramp(x, w, p, dw)        → F_w dw (nx)             by all inputs
     slopes(x, w, p)          → F (nx, nx + 4)          by states and pushes
     curvature(x, w, p)       → d[∂f/∂x, ∂f/∂w] by states and pushes, those that are not zero
     bend(curvature, U, dw)   → d[J U + F_w dw] (nx, nx + 4)
@@ -32,9 +33,9 @@ import casadi as cs
 from ..model.wheelchair import Model
 from ..quantities import Parameter
 from .kernel import _algebraic_change
-from .rodas import GAMMA, step
 
-NAMES = ("stages", "slopes", "curvature", "bend", "slopes_all", "curvature_all", "bend_all", "readout", "masses", "begin")
+NAMES = ("motion", "ramp", "slopes", "curvature", "bend", "slopes_all", "curvature_all", "bend_all", "readout", "masses",
+         "begin")  # fmt: skip
 SENSORS = "sensor."
 SENSED = ("chair.u", "chair.v")  # results that are also measured directly
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
@@ -46,6 +47,7 @@ class Tangent:
 
     columns: tuple[Parameter, ...]
     rows: tuple[int, ...]
+    places: tuple[int, ...]  # of the columns among the model's parameters
     functions: dict[str, cs.Function]
 
     def length(self, name: str) -> int:
@@ -68,28 +70,29 @@ def sensed(model: Model) -> tuple[int, ...]:
     return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS) or o.name in SENSED)
 
 
-def tangent(model: Model, names: Sequence[str]) -> Tangent:
-    """Derive the functions of a model, by those parameters that have these `names`, in the model's order."""
+def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent:
+    """Derive the functions of a model, by those parameters that have these `names`, in the model's order, and by the first
+    `pushes`."""
     x, w, p = model.x, model.w, model.p
     columns, rows = differentiable(model, names), sensed(model)
     places = [model.parameters.index(c) for c in columns]
-    at, motion = [x, w, p], cs.vertcat(x, w[:PUSHES])
+    at, motion = [x, w, p], cs.vertcat(x, w[:pushes])
     everything = cs.vertcat(motion, p[places])
 
     def by_columns(e: cs.SX) -> cs.SX:
         return cs.densify(cs.jacobian(e, p[places]))
 
-    s, y = step(model), model.y[list(rows)]
-    W = cs.diag(model.mass) / (s.h * GAMMA) - cs.jacobian(model.f, x)
+    y, dw = model.y[list(rows)], cs.SX.sym("dw", w.numel())
     functions = {
-        "stages": cs.Function("stages", [x, w, s.w1, s.h, p], cs.cse([cs.horzcat(*s.U), _rows(cs.densify(W))])),
+        "motion": cs.Function("motion", at, cs.cse([cs.densify(model.f)])),
+        "ramp": cs.Function("ramp", [*at, dw], cs.cse([cs.densify(cs.jtimes(model.f, w, dw))])),
         **_bending(model, motion, ""),
         **_bending(model, everything, "_all"),
         "readout": cs.Function("readout", at, cs.cse([_rows(cs.densify(cs.jacobian(y, everything)))])),
         "masses": cs.Function("masses", [p], [cs.densify(model.mass), _rows(by_columns(model.mass))]),
         "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
     }  # fmt: skip
-    return Tangent(columns, rows, functions)
+    return Tangent(columns, rows, tuple(places), functions)
 
 
 def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,38 +15,60 @@ from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import cache, compiler
 from .kernel import kernel
-from .source import CSRC, c_source, coefficients, tangent_source
+from .source import CSRC, NOTHING, c_source, coefficients, tangent_source
 from .tangent import tangent
 
+PUSHES = 2  # the hands' forces: a campaign states no noise of torques
 STACK = 1 << 20  # bytes; the filter's matrices take the most
-FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O3", "-msimd128", "-g0", "-s", "-ffp-contract=off",
-         "-fno-sanitize=all", "-fvisibility=hidden", f"-Wl,-z,stack-size={STACK}")  # fmt: skip
+FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O3", "-fno-unroll-loops", "-msimd128", "-g0", "-s",
+         "-ffp-contract=off", "-fno-sanitize=all", "-fvisibility=hidden", f"-Wl,-z,stack-size={STACK}",
+         f"-DWC_PUSHES={PUSHES}")  # fmt: skip
+
+# What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
+KERNEL = {"step": "wc_page_step", "forward": NOTHING, "rate": NOTHING}
+TANGENT = dict.fromkeys(("curvature", "bend", "slopes_all", "curvature_all", "bend_all", "begin"), NOTHING)
 
 
-def module(choice: Choice, effects: Iterable[Effect], columns: Sequence[str]) -> bytes:
-    """A model as a WebAssembly module that exports `csrc/page.c`, with derivatives by the parameters `columns`.
+def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str]) -> list[bytes]:
+    """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`.
+
+    What is not cached is compiled side by side. The first of all on a machine waits for ziglang to build its C library.
 
     Raises BuildError where ziglang is not installed.
     """
-    effects = sorted(effects, key=lambda e: e.id)
-    words = "\n".join((cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), *map(cache.effect_key, effects)))
     if not find_spec("ziglang"):
         raise BuildError("the model is compiled to WebAssembly by ziglang, which is not installed; "
                          "pip install 'wheelchair-fmu[report]'")  # fmt: skip
+    with ThreadPoolExecutor() as pool, tempfile.TemporaryDirectory(dir=cache.folder()) as place:
+        waiting = []
+        for i, (choice, some) in enumerate(models):
+            effects = sorted(some, key=lambda e: e.id)
+            target = _target(choice, effects, columns)
+            files = [] if target.exists() else _written(choice, effects, columns, Path(place) / str(i))
+            waiting.append(pool.submit(_compiled, files, target))
+        return [w.result().read_bytes() for w in waiting]
+
+
+def _target(choice: Choice, effects: list[Effect], columns: Sequence[str]) -> Path:
+    words = "\n".join((cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), *map(cache.effect_key, effects)))
     key = hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
-    target = cache.folder() / f"{key}.wasm"
-    if not target.exists():
-        with tempfile.TemporaryDirectory(dir=cache.folder()) as place:
-            _compile(choice, effects, columns, Path(place), target)
-    return target.read_bytes()
+    return cache.folder() / f"{key}.wasm"
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], place: Path, target: Path) -> None:
+def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], place: Path) -> list[Path]:
+    """The model's C files, and what they need beside them."""
     model = assemble(choice, effects)
-    sources = {"model.c": c_source(kernel(model), "model"),
-               "tangent_model.c": tangent_source(tangent(model, columns), "tangent"),
-               "coefficients.h": coefficients()}  # fmt: skip
-    for name, text in sources.items():
+    sources = {"model.c": c_source(kernel(model), "model", KERNEL),
+               "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT)}  # fmt: skip
+    place.mkdir()
+    for name, text in {**sources, "coefficients.h": coefficients()}.items():
         (place / name).write_text(text)
-    files = [place / "model.c", place / "tangent_model.c", CSRC / "tangent.c", CSRC / "page.c"]
-    compiler.compile_wasm(files, target, [*FLAGS, f"-I{CSRC}", "-include", str(place / "coefficients.h")])
+    return [place / name for name in sources]
+
+
+def _compiled(files: list[Path], target: Path) -> Path:
+    if not files:
+        return target
+    by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
+    flags = [*FLAGS, f"-I{CSRC}", "-include", str(files[0].with_name("coefficients.h"))]
+    return compiler.compile_wasm([*files, *by_hand], target, flags)

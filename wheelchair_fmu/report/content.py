@@ -10,7 +10,7 @@ import numpy as np
 
 from ..campaign import CHANNELS, Campaign, Run
 from ..engine.tangent import differentiable, sensed
-from ..engine.wasm import module
+from ..engine.wasm import modules
 from ..loop.evidence import START, TOLERANCE, Colour, prior_start, start_sd
 from ..loop.statistics import finite
 from ..loop.workshop import Workshop
@@ -30,6 +30,8 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
     workshop = Workshop(campaign, variant, fixed)
+    variants = [variant.with_effects(ids) for ids in _layers(workshop)]
+    compiled = modules([(v.choice, v.active()) for v in variants], START)
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
@@ -39,7 +41,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
         "outputs": {c.name: c.fmu for c in CHANNELS},
         "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
         "known": {**workshop.variant.values, **campaign.known},
-        "models": [_model(variant.with_effects(ids)) for ids in _layers(workshop)],
+        "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],
         "effects": [_effect(e) for e in workshop.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "regimes": _regimes(variant),
@@ -57,12 +59,12 @@ def _layers(w: Workshop) -> list[tuple[str, ...]]:
     return list(dict.fromkeys(groups))
 
 
-def _model(variant: Variant) -> dict[str, Any]:
+def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
     model = variant.model()
     vector = variant.vector()
     return {
         "effects": list(variant.effects),
-        "wasm": b64encode(module(variant.choice, variant.active(), START)).decode(),
+        "wasm": b64encode(wasm).decode(),
         "parameters": [[p.name, float(v)] for p, v in zip(model.parameters, vector, strict=True)],
         "inputs": [[i.name, i.start] for i in model.inputs],
         "outputs": [o.name for o in model.outputs],

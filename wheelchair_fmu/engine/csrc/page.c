@@ -3,7 +3,7 @@
  * Compiled to WebAssembly. Nothing is imported and nothing allocated: the page hands out addresses in
  * the module's own memory, from wc_page_heap() on. */
 #include "innovations.c"
-#include "tangent.h"
+#include "rodas.h"
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
 
@@ -14,6 +14,17 @@ extern unsigned char __heap_base;
 unsigned char *EXPORT(wc_page_heap)(void) { return &__heap_base; }
 
 long EXPORT(wc_page_work)(int active) { return wc_tangent_work(&model_kernel, &tangent_tangent, active); }
+
+/* The kernel's step, for all of this module's runs. */
+int wc_page_step(const double **arg, double **res, long long *iw, double *work, int mem) {
+    (void)iw, (void)work, (void)mem;
+    double mass[WC_MAX_STATES];
+    double *masses[] = {mass, 0};
+    tangent_tangent.masses(&arg[4], masses, 0, 0, 0);
+    wc_rodas_step((wc_rodas_given){.k = &model_kernel, .g = &tangent_tangent, .mass = mass, .x = arg[0], .w0 = arg[1],
+                                   .w1 = arg[2], .h = *arg[3], .p = arg[4]}, res);
+    return 0;
+}
 
 /* From the parameters' own start; see wc_run. */
 int EXPORT(wc_page_run)(const double *p, double tolerance, double grid, long n, const double *t, const double *w, double *x,

@@ -1,68 +1,25 @@
-#include "tangent.h"
-
 #include "advance.c" /* for `go`, which tells of each step it accepts */
+#include "rodas.h"
 
-#define STAGES 6
+#define STEPWISE 1e-6 /* of a stage: how far a derivative is taken by difference */
 
 typedef struct {
     const wc_kernel *k;
     const wc_tangent *g;
     const wc_derivatives *out;
     const double *p;
-    int nx, m, span; /* states, directions carried, and columns of `slopes` */
+    int nx, m, span; /* states, directions carried through an interval, columns of `slopes` */
     double length;   /* of the interval between samples */
-    double *D;       /* nx x m: [x(i) | pushes at i | pushes at i+1 | parameters] -> x now */
-    double *dU;      /* STAGES x nx x m */
-    double *at, *dM;
-    double *slopes, *first, *bend; /* nx x span: states, pushes and, where any is asked for, all columns */
-    double *curvature;
+    double *D;       /* nx x m: [x(i) | pushes at i | pushes at i+1 | parameters, where forced] -> x now */
+    double *through; /* nx x active: x(i) by the parameters */
+    double *next;
+    double *dU;      /* WC_STAGES x nx x m */
+    double *at, *dM, *moved; /* nx x m, nx x columns, parameters */
+    double *slopes, *bend; /* nx x span: states, pushes and, where any is asked for, all columns */
+    double *curvature;     /* of the step, where the model brings it */
+    wc_function sloped, curved, bent;
     double mass[WC_MAX_STATES];
 } carrier;
-
-/* W = L U in place, with row exchanges. */
-static void factorise(int n, double *W, int *exchange) {
-    for (int c = 0; c < n; c++) {
-        int best = c;
-        for (int r = c + 1; r < n; r++) {
-            if (fabs(W[r * n + c]) > fabs(W[best * n + c])) best = r;
-        }
-        exchange[c] = best;
-        for (int j = 0; best != c && j < n; j++) {
-            double kept = W[c * n + j];
-            W[c * n + j] = W[best * n + j];
-            W[best * n + j] = kept;
-        }
-        for (int r = c + 1; r < n; r++) {
-            double f = W[r * n + c] /= W[c * n + c];
-            if (f == 0) continue;
-            for (int j = c + 1; j < n; j++) W[r * n + j] -= f * W[c * n + j];
-        }
-    }
-}
-
-static void add_row(int m, double factor, const double *restrict from, double *restrict to) {
-    if (factor == 0) return;
-    for (int c = 0; c < m; c++) to[c] += factor * from[c];
-}
-
-/* All m right sides at once; rows of `right` are contiguous. */
-static void solve(int n, int m, const double *W, const int *exchange, double *right) {
-    for (int c = 0; c < n; c++) { /* L was exchanged whole, so all exchanges come first */
-        for (int j = 0; exchange[c] != c && j < m; j++) {
-            double kept = right[c * m + j];
-            right[c * m + j] = right[exchange[c] * m + j];
-            right[exchange[c] * m + j] = kept;
-        }
-    }
-    for (int c = 0; c < n; c++) {
-        for (int r = c + 1; r < n; r++) add_row(m, -W[r * n + c], right + c * m, right + r * m);
-    }
-    for (int c = n - 1; c >= 0; c--) {
-        double inverse = 1 / W[c * n + c];
-        for (int j = 0; j < m; j++) right[c * m + j] *= inverse;
-        for (int r = 0; r < c; r++) add_row(m, -W[r * n + c], right + c * m, right + r * m);
-    }
-}
 
 static void call(wc_function f, const double *a, const double *b, const double *c, double *result) {
     const double *arg[] = {a, b, c};
@@ -70,27 +27,22 @@ static void call(wc_function f, const double *a, const double *b, const double *
     f(arg, res, 0, 0, 0);
 }
 
-/* Σ a_j U_j over earlier stages, for values (m = 1) or directions. */
-static void add_stages(int rows, const double *a, int stages, const double *U, double *to) {
-    for (int j = 0; j < stages; j++) add_row(rows, a[j], U + (long)j * rows, to);
-}
-
 /* Right side of stage i in all directions. */
 static void stage_right(carrier *c, int i, double h, const double *V, const double *part,
-                        const double *slopes, double *right) {
-    int nx = c->nx, m = c->m, span = c->span;
-    const double *first = c->first, *bend = c->bend;
+                        const double *slopes, const double *first, double *right) {
+    int nx = c->nx, m = c->m, span = c->span, motion = nx + WC_PUSHES;
+    const double *bend = c->bend;
     const double *D = c->D;
     for (int r = 0; r < nx; r++) {
         double *row = right + r * m;
         memset(row, 0, sizeof(double) * (size_t)m);
-        for (int j = 0; j < i; j++) add_row(m, c->mass[r] * wc_C[i][j] / h, c->dU + ((long)j * nx + r) * m, row);
+        for (int j = 0; j < i; j++) wc_add_row(m, c->mass[r] * wc_C[i][j] / h, c->dU + ((long)j * nx + r) * m, row);
         for (int k = 0; k < nx; k++) {
-            add_row(m, slopes[r * span + k], c->at + k * m, row);
-            add_row(m, bend[r * span + k], D + k * m, row);
+            wc_add_row(m, slopes[r * span + k], c->at + k * m, row);
+            wc_add_row(m, bend[r * span + k], D + k * m, row);
         }
         for (int q = 0; q < WC_PUSHES; q++) {
-            double F = slopes[r * span + nx + q], B = bend[r * span + nx + q], F0 = first[r * span + nx + q];
+            double F = slopes[r * span + nx + q], B = bend[r * span + nx + q], F0 = first[r * motion + nx + q];
             for (int side = 0; side < 2; side++) { /* the push at the sample before, at the sample after */
                 double wa = side ? part[0] : 1 - part[0], wb = side ? part[1] : 1 - part[1];
                 row[nx + side * WC_PUSHES + q] +=
@@ -98,60 +50,80 @@ static void stage_right(carrier *c, int i, double h, const double *V, const doub
             }
         }
         for (int a = 0; c->out->forced && a < c->out->active; a++) {
-            int column = c->out->which[a], at = r * span + nx + WC_PUSHES + column;
+            int column = c->out->which[a], at = r * span + motion + column;
             row[nx + 2 * WC_PUSHES + a] += slopes[at] + bend[at] + c->dM[r * c->g->columns + column] * V[r];
         }
     }
 }
 
+/* d[J U + F_w dw] by states and pushes at the step's beginning, where the model does not bring it. */
+static void bend_by_difference(carrier *c, const wc_rodas *s, const double *U, const double *dw) {
+    int nx = c->nx, size = nx * (nx + WC_PUSHES);
+    double xs[WC_MAX_STATES], ws[WC_MAX_INPUTS];
+    for (int r = 0; r < nx; r++) xs[r] = s->of.x[r] + STEPWISE * U[r];
+    for (int q = 0; q < c->k->inputs; q++) ws[q] = s->of.w0[q] + STEPWISE * dw[q];
+    call(c->g->slopes, xs, ws, c->p, c->bend);
+    for (int e = 0; e < size; e++) c->bend[e] = (c->bend[e] - s->first[e]) / STEPWISE;
+}
+
+/* The derivatives of stage i's right side: slopes where it is taken, and how J U + F_w dw moves. */
+static const double *stage_slopes(carrier *c, const wc_rodas *s, int i) {
+    const double *U = s->U + i * c->nx;
+    double dw[WC_MAX_INPUTS];
+    for (int q = 0; q < c->k->inputs; q++) dw[q] = wc_GAMMA_I[i] * (s->of.w1[q] - s->of.w0[q]);
+    if (c->bent) call(c->bent, c->curvature, U, dw, c->bend);
+    else bend_by_difference(c, s, U, dw);
+    if (i == 0 && !c->out->forced) return s->first;
+    call(c->sloped, s->xs, s->ws, c->p, c->slopes);
+    return c->slopes;
+}
+
 static void carry(void *context, const double *x, const double *wa, const double *wb, double done, double h) {
     carrier *c = context;
-    int nx = c->nx, m = c->m, exchange[WC_MAX_STATES];
-    double U[STAGES * WC_MAX_STATES], W[WC_MAX_STATES * WC_MAX_STATES], V[WC_MAX_STATES];
-    double xs[WC_MAX_STATES], ws[WC_MAX_INPUTS], dw[WC_MAX_INPUTS];
-    const double *arg[] = {x, wa, wb, &h, c->p};
-    double *res[] = {U, W};
-    double part[2] = {done / c->length, (done + h) / c->length};
-    wc_function curved = c->out->forced ? c->g->curvature_all : c->g->curvature;
-    wc_function sloped = c->out->forced ? c->g->slopes_all : c->g->slopes;
-    wc_function bent = c->out->forced ? c->g->bend_all : c->g->bend;
-    c->g->stages(arg, res, 0, 0, 0);
-    factorise(nx, W, exchange);
-    call(curved, x, wa, c->p, c->curvature);
-    for (int i = 0; i < STAGES; i++) {
-        double *dU = c->dU + (long)i * nx * m, *slopes = i ? c->slopes : c->first;
-        memcpy(xs, x, sizeof(double) * (size_t)nx);
+    int nx = c->nx, m = c->m;
+    wc_rodas s;
+    double V[WC_MAX_STATES], part[2] = {done / c->length, (done + h) / c->length};
+    wc_rodas_begin(&s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
+    if (c->curved) call(c->curved, x, wa, c->p, c->curvature);
+    for (int i = 0; i < WC_STAGES; i++) {
+        double *dU = c->dU + (long)i * nx * m;
+        wc_rodas_stage(&s, i);
         memset(V, 0, sizeof V);
-        add_stages(nx, wc_A[i], i, U, xs);
-        add_stages(nx, wc_C[i], i, U, V);
-        for (int r = 0; r < nx; r++) V[r] = (V[r] - U[i * nx + r] / wc_GAMMA) / h;
-        for (int q = 0; q < c->k->inputs; q++) {
-            ws[q] = wa[q] + wc_ALPHA[i] * (wb[q] - wa[q]);
-            dw[q] = wc_GAMMA_I[i] * (wb[q] - wa[q]);
-        }
-        call(sloped, xs, ws, c->p, slopes);
-        call(bent, c->curvature, U + i * nx, dw, c->bend);
+        wc_add_stages(nx, wc_C[i], i, s.U, V);
+        for (int r = 0; r < nx; r++) V[r] = (V[r] - s.U[i * nx + r] / wc_GAMMA) / h;
+        const double *slopes = stage_slopes(c, &s, i);
         memcpy(c->at, c->D, sizeof(double) * (size_t)(nx * m));
-        add_stages(nx * m, wc_A[i], i, c->dU, c->at);
-        stage_right(c, i, h, V, part, slopes, dU);
-        solve(nx, m, W, exchange, dU);
+        wc_add_stages(nx * m, wc_A[i], i, c->dU, c->at);
+        stage_right(c, i, h, V, part, slopes, s.first, dU);
+        wc_rodas_solve(&s, m, dU);
     }
-    add_stages(nx * m, wc_A[STAGES - 1], STAGES - 1, c->dU, c->D);
-    add_row(nx * m, 1, c->dU + (long)(STAGES - 1) * nx * m, c->D);
+    wc_add_stages(nx * m, wc_A[WC_STAGES - 1], WC_STAGES - 1, c->dU, c->D);
+    wc_add_row(nx * m, 1, c->dU + (long)(WC_STAGES - 1) * nx * m, c->D);
+}
+
+static void fresh(carrier *c) {
+    memset(c->D, 0, sizeof(double) * (size_t)(c->nx * c->m));
+    for (int r = 0; r < c->nx; r++) c->D[r * c->m + r] = 1;
 }
 
 /* Takes what was carried over one interval, and makes ready for the next. */
 static void hand_over(carrier *c, long i) {
-    int nx = c->nx, m = c->m;
+    int nx = c->nx, m = c->m, active = c->out->active;
     const wc_derivatives *out = c->out;
     for (int r = 0; r < nx; r++) {
         double *row = c->D + r * m;
         memcpy(out->transition + (i * nx + r) * nx, row, sizeof(double) * (size_t)nx);
         memcpy(out->push_before + (i * nx + r) * WC_PUSHES, row + nx, sizeof(double) * WC_PUSHES);
         memcpy(out->push_after + (i * nx + r) * WC_PUSHES, row + nx + WC_PUSHES, sizeof(double) * WC_PUSHES);
-        memset(row, 0, sizeof(double) * (size_t)(nx + 2 * WC_PUSHES));
-        row[r] = 1;
+        double *next = c->next + r * active;
+        memset(next, 0, sizeof(double) * (size_t)active);
+        if (out->forced) memcpy(next, row + nx + 2 * WC_PUSHES, sizeof(double) * (size_t)active);
+        for (int k = 0; k < nx; k++) wc_add_row(active, row[k], c->through + k * active, next);
     }
+    double *kept = c->through;
+    c->through = c->next;
+    c->next = kept;
+    fresh(c);
 }
 
 static void read_out(carrier *c, long i, const double *x, const double *w, double *readout) {
@@ -163,30 +135,54 @@ static void read_out(carrier *c, long i, const double *x, const double *w, doubl
         memcpy(c->out->by_state + (i * ns + s) * nx, row, sizeof(double) * (size_t)nx);
         memcpy(c->out->by_push + (i * ns + s) * WC_PUSHES, row + nx, sizeof(double) * WC_PUSHES);
         for (int a = 0; a < active; a++) to[a] = row[nx + WC_PUSHES + c->out->which[a]];
-        for (int r = 0; r < nx; r++) add_row(active, row[r], c->D + r * c->m + nx + 2 * WC_PUSHES, to);
+        for (int r = 0; r < nx; r++) wc_add_row(active, row[r], c->through + r * active, to);
     }
 }
 
+/* The start by each column, where the model does not bring it. */
+static wc_status begin_by_difference(const wc_kernel *k, const wc_tangent *g, const double *p, const double *w,
+                                     double *moved, double *begin) {
+    double x[2][WC_MAX_STATES];
+    memcpy(moved, p, sizeof(double) * (size_t)k->parameters);
+    for (int c = 0; c < g->columns; c++) {
+        double at = p[g->places[c]], by = STEPWISE * (1 + fabs(at));
+        for (int side = 0; side < 2; side++) {
+            moved[g->places[c]] = at + (side ? by : -by);
+            wc_status status = wc_start(k, moved, w, x[side]);
+            if (status != WC_OK) return status;
+        }
+        moved[g->places[c]] = at;
+        for (int r = 0; r < k->states; r++) begin[r * g->columns + c] = (x[1][r] - x[0][r]) / (2 * by);
+    }
+    return WC_OK;
+}
+
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
-    long nx = k->states, m = nx + 2 * WC_PUSHES + active, motion = nx + WC_PUSHES, nc = g->columns;
-    return (STAGES + 2) * nx * m + 3 * nx * (motion + nc) + nx * nc + g->curvatures + g->sensors * (motion + nc);
+    long nx = k->states, m = nx + 2 * WC_PUSHES + active /* at most */, nc = g->columns, span = nx + WC_PUSHES + nc;
+    return (WC_STAGES + 2) * nx * m + 2 * nx * span + nx * nc + g->curvatures + k->parameters + 2 * nx * active +
+           g->sensors * span;
 }
 
 wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
                          const double *t, const double *w, double *x, double *y, const wc_derivatives *out,
                          double *work, long *reached) {
-    int nx = k->states, nw = k->inputs, m = nx + 2 * WC_PUSHES + out->active;
-    int widest = nx + WC_PUSHES + g->columns, span = out->forced ? widest : nx + WC_PUSHES;
-    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m, .span = span};
+    int nx = k->states, nw = k->inputs, forced = out->forced, widest = nx + WC_PUSHES + g->columns;
+    int m = nx + 2 * WC_PUSHES + (forced ? out->active : 0), span = forced ? widest : nx + WC_PUSHES;
+    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m, .span = span,
+                 .sloped = forced ? g->slopes_all : g->slopes,
+                 .curved = forced ? g->curvature_all : g->curvature,
+                 .bent = forced ? g->bend_all : g->bend};
     c.D = work;
     c.dU = c.D + nx * m;
-    c.at = c.dU + STAGES * nx * m;
+    c.at = c.dU + WC_STAGES * nx * m;
     c.slopes = c.at + nx * m;
-    c.first = c.slopes + nx * widest;
-    c.bend = c.first + nx * widest;
+    c.bend = c.slopes + nx * widest;
     c.dM = c.bend + nx * widest;
     c.curvature = c.dM + nx * g->columns;
-    double *readout = c.curvature + g->curvatures, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
+    c.moved = c.curvature + g->curvatures;
+    c.through = c.moved + k->parameters;
+    c.next = c.through + nx * out->active;
+    double *readout = c.next + nx * out->active, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
     *reached = 0;
     wc_status status = wc_start(k, p, w, x);
     if (status != WC_OK) return status;
@@ -194,14 +190,13 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     double *mass_res[] = {c.mass, c.dM};
     g->masses(mass_arg, mass_res, 0, 0, 0);
     double *begin = c.slopes; /* free until the first step */
-    call(g->begin, x, w, p, begin);
-    memset(c.D, 0, sizeof(double) * (size_t)(nx * m));
-    for (int r = 0; r < nx; r++) {
-        c.D[r * m + r] = 1;
+    if (g->begin) call(g->begin, x, w, p, begin);
+    else status = begin_by_difference(k, g, p, w, c.moved, begin);
+    if (status != WC_OK) return status;
+    fresh(&c);
+    for (int r = 0; r < nx; r++)
         for (int a = 0; a < out->active; a++)
-            c.D[r * m + nx + 2 * WC_PUSHES + a] = out->start[r * out->active + a] =
-                begin[r * g->columns + out->which[a]];
-    }
+            c.through[r * out->active + a] = out->start[r * out->active + a] = begin[r * g->columns + out->which[a]];
     memcpy(now, x, sizeof(double) * (size_t)nx);
     for (long i = 0;; i++) {
         wc_output(k, p, w + i * nw, now, y + i * k->outputs);

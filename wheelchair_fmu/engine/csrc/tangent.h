@@ -4,13 +4,18 @@
 
 #include "advance.h"
 
-#define WC_PUSHES 4 /* the first inputs are pushes, whose records carry noise */
+#ifndef WC_PUSHES
+#define WC_PUSHES 4 /* the first inputs are pushes, whose records may carry noise */
+#endif
 
+/* Where a record has no `bend` or `begin`, they are found by difference; without what ends in _all, only
+ * parameters that start a run may be asked for. */
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
     int curvatures;       /* numbers that `curvature_all` gives; `curvature` gives fewer */
     const int *rows;      /* places of those results */
-    wc_function stages, slopes, curvature, bend, slopes_all, curvature_all, bend_all, readout, masses, begin;
+    const int *places;    /* of those parameters */
+    wc_function motion, ramp, slopes, curvature, bend, slopes_all, curvature_all, bend_all, readout, masses, begin;
 } wc_tangent;
 
 /* What is wanted of a run, and where it goes. All matrices are stored by rows. */

@@ -9,7 +9,7 @@ import { rms } from "page/numbers";
 import { Pool } from "page/pool";
 import { Trajectory } from "page/trajectory";
 
-const REST = 150; // ms without a change after which the numbers are made exact
+const REST = 80; // ms without a change after which the numbers are made exact
 
 class App {
   constructor(campaign) {

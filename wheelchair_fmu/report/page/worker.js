@@ -12,7 +12,7 @@ const WHY = {
   2: "no step was short enough for the tolerance",
   3: "the algebraic equations have no solution nearby",
 };
-const PUSHES = 4; // the first inputs, whose records may carry noise
+const PUSHES = 2; // the first inputs, whose records may carry noise
 const MOST = 64; // states, pushes and readings together, as in innovations.c
 const REACH = 3; // standard deviations that a start may be moved
 
