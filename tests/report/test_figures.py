@@ -62,6 +62,15 @@ def test_overlays_show_residuals_in_sigmas():
     assert low <= -4 and high >= 4
 
 
+def test_an_estimated_offset_is_taken_off_and_said():
+    measured, predicted = {"yaw_rate": 0.15 + 0 * TIME}, {"yaw_rate": 0.1 + 0 * TIME}
+    figure = overlay_figure("run 1", TIME, measured, predicted, {"yaw_rate": 0.01}, {"yaw_rate": "rad/s"}, {"yaw_rate": 0.03})
+    above, below = figure.axes
+    assert above.lines[0].get_ydata() == pytest.approx(0.12)
+    assert below.lines[0].get_ydata() == pytest.approx(2.0)
+    assert above.get_title(loc="left") == "measured, less its estimated offset of 0.03 rad/s"
+
+
 def test_the_staircase_marks_the_floor_and_takes_steps_without_held_out_runs():
     ladder = [{"step": "nominal", "fit": 5.0, "heldout": None}, {"step": "+camber", "fit": 1.1, "heldout": 1.2}]
     ax = staircase_figure(ladder).axes[0]

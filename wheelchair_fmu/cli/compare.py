@@ -56,7 +56,8 @@ def compare(
     else:
         _show(measured, comparison, values, calibrate)
     if output:
-        for file in _figures(measured, comparison, evidence, output):
+        offsets = {channel: values[name] for name, channel in bench.offsets.items()}
+        for file in _figures(measured, comparison, evidence, offsets, output):
             print(file)
 
 
@@ -126,7 +127,7 @@ def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate
             out.print(f"by {name}: {share:4.0%} of the excess lies between {a:.3g} and {b:.3g} (a quarter of the samples)")
 
 
-def _figures(measured: Campaign, c: Comparison, evidence: Evidence, folder: Path) -> list[Path]:
+def _figures(measured: Campaign, c: Comparison, evidence: Evidence, offsets: dict[str, float], folder: Path) -> list[Path]:
     channels = list(dict.fromkeys(ch for r in c.runs for ch in r.channels))
     rms = np.array([[r.rms.get(ch, np.nan) for ch in channels] for r in c.runs])
     figures = {"where": where_figure([r.name for r in c.runs], channels, rms)}
@@ -134,7 +135,7 @@ def _figures(measured: Campaign, c: Comparison, evidence: Evidence, folder: Path
         shown = {ch: r.predicted[:, i] for i, ch in enumerate(r.channels)}
         figures[f"run-{r.name}"] = overlay_figure(r.name, e.run.time, {ch: e.run.channels[ch] for ch in r.channels}, shown,
                                                   {ch: measured.noise[ch] for ch in r.channels},
-                                                  units={c.name: c.unit.name for c in CHANNELS})  # fmt: skip
+                                                  units={c.name: c.unit.name for c in CHANNELS}, offsets=offsets)  # fmt: skip
     files = []
     for name, figure in figures.items():
         for ending in (".png", ".svg"):

@@ -95,24 +95,30 @@ def overlay_figure(
     predicted: Mapping[str, np.ndarray],
     sigma: Mapping[str, float],
     units: Mapping[str, str] | None = None,
+    offsets: Mapping[str, float] | None = None,
 ) -> Figure:
     """What sensors read and what the model predicts, channel by channel, each with its residual below.
 
     `time` is (n,) in s; `measured` (with NaN in gaps) and `predicted` hold (n,) by channel name, in one unit;
     `sigma` is one standard deviation of each channel's noise in that unit. Residuals, measured less predicted, are in
-    sigmas over a band of ±2, where 95 % of a perfect model's lie.
+    sigmas over a band of ±2, where 95 % of a perfect model's lie. `offsets` are what was estimated of sensors' offsets, which
+    is taken off what they read, and said above the channel.
     """
     names = list(measured)
     figure = Figure(figsize=(10, 0.6 + 2.6 * len(names)), layout="constrained")
     figure.suptitle(run)
     grid = figure.subplots(2 * len(names), 1, sharex=True, squeeze=False, height_ratios=[2, 1] * len(names))[:, 0]
     for name, above, below in zip(names, grid[::2], grid[1::2], strict=True):
-        unit = f" [{units[name]}]" if units and name in units else ""
-        above.plot(time, measured[name], ".", color=GREY, ms=2, label="measured")
+        unit = (units or {}).get(name, "")
+        read = measured[name]
+        if offset := (offsets or {}).get(name):
+            read = read - offset
+            above.set_title(f"measured, less its estimated offset of {offset:.3g} {unit}", loc="left", fontsize=9)
+        above.plot(time, read, ".", color=GREY, ms=2, label="measured")
         above.plot(time, predicted[name], color=BLUE, label="model")
-        above.set_ylabel(f"{name}{unit}")
+        above.set_ylabel(f"{name} [{unit}]" if unit else name)
         below.axhspan(-2, 2, color=BAND, lw=0, label="±2 σ")
-        below.plot(time, (measured[name] - predicted[name]) / sigma[name], ".", color=ORANGE, ms=2)
+        below.plot(time, (read - predicted[name]) / sigma[name], ".", color=ORANGE, ms=2)
         below.set_ylabel("residual [σ]")
         _at_least(below, 4)
         for ax in (above, below):
