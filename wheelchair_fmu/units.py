@@ -75,6 +75,23 @@ def factor(text: str, si: str) -> float:
     return float(_registry().Quantity(1.0, unit).to(target).magnitude)
 
 
+def coherent(text: str) -> tuple[float, int, int, int]:
+    """`value in SI = factor · value in text`, and the exponents of kg, m, s that it has there; angles are plain numbers.
+
+    Raises UnitError for an unknown unit, and for one that needs more than mass, length and time, in whole powers.
+    """
+    cure = "write a unit of mass, length, time or angle, such as N.m, km/h or deg"
+    unit = _parse(text.strip()) if text.strip() else None
+    if unit is None:
+        raise UnitError(f"unit {text.strip()!r} is unknown", cure)
+    exponents = dict(unit.dimensionality)
+    powers = [exponents.pop(name, 0) for name in ("[mass]", "[length]", "[time]")]
+    if exponents or any(p != int(p) for p in powers) or not _registry().Quantity(1.0, unit)._is_multiplicative:
+        raise UnitError(f"unit {text.strip()!r} is not made of whole powers of mass, length and time", cure)
+    kg, m, s = map(int, powers)
+    return float(_registry().Quantity(1.0, unit).to_base_units().to(f"kg**{kg} * m**{m} * s**{s}").magnitude), kg, m, s
+
+
 def same_dimension(text: str, si: str) -> bool:
     """Whether `text` is a unit of the dimension of `si`."""
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from math import tanh
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
 from wheelchair_fmu.workbench.server import HEADER, Workbench  # noqa: E402
+from wheelchair_fmu.workbench.session import Session  # noqa: E402
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
 
@@ -101,6 +103,7 @@ def test_an_expression_is_judged_as_it_is_typed(client):
         return client.post(f"{client.base}/expression", json={"expression": expression, "to": to}).json()
 
     assert judged("-q * u") == {"unit": "N.s/m"}
+    assert judged("-q * tanh(u / 3 [km/h])") == {"unit": "N"}
     assert "units do not fit" in judged("q * (u + m)")["why"]
     assert "is no expression" in judged("q *")["why"]
     assert "not allowed" in judged("q * u.__class__")["why"]
@@ -117,6 +120,15 @@ def test_an_effect_of_ones_own_joins_the_catalogue(client):
         answer = client.post(f"{client.base}/effects", json={**effect, "id": "other", **change})
         assert answer.status_code == 400
         assert why in answer.json()["error"]
+
+
+def test_an_effect_keeps_its_numbers_units(client, bench):
+    effect = {"id": "stiction", "title": "a brake that sticks", "to": "F_x", "expression": "-q * tanh(u / 3 [km/h])",
+              "size": 0.5, "lower": 0.0, "upper": 50.0}  # fmt: skip
+    assert client.post(f"{client.base}/effects", json=effect).status_code == 200
+    own = Session(bench.root, client.base.rpartition("/")[2]).own_effects()["stiction"]
+    assert own.parameters[0].unit.name == "N"
+    assert own.contributions[0].law(q=2.0, u=3 / 3.6) == pytest.approx(-2 * tanh(1))
 
 
 def test_undo_and_redo(client):

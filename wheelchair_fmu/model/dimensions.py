@@ -48,7 +48,7 @@ def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
     if to not in model.records:
         raise unknown("quantity to act on", to, targets(model))
     _refuse_unreadable(text, to, law, choice)
-    here, there = _exponents(law, vocabulary(model)), model.records[to].unit
+    here, there = _exponents(text, vocabulary(model)), model.records[to].unit
     wanted = [have - own for have, own in zip((there.kg, there.m, there.s), here, strict=True)]
     return _named(*wanted)
 
@@ -66,28 +66,31 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
         raise UsageError(f"{text!r} cannot be evaluated: {str(error).splitlines()[-1]}") from None
 
 
-def _exponents(law: Callable[..., Any], known: Mapping[str, Quantity]) -> tuple[int, int, int]:
+def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]:
     rng = np.random.default_rng(5)
-    names = [n for n in signature(law).parameters if n != "q"]
+    law, constants = expression.law_of_constants(text)
+    units = {n: q.unit for n, q in known.items()} | {n: unit for n, (_, unit) in constants.items()}
+    fixed = {n: np.array([value]) for n, (value, _) in constants.items()}
+    names = [n for n in signature(law).parameters if n != "q" and n not in fixed]
     found = []
     for _ in range(PLACES):
-        place = {n: rng.uniform(0.3, 1.3, known[n].size) for n in names}
+        place = {n: rng.uniform(0.3, 1.3, known[n].size) for n in names} | fixed
         whole = _value(law, place, 1.0)
         if np.any(abs(_value(law, place, 2.0) - 2 * whole) > NEAR * abs(whole)):
             raise UsageError("q must be a factor of the whole: write q times something")
-        found.append([_power(law, place, known, whole, **{unit: FACTOR}) for unit in SYMBOLS])
+        found.append([_power(law, place, units, whole, **{unit: FACTOR}) for unit in SYMBOLS])
     spread = np.array(found)
     whole_numbers = np.round(spread[0])
     if not np.all(abs(spread - whole_numbers) < NEAR):
         raise UsageError("the units do not fit: unlike quantities are added, or a plain number stands where a quantity "
-                         "with a unit belongs (small numbers with units: v_eps [m/s])")  # fmt: skip
+                         "with a unit belongs (write its unit behind it, as in 0.1 [m/s])")  # fmt: skip
     kg, m, s = (int(e) for e in whole_numbers)
     return kg, m, s
 
 
-def _power(law: Callable[..., Any], place: Mapping[str, np.ndarray], known: Mapping[str, Quantity], whole: np.ndarray,
+def _power(law: Callable[..., Any], place: Mapping[str, np.ndarray], units: Mapping[str, Unit], whole: np.ndarray,
            kg: float = 1.0, m: float = 1.0, s: float = 1.0) -> float:  # fmt: skip
-    scaled = _value(law, {n: v * known[n].unit.scale(kg, m, s) for n, v in place.items()}, 1.0)
+    scaled = _value(law, {n: v * units[n].scale(kg, m, s) for n, v in place.items()}, 1.0)
     i = int(np.argmax(abs(whole)))
     ratio = scaled[i] / whole[i] if whole[i] else np.nan
     return log(ratio) / log(FACTOR) if ratio > 0 else np.nan

@@ -1,8 +1,12 @@
-"""Effects written as an expression: "-q * sin(delta)" becomes a law, and a file that a user may edit."""
+"""Effects written as an expression: "-q * sin(delta)" becomes a law, and a file that a user may edit.
+
+A number may have a unit in brackets behind it, "-q * tanh(u / 3 [km/h])"; it counts in SI.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -11,6 +15,7 @@ import casadi as cs
 
 from ..errors import UsageError
 from ..quantities import Unit
+from ..units import UnitError, coherent
 from .smooth import direction, grip, magnitude
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
@@ -21,12 +26,39 @@ ALLOWED = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Load,
            ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd)  # fmt: skip
 
 
+WITH_UNIT = re.compile(r"(?<![\w.\])])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\[([\w\s.·⋅*/^°²³µΩ%-]*)\]")
+
+
 @cache
 def law(expression: str) -> Callable[..., Any]:
     """The expression as a function of the quantities it names.
 
-    Raises UsageError for anything but arithmetic, numbers, names and the functions above.
+    Raises UsageError for anything but arithmetic, numbers (with units), names and the functions above.
     """
+    return _function(WITH_UNIT.sub(lambda number: repr(_in_si(number)[0]), expression))
+
+
+def law_of_constants(expression: str) -> tuple[Callable[..., Any], dict[str, tuple[float, Unit]]]:
+    """The law as a function of its numbers with units too; by their names there, those numbers in SI and their units."""
+    constants: dict[str, tuple[float, Unit]] = {}
+
+    def named(number: re.Match[str]) -> str:
+        name = f"constant_{len(constants)}"
+        constants[name] = _in_si(number)
+        return name
+
+    return _function(WITH_UNIT.sub(named, expression)), constants
+
+
+def _in_si(number: re.Match[str]) -> tuple[float, Unit]:
+    try:
+        factor, kg, m, s = coherent(number[2])
+    except UnitError as error:
+        raise UsageError(f"{number[0]}: {error}") from None
+    return float(number[1]) * factor, Unit(number[2].strip(), kg=kg, m=m, s=s)
+
+
+def _function(expression: str) -> Callable[..., Any]:
     try:
         tree = ast.parse(expression, mode="eval")
     except SyntaxError as error:
