@@ -124,6 +124,27 @@ def test_two_tabs_are_two_pieces_of_work(page: Any, address: str) -> None:
     assert other.locator("#earlier a").count() >= 1
 
 
+def test_noise_and_priors_are_a_form_whose_changes_can_be_undone(page: Any) -> None:
+    take_in(page, *recordings())
+    page.click("text=Noise of the sensors")
+    field = page.locator("label", has_text="yaw_rate").locator("input").last
+    assert "rad/s" in field.get_attribute("placeholder")
+    field.fill("0.5 deg/s")
+    field.press("Tab")
+    page.wait_for_function("() => workbench.state.campaign.noise?.yaw_rate === '0.5 deg/s'")
+    page.click("text=How sure these values are")
+    prior = page.locator('input[aria-label^="standard deviation of chair.m:"]')
+    prior.fill("2")
+    prior.press("Tab")
+    page.wait_for_function("() => workbench.state.campaign.prior?.chair?.m === 2")
+    assert "prior.chair.m = 2" in page.inner_text("#history li[aria-current]")
+    page.click("#undo")
+    page.wait_for_function("() => workbench.state.campaign.prior?.chair?.m === undefined")
+    assert page.evaluate("workbench.state.campaign.noise.yaw_rate") == "0.5 deg/s"
+    page.click("#undo")
+    page.wait_for_function("() => !workbench.state.campaign.noise")
+
+
 def test_an_effect_of_ones_own_is_judged_as_it_is_typed(page: Any) -> None:
     page.wait_for_function("() => window.workbench?.state")
     page.fill("#own [name=expression]", "q * (u + m)")

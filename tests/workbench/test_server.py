@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from math import tanh
+from math import radians, tanh
+from os import utime
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
 from wheelchair_fmu.workbench.server import HEADER, Workbench  # noqa: E402
-from wheelchair_fmu.workbench.session import Session  # noqa: E402
+from wheelchair_fmu.workbench.session import Session, prune  # noqa: E402
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
 
@@ -134,6 +135,44 @@ def test_an_effect_keeps_its_numbers_units(client, bench):
 def test_undo_and_redo(client):
     assert client.post(f"{client.base}/history", json={"by": -1}).json()["error"] == "there is nothing to undo"
     assert client.post(f"{client.base}/history", json={"by": 5}).status_code == 400
+
+
+def test_a_campaign_is_edited_undone_and_done_again(client):
+    content = upload(client, *recordings()).json()["campaign"]
+    assert client.get(f"{client.base}/state").json()["noise"]["yaw_rate"] > 0, "estimated"
+    edited = {**content, "noise": {"yaw_rate": "0.5 deg/s"}, "prior": {"chair": {"m": 2.0}}}
+    state = client.put(f"{client.base}/campaign", json=edited).json()
+    assert state["noise"]["yaw_rate"] == pytest.approx(radians(0.5))
+    assert state["history"]["steps"][-1]["label"] == "noise.yaw_rate = 0.5 deg/s, and 1 more"
+    assert client.put(f"{client.base}/campaign", json=edited).json()["history"] == state["history"], "nothing was changed"
+    upload(client, ("later.csv", recordings()[0][1]))
+    undone = client.post(f"{client.base}/history", json={"by": -1}).json()["campaign"]
+    assert "noise" not in undone
+    assert {r["file"] for r in undone["run"]} == {"later.csv", *(r["file"] for r in content["run"])}, "recordings stay"
+    redone = client.post(f"{client.base}/history", json={"by": 1}).json()
+    assert redone["campaign"]["noise"] == edited["noise"]
+    assert redone["campaign"]["prior"] == edited["prior"]
+    bad = client.put(f"{client.base}/campaign", json={**content, "noise": {"yaw_rate": "0.5 kg"}}).json()
+    assert any("'kg' measures a mass" in f["text"] for f in bad["faults"])
+
+
+def test_old_work_goes_and_what_is_in_use_stays(client, bench, tmp_path):
+    sessions = {name: Session.begin(tmp_path / "work") for name in ("recent", "old", "empty", "new")}
+    for name in ("recent", "old"):
+        sessions[name].put(f"{name}.csv", recordings()[0][1])
+        sessions[name].draft()
+    (tmp_path / "work" / "notes").mkdir()
+    now = time.time()
+    for name, days in (("recent", 80), ("old", 100), ("empty", 2)):
+        utime(sessions[name].folder, (now - days * 86400,) * 2)
+    assert prune(tmp_path / "work") == ["campaign"]
+    assert {name for name, s in sessions.items() if s.there} == {"recent", "new"}
+    assert (tmp_path / "work" / "notes").exists(), "what is not ours"
+    here = Session(bench.root, client.base.rpartition("/")[2])
+    utime(here.folder, (now - 100 * 86400,) * 2)
+    client.get(f"{client.base}/state")
+    prune(bench.root)
+    assert here.there, "somebody is looking at it"
 
 
 def test_long_work_can_be_cancelled(client):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 import webbrowser
 from contextlib import suppress
 from pathlib import Path
@@ -24,6 +25,7 @@ def workbench(
     campaign: Annotated[Path | None, typer.Argument(metavar="CAMPAIGN", help="A folder to start with; it is copied.")] = None,
     port: Annotated[int, typer.Option(help="Where to listen; 0 takes a free one.")] = 8765,
     folder: Annotated[Path | None, typer.Option(metavar="DIR", help="Where work is kept.")] = None,
+    keep: Annotated[float, typer.Option(metavar="DAYS", min=1.0, help="Remove work that nobody looked at for so long.")] = 90.0,
     show: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
 ) -> None:
     """Drop recordings in, map their columns, diagnose, add effects and export, in a browser."""
@@ -31,6 +33,7 @@ def workbench(
         import uvicorn
 
         from ..workbench.server import Workbench
+        from ..workbench.session import prune
     except ImportError as error:
         raise Failure(f"the workbench needs {error.name}, which is not installed; "
                       "pip install 'wheelchair-fmu[workbench]'") from None  # fmt: skip
@@ -39,6 +42,8 @@ def workbench(
     root = folder or Path(platformdirs.user_data_dir("wheelchair-fmu")) / "workbench"
     root.mkdir(parents=True, exist_ok=True)
     listening = _listen(port)
+    for name in prune(root, keep):
+        print(f"removed {name}, which nobody has looked at for {keep:g} days", file=sys.stderr)
     address = f"http://{HOST}:{listening.getsockname()[1]}/"
     print(f"{address} (Ctrl-C ends it; work is kept in {root})", flush=True)
     if show:

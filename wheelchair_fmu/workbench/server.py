@@ -50,7 +50,8 @@ class Workbench:
         self.root, self.campaign, self.jobs = root, campaign, Jobs()
         chair = Variant()
         self.bounds = {p.name: (p.lower, p.upper) for p in chair.with_effects(bundled()).parameters()}
-        self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default}
+        self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default,
+                            "uncertainty": p.uncertainty}
                            for p in chair.parameters() if p.name.startswith(KNOWN)]  # fmt: skip
         model = assemble()
         self.words = {
@@ -96,6 +97,7 @@ class Workbench:
                 session = Session(self.root, request.path_params["id"])
                 if not session.there:
                     return JSONResponse({"error": "no such session; open the workbench's first page"}, 404)
+                session.touch()
                 return await answer(request, session)
             except WheelchairError as error:
                 return JSONResponse({"error": str(error)}, 400)
@@ -138,6 +140,7 @@ class Workbench:
             "headers": session.headers(),
             "faults": session.faults(self.bounds),
             "channels": channel_list(),
+            "noise": session.noise(),
             "parameters": self.parameters,
             "history": session.history(),
             "variant": session.variant_file.read_text(encoding="utf-8"),
@@ -170,7 +173,7 @@ class Workbench:
         return await self.state(request, session)
 
     async def set_campaign(self, request: Request, session: Session) -> Response:
-        session.write_content(await _object(request))
+        session.edit(await _object(request))
         return await self.state(request, session)
 
     # -- work -----------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
     campaign/campaign.toml, *.csv    what was dropped, and how its columns are read
     effects/*.py                     effects written in the page
     variants/N.toml                  one for each step; history.json says which, and where undo has gone
+    campaigns/*.toml                 campaign.toml as it was at each step
     diagnosis.json, report.html      of the last diagnosis
 """
 
@@ -13,8 +14,11 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
+import time
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any
 from uuid import uuid4
@@ -34,6 +38,9 @@ from ..model.variant import Variant, read_variant, variant_text
 SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
 MOST_BYTES = 200_000_000  # of one file
 MANOEUVRES = ("coast-down", "slalom", "straight", "steady", "random", "strokes", "spin")
+KEPT = 90  # days for which work is kept after it was last looked at
+SCRATCH = 1  # the same, for what holds no recordings
+DAY = 86400.0  # s
 NAME = re.compile(r"[0-9a-f]{12}")
 FIRST_HOLDOUT = "holdout"  # a file whose name says so is held out
 
@@ -45,7 +52,8 @@ class Session:
         if not NAME.fullmatch(id):
             raise UsageError(f"{id!r} is no session; open the workbench's first page")
         self.id, self.folder = id, root / id
-        self.campaign, self.effects, self.variants = (self.folder / n for n in ("campaign", "effects", "variants"))
+        self.campaign, self.effects, self.variants, self.campaigns = (
+            self.folder / n for n in ("campaign", "effects", "variants", "campaigns"))  # fmt: skip
 
     @classmethod
     def begin(cls, root: Path, campaign: Path | None = None) -> Session:
@@ -62,10 +70,21 @@ class Session:
 
     @classmethod
     def latest(cls, root: Path, most: int) -> list[Session]:
-        """Sessions that hold recordings, the last touched first."""
-        folders = [p for p in root.iterdir() if NAME.fullmatch(p.name) and p.is_dir()]
-        folders.sort(key=lambda p: p.stat().st_mtime, reverse=True)
-        return [s for s in (cls(root, p.name) for p in folders[: 4 * most]) if s.files()][:most]
+        """Sessions that hold recordings, the last looked at first."""
+        newest = sorted(cls.every(root), key=lambda s: s.looked_at, reverse=True)
+        return [s for s in newest[: 4 * most] if s.files()][:most]
+
+    @classmethod
+    def every(cls, root: Path) -> list[Session]:
+        return [cls(root, p.name) for p in root.iterdir() if NAME.fullmatch(p.name) and (p / "history.json").is_file()]
+
+    @property
+    def looked_at(self) -> float:
+        """When somebody last had it open, in seconds since 1970."""
+        return self.folder.stat().st_mtime
+
+    def touch(self) -> None:
+        os.utime(self.folder)
 
     @property
     def name(self) -> str:
@@ -155,27 +174,70 @@ class Session:
         return {**bundled(), **self.own_effects()}
 
     def history(self) -> dict[str, Any]:
-        """{"at": place, "steps": [{"label", "file", "ladder"}]}"""
+        """{"at": place, "steps": [{"label", "file", "ladder", "campaign"}]}"""
         file = self.folder / "history.json"
         return json.loads(file.read_text()) if file.exists() else {"at": -1, "steps": []}  # type: ignore[no-any-return]
 
     def keep(self, variant: Variant | Path, label: str, ladder: Any = None) -> None:
         """One step more; what had been undone is forgotten."""
-        history = self.history()
-        steps = history["steps"][: history["at"] + 1]
+        steps = self._steps_so_far()
         file = self.variants / f"{len(steps)}-{uuid4().hex[:6]}.toml"
         text = variant_text(variant) if isinstance(variant, Variant) else variant.read_text(encoding="utf-8")
         write(file, text.encode())
-        steps.append({"label": label, "file": file.name, "ladder": ladder})
-        self._write_history(len(steps) - 1, steps)
+        self._append(steps, label, file.name, ladder)
+
+    def edit(self, content: Mapping[str, Any]) -> None:
+        """Another campaign.toml: one step more, with the same variant, where anything is different."""
+        steps, before = self._steps_so_far(), self.content() or {}
+        self.write_content(content)
+        if label := _difference(before, content):
+            self._append(steps, label, steps[-1]["file"], None)
 
     def go(self, by: int) -> None:
         """Undo (−1) or redo (1)."""
         history = self.history()
-        at = history["at"] + by
-        if not 0 <= at < len(history["steps"]):
+        at, steps = history["at"] + by, history["steps"]
+        if not 0 <= at < len(steps):
             raise UsageError("there is nothing to undo" if by < 0 else "there is nothing to redo")
-        self._write_history(at, history["steps"])
+        steps[history["at"]]["campaign"] = self._snapshot()
+        if steps[at].get("campaign"):
+            self._restore(self.campaigns / steps[at]["campaign"])
+        self._write_history(at, steps)
+
+    def _steps_so_far(self) -> list[dict[str, Any]]:
+        """Steps up to now, the last with the campaign as it is: recordings may have come since."""
+        history = self.history()
+        steps: list[dict[str, Any]] = history["steps"][: history["at"] + 1]
+        if steps:
+            steps[-1]["campaign"] = self._snapshot()
+        return steps
+
+    def _append(self, steps: list[dict[str, Any]], label: str, file: str, ladder: Any) -> None:
+        steps.append({"label": label, "file": file, "ladder": ladder, "campaign": self._snapshot()})
+        self._write_history(len(steps) - 1, steps)
+
+    def _snapshot(self) -> str | None:
+        """campaign.toml as it is now, under a name of its content's; None where there is none."""
+        file = self.campaign / "campaign.toml"
+        if not file.exists():
+            return None
+        content = file.read_bytes()
+        kept = self.campaigns / f"{sha256(content).hexdigest()[:16]}.toml"
+        if not kept.exists():
+            write(kept, content)
+        return kept.name
+
+    def _restore(self, kept: Path) -> None:
+        """campaign.toml as it was, for the recordings that there are."""
+        file = self.campaign / "campaign.toml"
+        if file.exists() and file.read_bytes() == kept.read_bytes():
+            return
+        write(file, kept.read_bytes())
+        content = self.content()
+        if content and isinstance(content.get("run"), list):
+            there = set(self.files())
+            self.write_content({**content, "run": [r for r in content["run"] if r.get("file") in there]})
+        self.draft()
 
     def _write_history(self, at: int, steps: list[dict[str, Any]]) -> None:
         write(self.folder / "history.json", json.dumps({"at": at, "steps": steps}).encode())
@@ -188,12 +250,56 @@ class Session:
     def variant(self) -> Variant:
         return read_variant(self.variant_file, self.catalogue())
 
+    def noise(self) -> dict[str, float]:
+        """Standard deviations in SI as the campaign has them, stated or estimated; none where it has faults."""
+        try:
+            return read(self.campaign).noise
+        except CampaignError:
+            return {}
+
     def known(self) -> dict[str, float]:
         """What the campaign file says of the chair. Raises Failure where the campaign has faults."""
         try:
             return read(self.campaign).known
         except CampaignError as error:
             raise Failure(f"the campaign has faults: {error}") from None
+
+
+def prune(root: Path, days: float = KEPT) -> list[str]:
+    """Remove work that nobody has looked at for so many `days`, and after a day what holds no recordings.
+
+    Returns the names of what held some. A folder that the system will not remove stays until the next time.
+    """
+    gone = []
+    for session in Session.every(root):
+        age, name = (time.time() - session.looked_at) / DAY, session.name if session.files() else None
+        if age > (days if name else min(days, SCRATCH)):
+            shutil.rmtree(session.folder, ignore_errors=True)
+            if name and not session.there:
+                gone.append(name)
+    return gone
+
+
+def _difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
+    """What an edit did, in words: "noise.yaw_rate = 0.2 deg/s"; nothing where nothing changed."""
+    old, new = dict(_flat(before)), dict(_flat(after))
+    keys = [k for k in {**old, **new} if old.get(k) != new.get(k)]
+    if not keys:
+        return ""
+    said = f"{keys[0]} = {new[keys[0]]}" if keys[0] in new else f"{keys[0]} taken out"
+    return said if len(keys) == 1 else f"{said}, and {len(keys) - 1} more"
+
+
+def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted place, value) of everything in a campaign; runs by their files."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{path}.{key}" if path else key)
+    elif isinstance(value, list):
+        for i, inner in enumerate(value):
+            yield from _flat(inner, str(inner.get("file", i)) if isinstance(inner, Mapping) else f"{path} {i + 1}")
+    else:
+        yield path, value
 
 
 def write(path: Path, content: bytes) -> None:

@@ -1,7 +1,7 @@
 // The workbench: forms over a session that the server keeps. Nothing lives only in this page.
 
 import { byId, h } from "page/dom";
-import { rms, unitText } from "page/numbers";
+import { rms, significant, unitText } from "page/numbers";
 
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
@@ -50,7 +50,7 @@ class Workbench {
     this.state = state;
     byId("name").textContent = state.campaign?.campaign?.name ?? "";
     this.showFaults();
-    byId("forms").replaceChildren(...(state.campaign && state.files.length ? [runs(this), columns(this), chair(this)] : []));
+    byId("forms").replaceChildren(...(state.campaign && state.files.length ? [runs(this), columns(this), noise(this), chair(this), priors(this)] : []));
     this.showHistory();
     this.showEffects();
     this.showJob(state.job);
@@ -138,6 +138,7 @@ class Workbench {
     if (!state) return;
     this.state = { ...state, job: this.state.job };
     this.showFaults();
+    this.showHistory();
     byId("name").textContent = state.campaign.campaign?.name ?? "";
   }
 
@@ -233,7 +234,7 @@ function columns(bench) {
   const { campaign, headers, channels } = bench.state, given = campaign.columns ?? {};
   const nothing = { "": "not used" }, options = { ...nothing, ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
   const rows = Object.entries(headers).map(([header, files]) => {
-    const [bare, own] = header.match(/^(.*?)\s*\[([^\]]*)\]\s*$/)?.slice(1) ?? [header, ""];
+    const { bare, own } = parted(header);
     const entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
     const channel = entry?.[0] ?? (channels.some((c) => c.name === bare) ? bare : ""), was = entry?.[1] ?? {};
     const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6 });
@@ -256,15 +257,61 @@ function map(content, header, bare, own, channel, unit, radius) {
   if (!channel && bare && Object.keys(all).length === 0) delete content.columns;
 }
 
+/** What sensors are worth: one standard deviation for each that is in the recordings. */
+function noise(bench) {
+  const { campaign, headers, channels, noise: found } = bench.state, mapped = campaign.columns ?? {};
+  const columnUnit = {};
+  for (const header of Object.keys(headers)) {
+    const { bare, own } = parted(header), entry = Object.entries(mapped).find(([, v]) => (v.column ?? v) === header);
+    columnUnit[entry?.[0] ?? bare] = entry?.[1].unit ?? own;
+  }
+  const fields = channels.filter((c) => c.name in columnUnit && c.name !== "time").map((c) => {
+    const unit = unitText(columnUnit[c.name] || c.unit) || "1", seen = found[c.name];
+    return field(c.name, `${c.meaning} [${unit}]`, campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
+      seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());
+  });
+  return h("details", {}, h("summary", {}, "Noise of the sensors"),
+    h("p", { class: "hint" }, "One standard deviation, in the unit shown or with one of its own, as in 0.2 deg/s. Where none is given, the one in grey is used: it is estimated from the samples."),
+    h("div", { class: "grid" }, fields));
+}
+
 function chair(bench) {
   const { campaign, parameters } = bench.state;
   const fields = parameters.map((p) => {
-    const [group, ...rest] = p.name.split("."), key = rest.join(".");
-    return h("label", { title: p.meaning }, h("span", {}, p.name, h("small", {}, `${p.meaning} [${unitText(p.unit) || "1"}]`)),
-      text(`${p.name} [${p.unit}]`, campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), { placeholder: p.default, inputmode: "decimal" }));
+    const [group, key] = grouped(p.name);
+    return field(p.name, `${p.meaning} [${unitText(p.unit) || "1"}]`, campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
   });
   return h("details", {}, h("summary", {}, "What is known of the chair"), h("div", { class: "grid" }, fields));
 }
+
+/** How well it is known: a standard deviation about each value. */
+function priors(bench) {
+  const { campaign, parameters } = bench.state;
+  const fields = parameters.map((p) => {
+    const [group, key] = grouped(p.name), value = campaign[group]?.[key] ?? p.default;
+    const change = (sd) => bench.save((c) => {
+      const all = (c.prior ??= {});
+      delete all[p.name];
+      put((all[group] ??= {}), key, sd);
+    });
+    return field(p.name, `± [${unitText(p.unit) || "1"}] about ${significant(value, 4)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
+      significant(p.uncertainty * (Math.abs(value) || 1), 2), `standard deviation of ${p.name}`);
+  });
+  return h("details", {}, h("summary", {}, "How sure these values are"),
+    h("p", { class: "hint" }, "One standard deviation. Where none is given, the one in grey is used. A value that is calibrated stays near the one given by as much as this says."),
+    h("div", { class: "grid" }, fields));
+}
+
+const grouped = (name) => [name.slice(0, name.indexOf(".")), name.slice(name.indexOf(".") + 1)];
+
+/** "yaw_rate [deg/s]" without its bracket, and what the bracket holds. */
+const parted = (header) => {
+  const [bare, own] = header.match(/^(.*?)\s*\[([^\]]*)\]\s*$/)?.slice(1) ?? [header, ""];
+  return { bare, own };
+};
+
+const field = (name, says, value, changed, placeholder, label = name) =>
+  h("label", {}, h("span", {}, name, h("small", {}, says)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
 
 /** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
 function put(table, key, value) {
