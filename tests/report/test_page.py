@@ -42,13 +42,13 @@ def test_the_sizes_and_the_fall_come_next():
     lines = particulars(told("missing", ["drag"]), records)
     left = {"proposal": {"term": "odd", "estimate": -0.01, "se": 0.001}}
     assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06 deg."
-    assert lines == ["Drag: size of the drag: 1.234 ± 0.021 N s/m.",
+    assert lines == ["Drag: size of the drag = 1.234 ± 0.021 N s/m.",
                      "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone."]  # fmt: skip
 
 
 @pytest.mark.parametrize(("value", "se", "text"), [
     (1.60688, 0.0083, "1.607 ± 0.008 N"), (1.60688, 0.0123, "1.607 ± 0.012 N"), (1234.5, 34.0, "1234 ± 34 N"),
-    (0.5, None, "0.5 N"),
+    (0.5, None, "0.5 N"), (0.018, 0.00998, "0.018 ± 0.010 N"),
 ])  # fmt: skip
 def test_no_more_digits_than_are_known(value, se, text):
     assert value_text(value, se, N) == text

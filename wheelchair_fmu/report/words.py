@@ -38,9 +38,9 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
 
 def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
-    parts = [f"{record.meaning}: {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
+    parts = [f"{record.meaning} = {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
              for name, record in known.items()]  # fmt: skip
-    return f"{effect.replace('_', ' ').capitalize()}: {'; '.join(parts)}."
+    return f"{effect.replace('_', ' ').capitalize()}: {', '.join(parts)}."
 
 
 def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
@@ -67,8 +67,8 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
     value, se = value * shown.factor, se * shown.factor if se else None
     if not se or se <= 0:
         return f"{value:.3g}{name}".replace("-", "−")
-    exponent = int(f"{se:e}".split("e")[1])
-    place = max(0, (1 if f"{se:.0e}"[0] in "12" else 0) - exponent)
+    first, exponent = f"{se:.0e}".split("e")
+    place = max(0, (1 if first in "12" else 0) - int(exponent))
     return f"{value:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")
 
 

@@ -51,7 +51,7 @@ class Workbench:
         chair = Variant()
         self.bounds = {p.name: (p.lower, p.upper) for p in chair.with_effects(bundled()).parameters()}
         self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default,
-                            "uncertainty": p.uncertainty}
+                            "uncertainty": p.uncertainty, "calibrated": p.name in CALIBRATED.split(",")}
                            for p in chair.parameters() if p.name.startswith(KNOWN)]  # fmt: skip
         model = assemble()
         self.words = {

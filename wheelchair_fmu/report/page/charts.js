@@ -66,7 +66,7 @@ export class Charts {
     this.draw("staircase", bars, {
       height: 330, barmode: "group", bargap: 0.3, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
       xaxis: { fixedrange: true, tickangle: 0, tickfont: { size: narrow ? 10 : 13 } },
-      yaxis: { type: "log", range: [Math.log10(0.93), Math.log10(1.35 * most)], tickvals: shown, fixedrange: true, title: { text: "whitened RMS error" } },
+      yaxis: { type: "log", range: [Math.log10(steps.some((s) => s.fit < FLOOR || s.heldout < FLOOR) ? 0.78 : 0.93), Math.log10(1.35 * most)], tickvals: shown, fixedrange: true, title: { text: "whitened RMS error" } },
       shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: FLOOR, y1: FLOOR, line: { color: this.colour.ink, width: 1.5, dash: "dash" } }],
       margin: { l: 56, r: 48, t: 26, b: 40 },
       annotations: [{ xref: "paper", x: 1, xanchor: "left", y: Math.log10(FLOOR), yanchor: "middle", yref: "y", align: "left", text: " noise<br> floor", showarrow: false, font: { size: 12 } }],
@@ -94,7 +94,7 @@ export class Charts {
     const place = this.places.where, narrow = this.narrow("where");
     this.draw("where", [{
       type: "bar", orientation: "h", y: cells.run, x: cells.at.map(() => 0.97), base: cells.at.map((a) => a - 0.485), width: 0.94,
-      text: cells.value.map((v) => significant(v, v < 10 ? 3 : 2)), textposition: "inside", insidetextanchor: "middle", textangle: 0, constraintext: "none",
+      text: cells.value.map((v) => (v < 100 ? rms(v) : significant(v, 3))), textposition: "inside", insidetextanchor: "middle", textangle: 0, constraintext: "none",
       insidetextfont: { color: size.map((s) => (s > 0.5 * most ? "#fff" : "#111")), size: narrow ? 11 : 13 },
       customdata: cells.channel, hovertemplate: "%{y}<br>%{customdata}: %{text}<extra></extra>",
       marker: { color: size.map((s) => shade(s / most)), line: { width: chosen.map((c) => (c ? 3 : 0)), color: this.colour.heldout } },

@@ -63,7 +63,7 @@ function ties(section, diagnosis, records) {
   const named = (id) => h("b", {}, id.replaceAll("_", " "));
   for (const group of diagnosis.ties)
     section.append(h("p", {}, "These explain the campaign equally well: ", group.flatMap((id, i) => [i ? ", " : "", named(id)]), "."));
-  if (!diagnosis.ties.length) section.append(h("p", {}, diagnosis.effects.length ? "What was found has no rival that these runs could not tell from it." : "No effect was found, so none is tied."));
+  if (!diagnosis.ties.length) section.append(h("p", {}, diagnosis.effects.length ? "These runs tell what was found from every other effect in the catalogue." : "No effect was found, so none is tied."));
   const next = diagnosis.next_experiment;
   if (next) {
     const times = next.repeats === 1 ? "once" : `${next.repeats} times`;

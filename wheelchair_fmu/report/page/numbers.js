@@ -26,7 +26,8 @@ export function withError(estimate, se, record) {
   const [value, error] = [estimate * factor, se === null ? null : se * factor];
   if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
   if (error > 100 * Math.abs(value)) return `not seen${space}${suffix ? ` [${suffix}]` : ""}`;
-  const place = Math.max(0, (Number(error.toExponential(0)[0]) < 3 ? 1 : 0) - Math.floor(Math.log10(error)));
+  const [first, exponent] = error.toExponential(0).split("e").map(Number);
+  const place = Math.max(0, (first < 3 ? 1 : 0) - exponent);
   return `${minus(value.toFixed(Math.min(place, 8)))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
 }
 

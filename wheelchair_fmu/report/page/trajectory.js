@@ -5,6 +5,7 @@ import { figure, image } from "page/figure";
 
 const NS = "http://www.w3.org/2000/svg";
 const MARGIN = 34;
+const WIDE = 560; // px
 const SMALLEST = 46; // of the chair on paper
 
 const svg = (tag, attributes = {}, ...children) => {
@@ -67,21 +68,25 @@ export class Trajectory {
     this.place();
   }
 
-  /** Scale and offset that show both paths whole; metres to the right are x on paper, metres forward are up. */
+  /** Scale and offset that show all paths whole. Forward lies to the right where there is width for it, and up where not. */
   fit() {
     this.width = Math.max(300, this.svg.parentNode.clientWidth);
-    this.height = Math.min(460, 0.95 * this.width);
+    this.lying = this.width > WIDE;
+    const every = [this.model, this.reckoned, this.was].filter(Boolean), room = 0.6; // the chair itself
+    const [xs, ys] = ["x", "y"].map((c) => extent(every.flatMap((p) => extent([...p[c]]))));
+    const [[left, right], [top, bottom]] = this.lying ? [xs, ys] : [ys, [-xs[1], -xs[0]]];
+    const across = right - left + 2 * room, down = bottom - top + 2 * room, inner = this.width - 2 * MARGIN, frame = 2 * MARGIN + 20;
+    const most = Math.min(460, 0.95 * this.width);
+    this.height = this.lying ? Math.min(most, Math.max(220, (down * inner) / across + frame)) : most;
     this.svg.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
-    const every = [this.model, this.reckoned, this.was].filter(Boolean);
-    const [left, right] = extent(every.flatMap((p) => [Math.min(...p.y), Math.max(...p.y)])), [low, high] = extent(every.flatMap((p) => [Math.min(...p.x), Math.max(...p.x)]));
-    const room = 0.6; // the chair itself
-    this.scale = Math.min((this.width - 2 * MARGIN) / (right - left + 2 * room), (this.height - 2 * MARGIN - 20) / (high - low + 2 * room));
-    this.origin = [this.width / 2 - (this.scale * (left + right)) / 2, this.height / 2 - 2 + (this.scale * (low + high)) / 2];
+    this.scale = Math.min(inner / across, (this.height - frame) / down);
+    this.origin = [this.width / 2 - (this.scale * (left + right)) / 2, this.height / 2 - 2 - (this.scale * (top + bottom)) / 2];
     const step = [0.5, 1, 2, 5, 10, 20, 50, 100].find((s) => s * this.scale > 45) ?? 200, lines = [];
-    for (let y = Math.ceil((MARGIN / 2 - this.origin[0]) / this.scale / step) * step; this.right(y) < this.width - MARGIN / 2; y += step)
-      lines.push(svg("path", { d: `M${this.right(y).toFixed(1)} ${MARGIN}V${this.height - 36}` }), text(this.right(y), this.height - 21, y, "middle"));
-    for (let x = Math.ceil((this.origin[1] - this.height + MARGIN + 6) / this.scale / step) * step; this.up(x) > MARGIN; x += step)
-      lines.push(svg("path", { d: `M${MARGIN - 4} ${this.up(x).toFixed(1)}H${this.width - 8}` }), text(MARGIN - 8, this.up(x) + 4, x, "end"));
+    const across0 = (u) => this.origin[0] + this.scale * u, down0 = (v) => this.origin[1] + this.scale * v;
+    for (let u = Math.ceil((MARGIN - this.origin[0]) / this.scale / step) * step; across0(u) < this.width - MARGIN / 2; u += step)
+      lines.push(svg("path", { d: `M${across0(u).toFixed(1)} ${MARGIN}V${this.height - 36}` }), text(across0(u), this.height - 21, u, "middle"));
+    for (let v = Math.ceil((MARGIN + 4 - this.origin[1]) / this.scale / step) * step; down0(v) < this.height - MARGIN - 6; v += step)
+      lines.push(svg("path", { d: `M${MARGIN - 4} ${down0(v).toFixed(1)}H${this.width - 8}` }), text(MARGIN - 8, down0(v) + 4, this.lying ? v : 0 - v, "end"));
     this.grid.replaceChildren(...lines);
     this.magnified = Math.max(1, SMALLEST / (this.scale * 0.7));
     this.legend();
@@ -99,16 +104,15 @@ export class Trajectory {
       at += length;
       return made;
     });
-    const size = this.magnified > 1.05 ? `, chair drawn ${this.magnified.toFixed(1)} times its size` : "";
-    this.key.replaceChildren(...parts, text(this.width / 2, this.height - 4, `metres to the right; up: metres forward${size}`, "middle"));
+    const size = this.magnified > 1.05 ? (this.lying ? `; the chair is drawn ${this.magnified.toFixed(1)} times its size` : `; chair × ${this.magnified.toFixed(1)}`) : "";
+    const axes = this.lying ? "metres forward; downwards: metres to the right" : "metres to the right; upwards: forward";
+    this.key.replaceChildren(...parts, text(this.width / 2, this.height - 4, axes + size, "middle"));
   }
 
-  right(y) {
-    return this.origin[0] + this.scale * y;
-  }
-
-  up(x) {
-    return this.origin[1] - this.scale * x;
+  /** Where metres forward and to the right are on paper. */
+  on(x, y) {
+    const [across, down] = this.lying ? [x, y] : [y, -x];
+    return [this.origin[0] + this.scale * across, this.origin[1] + this.scale * down];
   }
 
   place() {
@@ -116,7 +120,8 @@ export class Trajectory {
     let i = this.time.findIndex((v) => v >= t);
     if (i < 0) i = n - 1;
     const deg = 180 / Math.PI, { x, y, psi, fl, fr } = this.model;
-    this.chair.setAttribute("transform", `translate(${this.right(y[i]).toFixed(2)} ${this.up(x[i]).toFixed(2)}) rotate(${(psi[i] * deg).toFixed(2)}) scale(${(this.scale * this.magnified).toFixed(3)})`);
+    const [across, down] = this.on(x[i], y[i]), turned = psi[i] * deg + (this.lying ? 90 : 0);
+    this.chair.setAttribute("transform", `translate(${across.toFixed(2)} ${down.toFixed(2)}) rotate(${turned.toFixed(2)}) scale(${(this.scale * this.magnified).toFixed(3)})`);
     [fl, fr].forEach((angle, k) => {
       const [px, py] = this.casters[k].where;
       this.casters[k].setAttribute("transform", `translate(${px} ${py}) rotate(${(angle[i] * deg).toFixed(2)})`);
@@ -175,7 +180,7 @@ function reckoned(run, results) {
 
 function line({ x, y }, frame) {
   const step = Math.max(1, Math.floor(x.length / 600)), parts = [];
-  for (let i = 0; i < x.length; i += step) if (!Number.isNaN(x[i] + y[i])) parts.push(`${frame.right(y[i]).toFixed(1)} ${frame.up(x[i]).toFixed(1)}`);
+  for (let i = 0; i < x.length; i += step) if (!Number.isNaN(x[i] + y[i])) parts.push(frame.on(x[i], y[i]).map((v) => v.toFixed(1)).join(" "));
   return parts.length ? `M${parts.join("L")}` : "";
 }
 

@@ -204,7 +204,12 @@ async function dropped(transfer) {
 
 const fall = (ladder) => `held out: ${ladder.map((s) => rms(s.heldout)).join(" → ")}`;
 
-const table = (heads, rows) => h("div", { class: "wide" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+const table = (heads, rows) => {
+  for (const row of rows) [...row.children].forEach((cell, i) => { cell.dataset.head = heads[i]; }); // for narrow screens
+  return made(heads, rows);
+};
+
+const made = (heads, rows) => h("div", { class: "wide" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
 
 const select = (label, options, value, changed) => {
   const made = h("select", { "aria-label": label, onchange: () => changed(made.value) }, Object.entries(options).map(([v, words]) => h("option", { value: v }, words)));
@@ -266,8 +271,8 @@ function noise(bench) {
     columnUnit[entry?.[0] ?? bare] = entry?.[1].unit ?? own;
   }
   const fields = channels.filter((c) => c.name in columnUnit && c.name !== "time").map((c) => {
-    const unit = unitText(columnUnit[c.name] || c.unit) || "1", seen = found[c.name];
-    return field(c.name, `${c.meaning} [${unit}]`, campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
+    const seen = found[c.name];
+    return field(c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
       seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());
   });
   return h("details", {}, h("summary", {}, "Noise of the sensors"),
@@ -279,7 +284,7 @@ function chair(bench) {
   const { campaign, parameters } = bench.state;
   const fields = parameters.map((p) => {
     const [group, key] = grouped(p.name);
-    return field(p.name, `${p.meaning} [${unitText(p.unit) || "1"}]`, campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
+    return field(p.name, p.meaning + bracket(p.unit), campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
   });
   return h("details", {}, h("summary", {}, "What is known of the chair"), h("div", { class: "grid" }, fields));
 }
@@ -287,20 +292,23 @@ function chair(bench) {
 /** How well it is known: a standard deviation about each value. */
 function priors(bench) {
   const { campaign, parameters } = bench.state;
-  const fields = parameters.map((p) => {
+  const fields = parameters.filter((p) => p.calibrated).map((p) => {
     const [group, key] = grouped(p.name), value = campaign[group]?.[key] ?? p.default;
     const change = (sd) => bench.save((c) => {
       const all = (c.prior ??= {});
       delete all[p.name];
       put((all[group] ??= {}), key, sd);
     });
-    return field(p.name, `± [${unitText(p.unit) || "1"}] about ${significant(value, 4)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
-      significant(p.uncertainty * (Math.abs(value) || 1), 2), `standard deviation of ${p.name}`);
+    return field(p.name, `standard deviation about ${value}${bracket(p.unit)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
+      significant(p.uncertainty * (Math.abs(value) || 1), 2), `prior of ${p.name}`);
   });
   return h("details", {}, h("summary", {}, "How sure these values are"),
-    h("p", { class: "hint" }, "One standard deviation. Where none is given, the one in grey is used. A value that is calibrated stays near the one given by as much as this says."),
+    h("p", { class: "hint" }, "These values are calibrated, and stay as near to what you gave as you are sure of it. Where you do not say, the standard deviation in grey is used."),
     h("div", { class: "grid" }, fields));
 }
+
+/** " [m/s]"; nothing for a plain number. */
+const bracket = (unit) => (unitText(unit) ? ` [${unitText(unit)}]` : "");
 
 const grouped = (name) => [name.slice(0, name.indexOf(".")), name.slice(name.indexOf(".") + 1)];
 
