@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+from types import SimpleNamespace
 
 import pytest
 
 from wheelchair_fmu.quantities import N_S_M, RAD, N, Parameter
+from wheelchair_fmu.report.content import layers
 from wheelchair_fmu.report.page import MODULES, asset, page
 from wheelchair_fmu.report.words import particulars, sentence, value_text
 
@@ -61,6 +63,16 @@ def test_nothing_in_the_data_becomes_markup():
     assert "<i>" not in html.partition("<main>")[2].partition("Try it")[0]
     stored = re.search(r'id="content">(.*?)</script>', html)
     assert stored and json.loads(stored[1])["name"] == name
+
+
+@pytest.mark.parametrize(("found", "expected"), [
+    ([], ["ab", "abc", "abcd"]),
+    (["c"], ["ab", "abc", "abcd"]),
+    (["d"], ["ab", "abd", "abc", "abcd"]),
+])
+def test_the_page_carries_no_heavier_model_than_it_needs(found, expected):
+    workshop = SimpleNamespace(light="ab", heavy="c", demanding="d")
+    assert layers(workshop, found) == [tuple(ids) for ids in expected]
 
 
 def test_every_module_is_in_the_import_map():
