@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import track
 
 from .cases import Plan
-from .table import as_table
+from .table import as_table, floors
 from .trial import trial
 
 
@@ -39,7 +39,7 @@ def main() -> None:
     for half, side in enumerate(("tuned", "kept aside")):
         trials = [t for t in done if crc32(t["case"].encode()) % 2 == half]
         if trials:
-            console.print(as_table(trials, f"{side}: {len(trials)} trials"))
+            console.print(as_table(trials, floors(done), f"{side}: {len(trials)} trials"))
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ ROUNDS = 10
 def baselines(search: Search) -> dict[str, str | None]:
     """The effect that each method names, by the method's name."""
     fresh = Search(search.workshop)
-    base, _, _, _ = begin(fresh, lambda words: None)
+    base, _, _ = begin(fresh, lambda words: None)
     w = fresh.workshop
     names = [n for e in w.light for n in w.parameters(e)]
     evidence = w.bench().evidence(w.campaign.fit, base.values, names)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,8 @@ from rich import box
 from rich.table import Table
 
 Trial = dict[str, Any]
-SHOWS = 1.005  # whitened RMS on fitted runs; the floor is at 0.993 to 0.997 after calibration
+SHOWS = 1.01  # ratio of the whitened RMS on fitted runs, calibrated, to that where nothing is hidden
+FLOOR = 0.995  # whitened RMS where nothing is hidden in white noise; coloured noise has one for each draw
 QUIET = ("adequate", "cannot_see", "small")
 ALIASES = (
     {"aerodynamic_drag", "rolling_resistance_speed"}, {"push_force_gain", "wheel_radius_error"},
@@ -20,9 +21,14 @@ ALIASES = (
 """Effects that are known to look alike unless the data separate them."""
 
 
-def detectable(t: Trial) -> bool:
-    """Large enough to matter, and to lift the calibrated model's error off the floor."""
-    return t["times"] >= 1 and t["ladder"][1]["fit"] > SHOWS
+def detectable(t: Trial, floors: Mapping[tuple[str, int], float]) -> bool:
+    """Large enough to matter, and to lift the calibrated model's error off the floor of its noise and seed."""
+    return t["times"] >= 1 and t["ladder"][1]["fit"] > SHOWS * floors.get((t["noise"], t["seed"]), FLOOR)
+
+
+def floors(trials: Sequence[Trial]) -> dict[tuple[str, int], float]:
+    """The calibrated model's error by noise and seed where nothing is hidden."""
+    return {(t["noise"], t["seed"]): t["ladder"][1]["fit"] for t in trials if t["kind"] == "null"}
 
 
 def named(t: Trial) -> set[str]:
@@ -58,6 +64,12 @@ def covered(t: Trial) -> list[bool]:
     return out
 
 
+def covered_by(t: Trial, kind: str) -> list[bool]:
+    """Does the profile-likelihood or the bootstrap interval of each hidden value that was found hold it?"""
+    hidden = {f"effect.{e}.{n}": v for e, values in t["hidden"].items() for n, v in values.items()}
+    return [low <= hidden[n] <= high for n, (low, high) in t["intervals"][kind].items() if n in hidden]
+
+
 def gains(trials: Sequence[Trial]) -> list[float]:
     """(E0 − E1)/(E0 − 1) of the held-out squared error, where there was something to gain."""
     out = []
@@ -68,10 +80,10 @@ def gains(trials: Sequence[Trial]) -> list[float]:
     return out
 
 
-def summary(trials: Sequence[Trial]) -> list[tuple[str, str, str]]:
-    """(what, figure, target) by line."""
+def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> list[tuple[str, str, str]]:
+    """(what, figure, target) by line; `floor` as of `floors`."""
     by = {kind: [t for t in trials if t["kind"] == kind] for kind in {t["kind"] for t in trials}}
-    single = [t for t in by.get("effect", []) if detectable(t)]
+    single = [t for t in by.get("effect", []) if detectable(t, floor)]
     nulls, small = by.get("null", []), [t for t in by.get("effect", []) if t["times"] < 1]
     missing = [t for t in single if t["verdict"] in ("missing", "tie")]
     inside = [c for t in missing for c in covered(t)]
@@ -92,6 +104,8 @@ def summary(trials: Sequence[Trial]) -> list[tuple[str, str, str]]:
         ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),
         ("held-out gain, median", f"{np.median(won):.2f} of {len(won)}" if won else "none run", ""),
         ("true value within the 95 % interval", f"{np.mean(inside):.0%} of {len(inside)}" if inside else "none run", "93–97 %"),
+        *(("  within the " + kind + " interval", share([c for t in missing for c in covered_by(t, kind)], bool), "93–97 %")
+          for kind in ("profile", "bootstrap")),
         ("processor seconds, median", f"{np.median([t['cpu'] for t in trials]):.1f}", ""),
     ]  # fmt: skip
     for method in next((t["baselines"] for t in trials if t["baselines"]), {}):
@@ -102,10 +116,10 @@ def summary(trials: Sequence[Trial]) -> list[tuple[str, str, str]]:
     return lines
 
 
-def as_table(trials: Sequence[Trial], title: str) -> Table:
+def as_table(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float], title: str) -> Table:
     table = Table(box=box.SIMPLE, title=title, title_justify="left")
     for head, side in (("what", "left"), ("share", "right"), ("target", "right")):
         table.add_column(head, justify=side)
-    for line in summary(trials):
+    for line in summary(trials, floor):
         table.add_row(*line)
     return table

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from wheelchair_fmu.campaign import read
+from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.verdict import as_json, diagnose
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
@@ -29,12 +30,14 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
         found = diagnose(campaign, chair, library())
         said = as_json(found)
         seconds = time.process_time() - began
+        resampled = bootstrap(found).estimates
         others = baselines(found.search) if with_baselines else {}
     rows = {row["effect"]: row for row in said["ranking"]}
     return {
-        "case": case.name, "kind": case.kind, "effects": case.effects, "times": case.times, "noise": case.noise,
+        "case": case.name, "kind": case.kind, "effects": case.effects, "times": case.times, "noise": case.noise, "seed": case.seed,
         "hidden": {e: dict(v) for e, v in case.hidden.items()}, "verdict": said["verdict"], "found": said["effects"],
         "ties": said["ties"], "order": [row["effect"] for row in said["ranking"]], "ladder": said["ladder"],
         "leftover": said["leftover"], "rows": {e: rows[e] for e in case.effects if e in rows}, "cpu": seconds,
         "seconds": said["seconds"], "baselines": others,
+        "intervals": {"profile": dict(found.intervals), "bootstrap": {n: e[1:] for n, e in resampled.items()}},
     }  # fmt: skip

@@ -12,9 +12,12 @@ from benchmarks.independent.hidden import usual
 from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
+from wheelchair_fmu.loop.bootstrap import bootstrap
+from wheelchair_fmu.loop.statistics import sandwich
 from wheelchair_fmu.loop.verdict import Diagnosis, as_json, diagnose
 from wheelchair_fmu.model.generic import library, terms
 
+DRAG = "effect.rolling_resistance_asymmetry.D"
 KEYS = {"campaign", "verdict", "effects", "ties", "ranking", "ladder", "leftover", "next_experiment", "seconds"}
 ROW = {"effect", "parameters", "p", "power", "lr", "hidden_in_fit", "heldout_before", "heldout_after", "rivals", "verdict"}
 
@@ -40,7 +43,7 @@ def test_its_json_has_the_keys_that_are_fixed(sampled):
     assert all(row.keys() >= ROW for row in content["ranking"])
     assert content["ranking"][0]["effect"] == content["effects"][0]
     parameter = content["ranking"][0]["parameters"]["D"]
-    assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting"} and parameter["unit"] == "N"
+    assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting", "interval"} and parameter["unit"] == "N"
     assert {r["effect"] for r in content["ranking"]} >= {"toe_misalignment", "floor_cross_slope", "camber_misalignment"}
 
 
@@ -81,3 +84,26 @@ def test_drag_hidden_in_straight_runs_is_named_or_tied(tmp_path):
     found = diagnose(campaign, generic=library())
     assert found.verdict in ("missing", "tie")
     assert "aerodynamic_drag" in found.effects or any("aerodynamic_drag" in tie for tie in found.ties)
+
+
+def test_intervals_hold_what_was_hidden(sampled):
+    """By profile likelihood and by bootstrap, both near estimate ± 1.96 robust standard errors, as this effect is linear."""
+    resampled = bootstrap(sampled, 1000)
+    again = bootstrap(sampled, 1000)
+    assert resampled == again
+    at = sampled.final.names.index(DRAG)
+    se = float(np.sqrt(sandwich(sampled.final)[at, at]))
+    low, high = sampled.intervals[DRAG]
+    assert low < 1.6 < high
+    assert high - low == pytest.approx(2 * 1.96 * se, rel=0.1)
+    spread, lower, upper = resampled.estimates[DRAG]
+    assert lower < 1.6 < upper
+    assert 0.6 < spread / se < 1.6
+
+
+def test_resamples_name_the_hidden_effect_or_its_double(sampled):
+    (found,) = bootstrap(sampled, 500).rounds
+    assert found.effect == "rolling_resistance_asymmetry" and found.predicts == 1.0
+    assert found.first[found.effect] > 0.8
+    assert sum(found.first.values()) == pytest.approx(1.0)
+    assert found.tied["gyro_bias"] == 0.0

@@ -10,6 +10,7 @@ from rich import box
 from rich.table import Table
 
 from ..handling.experiments import experiments
+from ..loop.bootstrap import Bootstrap, bootstrap
 from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
 from ..loop.verdict import UNEXPLAINED, Diagnosis
@@ -43,16 +44,23 @@ def diagnose(
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="For figures and proposals.")] = None,
+    resamples: Annotated[int, typer.Option("--bootstrap", metavar="N", min=0, help="Resample the measurements N times, and "
+                                                  "say how often the diagnosis would be the same.")] = 0,
     progress: Progress = False,
-) -> None:
+) -> None:  # fmt: skip
     """Say which physical effect is missing from the model, with the evidence."""
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     with working("reading", lines=progress) as say:
         found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
     content = story(found)
+    stable = bootstrap(found, resamples) if resamples else None
+    if stable:
+        content["bootstrap"] = stable.as_json()
     if json_file:
         write_json(json_file, content)
     show(found, content)
+    if stable:
+        _show_bootstrap(stable)
     if output:
         for file in _files(found, content, output):
             print(file)
@@ -74,11 +82,26 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         out.print(f"{lead}: {term.words}, {size}.")
     out.print(staircase_table(d.ladder))
     out.print(_ranking(content))
+    for name, (low, high) in d.intervals.items():
+        unit = d.search.records[name].unit.name
+        out.print(f"{name.removeprefix('effect.')} = {d.final.values[name]:.4g} {unit}, 95 % within {low:.4g} to {high:.4g}")
     if d.next_experiment:
         n = d.next_experiment
         times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
         out.print(f"Measure next, {times}: {n['manoeuvre']}, for {' and '.join(n['separates'])}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
+
+
+def _show_bootstrap(b: Bootstrap) -> None:
+    """How often resampled measurements say the same, for a person."""
+    out = console()
+    for s in b.rounds:
+        rivals = [f"{effect} in {share:.1%}" for effect, share in s.first.items() if effect != s.effect and share > 0]
+        else_ = f"; {', '.join(rivals)}" if rivals else ""
+        gain = "" if s.predicts is None else f"; held-out runs gain in {s.predicts:.1%}"
+        out.print(f"of {b.resamples} resamples {s.effect} explains most in {s.first[s.effect]:.1%}{else_}{gain}")
+    for name, (se, low, high) in b.estimates.items():
+        out.print(f"  {name} ± {se:.2g}, 95 % within {low:.4g} to {high:.4g} (SI)")
 
 
 def _ranking(content: dict[str, Any]) -> Table:

@@ -118,6 +118,8 @@ class Search:
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self._twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
+        self.notes: list[str] = []  # on runs left out
+        self.noise_notes: list[str] = []
 
     # -- models ---------------------------------------------------------------------------------------------
 
@@ -159,6 +161,12 @@ class Search:
     def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them."""
         return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
+
+    def recolour(self, evidence: Evidence) -> bool:
+        """Take the noise that these residuals show, and say whether it is another than before."""
+        before = self.workshop.colour
+        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise)
+        return self.workshop.colour.differs(before)
 
     # -- screen ---------------------------------------------------------------------------------------------
 
@@ -384,25 +392,27 @@ def _straight(prior: Prior, calibrated: np.ndarray) -> tuple[np.ndarray, float]:
     return np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, calibrated), float(off.max(initial=0))
 
 
-def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step], list[str]]:
-    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps, notes).
+def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
+    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
 
     Runs whose pushes belong to another time are left out, if others are there to be fitted.
     """
     say("calibrating")
-    base, held, nominal, nominal_held = search.calibrate()
+    base, held, ladder = first_steps(search)
     w = search.workshop
     shifted = {**late(w.bench(), base.evidence, base.values), **late(w.bench(), held, base.values)}
     spared = any(r.name not in shifted for r in w.campaign.fit)
     if shifted and spared:
         w.leave_out(shifted)
-        base, held, nominal, nominal_held = search.calibrate()
-    w.colour, contradicted = colour_of(base.evidence, w.campaign.noise)
-    if w.colour.ar or contradicted:
-        base, held, nominal, nominal_held = search.calibrate()
-    notes = [*(_late(run, seconds, spared) for run, seconds in shifted.items()), *contradicted]
-    ladder = [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
-    return base, held, ladder, notes
+        base, held, ladder = first_steps(search)
+    search.notes = [_late(run, seconds, spared) for run, seconds in shifted.items()]
+    return first_steps(search) if search.recolour(base.evidence) else (base, held, ladder)
+
+
+def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
+    """The calibrated fit, its held-out evidence, and the staircase up to there, with the noise as it is known."""
+    base, held, nominal, nominal_held = search.calibrate()
+    return base, held, [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
 
 
 def _late(run: str, seconds: float, left_out: bool) -> str:

@@ -28,6 +28,7 @@ START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot
 POSE = {"start.x": "x", "start.y": "y", "start.psi": "yaw"}
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
+SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 FIRST = 0.2  # s of samples that say where a run starts
 
@@ -38,6 +39,12 @@ class Colour:
 
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
+
+    def differs(self, other: Colour) -> bool:
+        """Is some channel's noise of another size or colour, by more than estimates of either scatter?"""
+        sizes = (other.sd[c] / sd for c, sd in self.sd.items() if sd > 0)
+        colours = (abs(self.ar.get(c, 0.0) - other.ar.get(c, 0.0)) for c in {*self.ar, *other.ar})
+        return any(not 1 / SCATTER < ratio < SCATTER for ratio in sizes) or any(c > 1 - 1 / SCATTER for c in colours)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
     """
     search = Search(Workshop(campaign, chair, fixed), progress=say)
-    base, held, ladder, _ = begin(search, say)
+    base, held, ladder = begin(search, say)
     on: tuple[str, ...] = ()
     for one in (*(e for e in chair.effects if e != effect and search.workshop.parameters(e)), effect):
         say(f"refitting with {one}")

@@ -13,10 +13,11 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin
+from .diagnose import MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin, first_steps
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
+from .interval import profile_interval
 from .statistics import alike, correlation_time, difference_blocks, finite, resampled_totals, sandwich
 from .workshop import CALIBRATED, Workshop
 
@@ -32,7 +33,7 @@ UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate m
 @dataclass(frozen=True)
 class Diagnosis:
     """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
-    `proposal` the generic term of "outside"."""
+    `proposal` the generic term of "outside", `intervals` the profile-likelihood intervals of what was found."""
 
     campaign: str
     verdict: str
@@ -44,6 +45,7 @@ class Diagnosis:
     leftover: Round | None
     proposal: Candidate | None
     final: Fit
+    intervals: Mapping[str, tuple[float, float]]
     search: Search
     notes: tuple[str, ...]
     next_experiment: dict[str, Any] | None
@@ -77,7 +79,7 @@ def diagnose(
     began = time.monotonic()
     workshop = Workshop(campaign, variant, fixed, calibrated)
     search = Search(workshop, progress)
-    base, held, ladder, notes = begin(search, progress)
+    base, held, ladder = begin(search, progress)
 
     def climb(effect: str) -> None:
         ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
@@ -90,6 +92,8 @@ def diagnose(
         if workshop.parameters(effect):
             effects = (*effects, effect)
             base, held = search.with_given(effects, base)
+            if search.recolour(base.evidence):
+                base, held, ladder = _anew(search, effects, base)
             climb(effect)
     already = effects
     for _ in range(MOST_EFFECTS):
@@ -101,6 +105,8 @@ def diagnose(
             break
         effects = (*effects, best.effect)
         base, held = search.settled(effects, best.fit)
+        if search.recolour(base.evidence):
+            base, held, ladder = _anew(search, effects, base)
         climb(best.effect)
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
@@ -111,8 +117,26 @@ def diagnose(
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
+    intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}
+    notes = (*search.notes, *search.noise_notes)
     return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
-                     base, search, tuple(notes), following, time.monotonic() - began)  # fmt: skip
+                     base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
+
+
+def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
+    """Intervals of the parameters of the effects that were found."""
+    bench, names = search.workshop.bench(included), [n for e in effects for n in search.workshop.parameters(e)]
+    return {n: profile_interval(bench, found, n) for n in names if n in found.names}
+
+
+def _anew(search: Search, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence, list[Step]]:
+    """The model with these effects and the staircase up to the last, with noise that shows only now that they are in."""
+    search.say("calibrating with the noise that is left")
+    base, held, ladder = first_steps(search)
+    for i in range(1, len(effects)):
+        base, held = search.with_given(effects[:i], replace(found, values={**found.values, **base.values}))
+        ladder.append(Step(f"+{effects[i - 1]}", base.evidence.rms, held.rms))
+    return *search.settled(effects, found), ladder
 
 
 def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: Sequence[Round],
@@ -138,14 +162,18 @@ def _tied(r: Round) -> tuple[str, ...]:
     leader = r.winner
     if leader is None:
         return ()
-    margin = TIED * correlation_time(leader.fit.evidence)
     group = [leader.effect]
     for c in r.candidates:
-        near = leader.drop - c.drop <= margin
+        near = leader.drop - c.drop <= margin(leader)
         same = c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
+
+
+def margin(leader: Candidate) -> float:
+    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for odds of a hundred to one."""
+    return TIED * correlation_time(leader.fit.evidence)
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
@@ -252,7 +280,8 @@ def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
     estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
     parameters = {
         name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
-                                  "smallest_interesting": records[name].smallest_interesting}
+                                  "smallest_interesting": records[name].smallest_interesting,
+                                  **({"interval": list(d.intervals[name])} if name in d.intervals else {})}
         for name, v, e in zip(s.names, estimate, se, strict=True)
     }  # fmt: skip
     before = r.heldout.rms if r.heldout.runs else float("nan")
