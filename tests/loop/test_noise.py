@@ -7,11 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from wheelchair_fmu.loop.evidence import Colour
 from wheelchair_fmu.loop.noise import colour_of
 
 
-def residuals(sigma: float, phi: float, seed: int = 0, n: int = 4000):
-    """One run whose only channel has AR(1) noise on a smooth error as large as the noise."""
+def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000):
+    """`colour_of` one run whose only channel has AR(1) noise on a smooth error as large as the noise, by a filter for white
+    noise of the `stated` size."""
     rng = np.random.default_rng(seed)
     noise = np.empty(n)
     noise[0] = rng.normal(0, sigma)
@@ -19,22 +21,25 @@ def residuals(sigma: float, phi: float, seed: int = 0, n: int = 4000):
         noise[i] = phi * noise[i - 1] + rng.normal(0, sigma * np.sqrt(1 - phi**2))
     smooth = sigma * np.sin(2 * np.pi * 0.3 * np.arange(n) * 0.01)
     run = SimpleNamespace(channels={"yaw_rate": noise + smooth})
-    return SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=np.zeros((n, 1)))])
+    predicted = np.zeros((n, 1))
+    r = (run.channels["yaw_rate"][:, None] - predicted) / stated
+    evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=predicted, r=r, e=r)])
+    return colour_of(evidence, {"yaw_rate": stated}, Colour({"yaw_rate": stated}))
 
 
 def test_white_noise_as_stated_is_left_alone():
-    colour, notes = colour_of(residuals(0.006, 0.0), {"yaw_rate": 0.006})
+    colour, notes = coloured(0.006, 0.0, 0.006)
     assert colour.sd == {"yaw_rate": 0.006} and not colour.ar and not notes
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_colour_is_seen(seed):
-    colour, notes = colour_of(residuals(0.006, 0.9, seed), {"yaw_rate": 0.006})
+    colour, notes = coloured(0.006, 0.9, 0.006, seed)
     assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.06)
     assert not notes, "its size is as stated"
 
 
 def test_a_wrong_size_is_said():
-    colour, notes = colour_of(residuals(0.006, 0.0), {"yaw_rate": 0.6})
+    colour, notes = coloured(0.006, 0.0, 0.6)
     assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
     assert notes == ["yaw_rate: its noise is about 0.006 (SI), not the 0.6 stated; the data's own is used"]

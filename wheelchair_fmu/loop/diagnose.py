@@ -12,7 +12,7 @@ from scipy import stats
 from ..errors import SimulationError
 from .evidence import Bench, Evidence
 from .fit import Fit, Prior, fit, prior_of, start_value
-from .noise import colour_of
+from .noise import QUIETER, colour_of
 from .screen import Score, projector, score
 from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
 from .timing import late
@@ -28,6 +28,7 @@ BENT = 1.0  # standard deviations of its prior by which a calibrated value count
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
 SAME = 1.002  # ratio of two RMS errors that do not differ
+HARDLY = 0.3  # of the fall that is asked for
 LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
@@ -108,6 +109,10 @@ class Screened:
         far = np.abs(self.score.estimate) + 3 * self.score.se
         return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
+    def shows(self, visible: float) -> bool:
+        """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
+        return self.score.drop > LITTLE or self.score.visible > HARDLY * visible
+
 
 class Search:
     """The search for what is missing, in a workshop."""
@@ -162,10 +167,12 @@ class Search:
         """Evidence of the held-out runs; only where each starts is estimated on them."""
         return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
 
-    def recolour(self, evidence: Evidence) -> bool:
-        """Take the noise that these residuals show, and say whether it is another than before."""
+    def recolour(self, evidence: Evidence, *, again: bool = False) -> bool:
+        """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect
+        is in that was missing when the noise was estimated."""
         before = self.workshop.colour
-        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise)
+        lowest = {"lowest": QUIETER} if again else {}
+        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, **lowest)
         return self.workshop.colour.differs(before)
 
     # -- screen ---------------------------------------------------------------------------------------------
@@ -354,11 +361,11 @@ class Search:
     # -- search ---------------------------------------------------------------------------------------------
 
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
-              most: int = SHORTLIST) -> Round:  # fmt: skip
-        """Screen, refit the shortlist, and rank."""
+              most: int = SHORTLIST, visible: float = 0.0) -> Round:  # fmt: skip
+        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible` is not refitted."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
-        for s in shortlist(screened, most):
+        for s in shortlist([s for s in screened if s.shows(visible)], most):
             leader = max((c.drop for c in candidates), default=0.0)
             if self._linear(s.score.effect) and s.score.drop < HOPELESS * leader:
                 continue

@@ -15,17 +15,23 @@ from .evidence import Colour, Evidence
 
 LAGS = 15
 WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
+QUIETER = 0.75  # mean square error below which noise was taken for too large, once what was missing is in the model
 TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept
 
 
-def colour_of(evidence: Evidence, stated: Mapping[str, float]) -> tuple[Colour, list[str]]:
-    """Noise by channel, and a sentence for each channel where the data contradict the campaign file."""
+def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
+              lowest: float = 0.0) -> tuple[Colour, list[str]]:  # fmt: skip
+    """Noise by channel, and a sentence for each channel where the data contradict the campaign file.
+
+    The innovations of `evidence` are by the noise `taken` so far; where they change as white noise does, and errors
+    have a mean square of `lowest` or more, it is right.
+    """
     sd, ar, notes = dict(stated), {}, []
     for channel in dict.fromkeys(c for e in evidence.runs for c in e.channels):
-        D = _structure(evidence, channel)
-        if 1 / TRUSTED**2 < D[0] / (2 * stated[channel] ** 2 + 1e-300) < TRUSTED**2:
-            continue  # from one sample to the next it changes as white noise of the stated size does
-        sigma, phi = _fit_structure(D)
+        if _white(evidence, channel, lowest):
+            sigma, phi = taken.sd[channel], taken.ar.get(channel, 0.0)
+        else:
+            sigma, phi = _fit_structure(_structure(evidence, channel))
         if phi > WHITE:
             ar[channel] = phi
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
@@ -34,6 +40,15 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float]) -> tuple[Colour, 
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
                          "the data's own is used")  # fmt: skip
     return Colour(sd, ar), notes
+
+
+def _white(evidence: Evidence, channel: str, lowest: float) -> bool:
+    """Do innovations change from one sample to the next as white noise of unit size does, whatever is slow in them, and are
+    errors no smaller than `lowest`?"""
+    where = [(e, e.channels.index(channel)) for e in evidence.runs if channel in e.channels]
+    change = float(np.nanmean(np.concatenate([np.diff(e.r[:, i]) for e, i in where]) ** 2)) / 2
+    level = float(np.nanmean(np.concatenate([e.e[:, i] for e, i in where]) ** 2))
+    return 1 / TRUSTED**2 < change < TRUSTED**2 and level >= lowest
 
 
 def _structure(evidence: Evidence, channel: str) -> np.ndarray:

@@ -31,6 +31,7 @@ class Score:
     p: float
     drop: float  # expected fall of −2 log likelihood
     power: float
+    visible: float  # expected fall of the RMS innovation, in the channel and run where it falls most
     hidden: float  # share of its signature that calibration can imitate
     signature: np.ndarray  # (N,) unit vector of the projected expected change
 
@@ -63,6 +64,19 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
     return moving.T @ moving / width
 
 
+def largest_fall(evidence: Evidence, before: np.ndarray, after: np.ndarray) -> float:
+    """Of the RMS of residuals (N,), over the channels of every run."""
+    most, at = 0.0, 0
+    for e in evidence.runs:
+        channel = np.nonzero(np.isfinite(e.r))[1]
+        part = slice(at, at + len(channel))
+        at = part.stop
+        count = np.maximum(np.bincount(channel, minlength=e.r.shape[1]), 1)
+        sizes = [np.sqrt(np.bincount(channel, weights=r[part] ** 2, minlength=e.r.shape[1]) / count) for r in (before, after)]
+        most = max(most, float((sizes[0] - sizes[1]).max(initial=0)))
+    return most
+
+
 def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
           one_sided: np.ndarray) -> Score:  # fmt: skip
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
@@ -75,7 +89,7 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
     hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
     if not seen.any():
         nothing = np.zeros(len(delta))
-        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, hidden, nothing[:0])
+        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0])
     V = axes[:, seen]
     s_V, I_V = s @ V, size[seen]
     U = s_V.T @ r
@@ -95,5 +109,6 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
         drop = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
-    return Score(effect, tuple(names), estimate, se, p, drop, power, hidden,
+    visible = largest_fall(evidence, r, r - direction)
+    return Score(effect, tuple(names), estimate, se, p, drop, power, visible, hidden,
                  direction / length if length > 0 else direction)  # fmt: skip

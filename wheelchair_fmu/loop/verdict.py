@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import MOST_EFFECTS, TIED, Candidate, Round, Search, Step, begin, first_steps
+from .diagnose import MOST_EFFECTS, TIED, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
@@ -92,20 +92,20 @@ def diagnose(
         if workshop.parameters(effect):
             effects = (*effects, effect)
             base, held = search.with_given(effects, base)
-            if search.recolour(base.evidence):
+            if search.recolour(base.evidence, again=True):
                 base, held, ladder = _anew(search, effects, base)
             climb(effect)
     already = effects
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
-        now = search.round(effects, base, held)
+        now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
         rounds.append(now)
         best = now.winner
         if best is None:
             break
         effects = (*effects, best.effect)
         base, held = search.settled(effects, best.fit)
-        if search.recolour(base.evidence):
+        if search.recolour(base.evidence, again=True):
             base, held, ladder = _anew(search, effects, base)
         climb(best.effect)
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
@@ -195,11 +195,11 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        alone = generic_search.round(first.effects, first.fit, first.heldout, among=list(generic), most=3)
+        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=3, visible=PLAINLY_VISIBLE)
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - TIED * correlation_time(base.evidence):
             return alone, lone
-    left = generic_search.round(effects, base, held, among=list(generic), most=3)
+    left = generic_search.round(effects, base, held, list(generic), most=3, visible=PLAINLY_VISIBLE)
     return left, next((c for c in left.candidates if _clear(c)), None)
 
 
