@@ -24,10 +24,11 @@ import numpy as np
 import pyarrow.parquet as pq
 from fmpy.simulation import instantiate_fmu
 
+from wheelchair_fmu.chunks import complete, here
 from wheelchair_fmu.handling.manoeuvres import Manoeuvre, manoeuvre
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies import fmu_of
-from wheelchair_fmu.studies.sweep import Job, Plan, here, prepare, sweep
+from wheelchair_fmu.studies.sweep import Job, Plan, prepare
 from wheelchair_fmu.studies.sweep.design import Axis, Design
 from wheelchair_fmu.studies.sweep.engines import encoded
 from wheelchair_fmu.studies.sweep.plan import BARE, Course
@@ -106,7 +107,7 @@ def rows() -> Iterator[Row]:
         for i in range(REPEATS):
             out = Path(place) / f"{i}.parquet"
             start = perf_counter()
-            sweep(ours, out, here(workers))
+            complete(ours, out, here(workers))
             seconds.append(perf_counter() - start)
         curvature = pq.read_table(out, columns=["curvature"]).column(0).to_numpy()[:FEWER]
     theirs, reference = _theirs(ours.plan.design.points(0, FEWER), workers)

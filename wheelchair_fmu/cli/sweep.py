@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -10,15 +9,15 @@ from typing import Annotated
 import pandas as pd
 import typer
 from rich import box
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
 from rich.table import Table
 
 from ..campaign import read
+from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
 from ..loop.evidence import START, Bench
-from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, bad, dask, here, indices, is_done, prepare, read_plan, sweep
+from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, indices, prepare, read_plan
 from .check import known_parameters
+from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .compare import TUNING
 from .files import written
 from .group import console
@@ -32,32 +31,24 @@ def run(
     plan: Annotated[Path, typer.Argument(metavar="PLAN.toml", help="Parameters, manoeuvres, variants.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT.parquet", help="Where the table goes.")],
     engine: Annotated[str, typer.Option(help=f"{' or '.join(ENGINES)}, with the same numbers.")] = "kernel",
-    workers: Annotated[int | None, typer.Option(min=1, help="Processes on this machine; all cores unless given.")] = None,
-    address: Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="The scheduler of a Dask cluster.")] = None,
+    workers: Workers = None,
+    address: Address = None,
 ) -> None:
     """Simulate every chair of a plan. Killed and run again, it goes on where it stood."""
     if engine not in ENGINES:
         raise unknown("engine", engine, ENGINES)
-    if address and workers:
-        raise UsageError("--workers is for this machine, --dask for a cluster; give one of them")
+    pool = pool_of(address, workers)
     if output.suffix != ".parquet":
         raise UsageError(f"-o {output}: the table is Parquet; give a name that ends in .parquet")
     planned = read_plan(plan)
     _needs_salib(planned)
     job = _job(planned, engine)
-    pool = dask(address) if address else here(workers or _cores())
     if is_done(job, output):
         console(stderr=True).print(f"{output}: already done by this plan")
     else:
         with console(stderr=True).status("compiling"):
             prepare(job)
-    try:
-        with _bar() as bar:
-            task = bar.add_task("runs", total=planned.runs)
-            sweep(job, output, pool, lambda runs: bar.advance(task, runs))
-    except KeyboardInterrupt:
-        console(stderr=True).print(f"what is done is kept beside {output}; the same command goes on from there")
-        raise
+    done_with_a_bar(job, output, pool, "runs")
     print(output)
     _tell_bad(output, planned.runs)
     table = indices(planned, output)
@@ -90,16 +81,6 @@ def _tell_indices(table: pd.DataFrame, output: Path) -> None:
 def _needs_salib(plan: Plan) -> None:
     if plan.design.method in INDICES and find_spec("SALib") is None:
         raise UsageError(f"method {plan.design.method} needs SALib; install it with pip install 'wheelchair-fmu[sweep]'")
-
-
-def _cores() -> int:
-    """Those that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _bar() -> Bar:
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    return Bar(*columns, console=console(stderr=True))
 
 
 def _job(plan: Plan, engine: str) -> Job:

@@ -13,10 +13,10 @@ import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
+from wheelchair_fmu.chunks import bad, complete, dask, here, is_done
+from wheelchair_fmu.chunks.parts import folder
 from wheelchair_fmu.errors import Failure
-from wheelchair_fmu.studies.sweep import Job, bad, dask, here, is_done, prepare, read_plan, sweep
-from wheelchair_fmu.studies.sweep.parts import folder
-from wheelchair_fmu.studies.sweep.running import run_chunk
+from wheelchair_fmu.studies.sweep import Job, prepare, read_plan
 
 SMALL = """
 [sweep]
@@ -42,12 +42,12 @@ def job_of(folder, text, **changes):
 def in_order(job, numbers):
     """The simplest pool."""
     for n in numbers:
-        yield n, run_chunk(job, n)
+        yield n, job.table(n)
 
 
 def test_a_steady_turn_has_the_radius_of_the_trim(tmp_path):
     job = job_of(tmp_path, '[parameters]\n"chair.m" = [80]\n[[manoeuvre]]\nname = "steady-turn"\ntime = 10\n')
-    row = run_chunk(job, 0).to_pylist()[0]
+    row = job.table(0).to_pylist()[0]
     assert row["radius"] == pytest.approx(3.3018, rel=1e-4) and row["error"] is None and row["speed_end"] == 1.0
     assert row["manoeuvre"] == "steady-turn time=10" and row["manoeuvre.time"] == 10 and row["rms"] != row["rms"]
 
@@ -62,19 +62,19 @@ def test_without_resistance_the_pushes_work_becomes_motion(tmp_path):
 name = "start-stop"
 time = 4
 """)  # fmt: skip
-    rows = run_chunk(job, 0).to_pylist()
+    rows = job.table(0).to_pylist()
     assert [row["push_work"] for row in rows] == pytest.approx([row["chair.m"] * row["speed_end"] ** 2 / 2 for row in rows],
                                                                rel=1e-4)  # fmt: skip
     assert rows[0]["push_work"] > rows[1]["push_work"] > 10
 
 
 def test_a_hands_off_chair_gets_no_work_and_a_straight_one_no_radius(tmp_path):
-    row = run_chunk(job_of(tmp_path, '[[manoeuvre]]\nname = "coast-down"\n'), 0).to_pylist()[0]
+    row = job_of(tmp_path, '[[manoeuvre]]\nname = "coast-down"\n').table(0).to_pylist()[0]
     assert row["push_work"] == 0 and row["radius"] == np.inf and row["drift"] == pytest.approx(0, abs=1e-9)
 
 
 def test_both_engines_give_the_same_numbers(tmp_path):
-    tables = [run_chunk(job_of(tmp_path, SMALL, engine=engine), 0).to_pandas() for engine in ("kernel", "fmu")]
+    tables = [job_of(tmp_path, SMALL, engine=engine).table(0).to_pandas() for engine in ("kernel", "fmu")]
     assert set(tables[0]["tyre.law"]) == {"linear", "magic_formula"}
     pd.testing.assert_frame_equal(*tables, rtol=1e-4, atol=1e-6)
     assert tables[0].error.isna().all()
@@ -82,10 +82,10 @@ def test_both_engines_give_the_same_numbers(tmp_path):
 
 def test_processes_do_what_one_does(tmp_path):
     job = job_of(tmp_path, SMALL, chunk=4)
-    sweep(job, tmp_path / "one.parquet", in_order)
+    complete(job, tmp_path / "one.parquet", in_order)
     prepare(job)
     seen: list[int] = []
-    sweep(job, tmp_path / "two.parquet", here(2), seen.append)
+    complete(job, tmp_path / "two.parquet", here(2), seen.append)
     one, two = (pd.read_parquet(tmp_path / f"{name}.parquet") for name in ("one", "two"))
     pd.testing.assert_frame_equal(one, two)
     assert sum(seen) == len(two) == 16 and list(two.chair) == sorted(two.chair)
@@ -107,15 +107,15 @@ def test_stopped_and_run_again_nothing_is_lost_or_done_twice(tmp_path):
             yield n, table
 
     with pytest.raises(KeyboardInterrupt):
-        sweep(job, out, stops)
+        complete(job, out, stops)
     assert not out.exists() and len(list(folder(out).glob("*.parquet"))) == 2
     told: list[int] = []
-    sweep(job, out, goes_on, told.append)
+    complete(job, out, goes_on, told.append)
     assert sorted(done) == list(range(job.chunks)) and sum(told) == job.plan.runs
-    sweep(job, tmp_path / "whole.parquet", in_order)
+    complete(job, tmp_path / "whole.parquet", in_order)
     assert out.read_bytes() == (tmp_path / "whole.parquet").read_bytes()
     assert not folder(out).exists() and is_done(job, out)
-    sweep(job, out, None)  # done already: asking the pool would fail
+    complete(job, out, None)  # done already: asking the pool would fail
 
 
 def test_parts_of_another_plan_are_not_mixed_in(tmp_path):
@@ -123,7 +123,7 @@ def test_parts_of_another_plan_are_not_mixed_in(tmp_path):
     folder(out).mkdir()
     (folder(out) / "fingerprint").write_text("another")
     with pytest.raises(Failure, match="parts of another plan, engine or version; remove this folder"):
-        sweep(job, out, in_order)
+        complete(job, out, in_order)
     assert not is_done(job, out)
 
 
@@ -139,7 +139,7 @@ name = "start-stop"
 [[variant]]
 file = "paper.toml"
 """)  # fmt: skip
-    sweep(job, tmp_path / "out.parquet", in_order)
+    complete(job, tmp_path / "out.parquet", in_order)
     table = pd.read_parquet(tmp_path / "out.parquet")
     failed = table.manoeuvre == "start-stop"  # the paper divides by the forward speed
     assert table.error[failed].str.contains("the simulation stops at t = ").all() and table.error[~failed].isna().all()
@@ -149,7 +149,7 @@ file = "paper.toml"
 
 def test_columns_say_their_units(tmp_path):
     job = job_of(tmp_path, SMALL)
-    sweep(job, tmp_path / "out.parquet", in_order)
+    complete(job, tmp_path / "out.parquet", in_order)
     schema = pq.read_schema(tmp_path / "out.parquet")
     assert schema.field("tyre.C_lambda").metadata[b"unit"] == b"N/rad"
     assert schema.field("push_work").metadata[b"unit"] == b"J"
@@ -200,15 +200,15 @@ def test_a_dask_cluster_with_a_worker_killed_does_the_same(tmp_path):
                     os.kill(killed[0], signal.SIGKILL)
                 yield n, result
 
-        sweep(job, out, kills)
+        complete(job, out, kills)
         assert cluster.workers[0].pid != killed[0]
     chairs = pd.read_parquet(out)
     assert len(chairs) == job.plan.runs and not chairs.duplicated(["chair", "manoeuvre"]).any()
-    pd.testing.assert_frame_equal(run_chunk(job, job.chunks - 1).to_pandas(), chairs.iloc[-job.rows(job.chunks - 1):]
+    pd.testing.assert_frame_equal(job.table(job.chunks - 1).to_pandas(), chairs.iloc[-job.rows(job.chunks - 1):]
                                   .reset_index(drop=True))  # fmt: skip
 
 
 def test_no_cluster_at_the_address(tmp_path):
     pytest.importorskip("distributed")
     with pytest.raises(Failure, match="no Dask cluster with a worker at tcp:"):
-        sweep(job_of(tmp_path, SMALL), tmp_path / "out.parquet", dask("tcp://127.0.0.1:9", 0.5))
+        complete(job_of(tmp_path, SMALL), tmp_path / "out.parquet", dask("tcp://127.0.0.1:9", 0.5))

@@ -2,19 +2,16 @@
 
 ::
 
-    PLAN.toml ── plan ──> Plan ──┐                        ┌─ here: processes
-                                 ├── Job ── chunks ── pool┤             ── parts ──> OUT.parquet ── indices
-    campaign ── yardsticks ──────┘        (running)       └─ dask: a cluster
+    PLAN.toml ── plan ──> Plan ──┐
+                                 ├── Job ── chunks (processes or a cluster) ──> OUT.parquet ── indices
+    campaign ── yardsticks ──────┘   (running)
 """
 
 from .design import INDICES
 from .engines import ENGINES
 from .indices import indices
-from .parts import bad, is_done, sweep
 from .plan import Plan, PlanError, read_plan
-from .pools import dask, here
 from .running import Job, prepare
 from .yardstick import Yardstick
 
-__all__ = ["ENGINES", "INDICES", "Job", "Plan", "PlanError", "Yardstick", "bad", "dask", "here", "indices", "is_done",
-           "prepare", "read_plan", "sweep"]  # fmt: skip
+__all__ = ["ENGINES", "INDICES", "Job", "Plan", "PlanError", "Yardstick", "indices", "prepare", "read_plan"]

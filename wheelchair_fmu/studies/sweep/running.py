@@ -7,11 +7,12 @@ import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import pyarrow as pa
 
 from ... import __version__
+from ...chunks import ERROR
 from ...engine.cache import sources
 from ...errors import WheelchairError
 from ...handling.manoeuvres import Manoeuvre
@@ -21,7 +22,6 @@ from .quantities import NONE, QUANTITIES, of_run
 from .yardstick import Yardstick, whitened
 
 CHUNK = 256  # runs, about: what is lost when a sweep is killed, and what a worker holds in memory
-ERROR = "error"
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,7 @@ class Job:
     campaign: str = ""
     measured: str = ""  # the campaign's fingerprint: with the plan it decides the yardsticks
     chunk: int = CHUNK
+    what: ClassVar[str] = "plan, engine or version"
 
     @cached_property
     def fingerprint(self) -> str:
@@ -49,6 +50,10 @@ class Job:
     @property
     def chunks(self) -> int:
         return -(-self.plan.design.chairs // self.stride)
+
+    @property
+    def total(self) -> int:
+        return self.plan.runs
 
     def rows(self, chunk: int) -> int:
         """Runs in a chunk."""
@@ -74,25 +79,24 @@ class Job:
             pa.field(ERROR, pa.string(), metadata={"meaning": "why this run gave nothing; empty where it did"}),
         ], metadata={"wheelchair-fmu": __version__, "fingerprint": self.fingerprint})  # fmt: skip
 
+    def table(self, chunk: int) -> pa.Table:
+        """The runs of one chunk: chairs in order, of each chair every variant, of each variant every manoeuvre."""
+        axes = self.plan.design.axes
+        start, stop = self.bounds(chunk)
+        points = self.plan.design.points(start, stop)
+        shown = [axis.shown(points[:, i]) for i, axis in enumerate(axes)]
+        rows = []
+        for i in range(stop - start):
+            values = {axis.name: float(points[i, k]) for k, axis in enumerate(axes)}
+            about = {"chair": start + i, **{axis.name: shown[k][i] for k, axis in enumerate(axes)}}
+            rows += [{**about, **row} for row in _of_chair(self, values)]
+        return pa.Table.from_pylist(rows, schema=self.schema())
+
 
 def prepare(job: Job) -> None:
     """Compile or build what the runs need, once for all processes that share the cache."""
     for chair in job.plan.chairs:
         _bench(job, chair)
-
-
-def run_chunk(job: Job, chunk: int) -> pa.Table:
-    """The runs of one chunk: chairs in order, of each chair every variant, of each variant every manoeuvre."""
-    axes = job.plan.design.axes
-    start, stop = job.bounds(chunk)
-    points = job.plan.design.points(start, stop)
-    shown = [axis.shown(points[:, i]) for i, axis in enumerate(axes)]
-    rows = []
-    for i in range(stop - start):
-        values = {axis.name: float(points[i, k]) for k, axis in enumerate(axes)}
-        about = {"chair": start + i, **{axis.name: shown[k][i] for k, axis in enumerate(axes)}}
-        rows += [{**about, **row} for row in _of_chair(job, values)]
-    return pa.Table.from_pylist(rows, schema=job.schema())
 
 
 def _of_chair(job: Job, values: Mapping[str, float]) -> Iterator[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Parts of a result beside it, so that a sweep that was killed goes on where it stood; at the end one file."""
+"""Parts of a result beside it, so that work that was killed goes on where it stood; at the end one file."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from ...errors import Failure
+from ..errors import Failure
+from .job import ERROR, FINGERPRINT, Job
 from .pools import Pool
-from .running import ERROR, Job
 
-FINGERPRINT = b"fingerprint"
 ROW_GROUP = 65_536  # rows, about, that are in memory together when the parts are put together
 
 
@@ -32,13 +31,13 @@ def is_done(job: Job, out: Path) -> bool:
         return False
 
 
-def sweep(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda runs: None) -> None:
-    """Do what is not done yet, and put the parts together as `out`. `told` hears how many runs are done, as they are.
+def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda rows: None) -> None:
+    """Do what is not done yet, and put the parts together as `out`. `told` hears how many rows are done, as they are.
 
-    Raises Failure where the parts beside `out` are another plan's.
+    Raises Failure where the parts beside `out` are another job's.
     """
     if is_done(job, out):
-        told(job.plan.runs)
+        told(job.total)
         return
     place = _claimed(job, out)
     missing = []
@@ -56,7 +55,7 @@ def sweep(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda 
 
 
 def bad(out: Path) -> tuple[int, str]:
-    """How many runs gave nothing, and the first reason."""
+    """How many rows gave nothing, and the first reason."""
     count, first = 0, ""
     for batch in pq.ParquetFile(out).iter_batches(columns=[ERROR]):
         reasons = batch.column(0).drop_null()
@@ -73,7 +72,7 @@ def _claimed(job: Job, out: Path) -> Path:
         with _beside(owner) as beside:
             beside.write_text(job.fingerprint)
     elif owner.read_text() != job.fingerprint:
-        raise Failure(f"{place}: parts of another plan, engine or version; remove this folder, or give another -o")
+        raise Failure(f"{place}: parts of another {job.what}; remove this folder, or give another -o")
     return place
 
 

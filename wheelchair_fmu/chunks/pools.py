@@ -13,8 +13,8 @@ from multiprocessing import get_context, parent_process
 
 import pyarrow as pa
 
-from ...errors import Failure, UsageError
-from .running import Job, run_chunk
+from ..errors import Failure, UsageError
+from .job import Job
 
 Pool = Callable[[Job, Iterable[int]], Iterator[tuple[int, pa.Table]]]
 AHEAD = 2  # chunks given out for each worker: one at work, one waiting
@@ -63,7 +63,7 @@ def _end_with_parent() -> None:
 
 def _chunk(number: int) -> pa.Table:
     assert _job is not None
-    return run_chunk(_job, number)
+    return _job.table(number)
 
 
 def dask(address: str, wait_seconds: float = 60.0) -> Pool:
@@ -102,7 +102,7 @@ def _same(job: Job) -> Job:
 
 
 def _numbered(job: Job, number: int) -> tuple[int, pa.Table]:
-    return number, run_chunk(job, number)
+    return number, job.table(number)
 
 
 def _connected(client: Callable, address: str, seconds: float):
