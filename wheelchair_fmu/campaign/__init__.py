@@ -11,7 +11,8 @@ from ..faults import Fault
 from .axes import to_sae
 from .channels import CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
-from .reading import check, read
+from .reading import check, fingerprint, read
 from .records import Campaign, Run
 
-__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "read", "read_smartwheel", "to_sae"]
+__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "read", "read_smartwheel",
+           "to_sae"]  # fmt: skip

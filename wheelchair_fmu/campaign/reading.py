@@ -125,10 +125,18 @@ def _unique(names: Sequence[str]) -> list[str]:
     return taken
 
 
+def fingerprint(path: str | Path) -> str:
+    """As a campaign has it, of one that may have faults: what is not there does not count."""
+    doc, faults = load(path)
+    return hashlib.sha256("\n".join(map(str, faults)).encode()).hexdigest() if doc is None else _fingerprint(doc)
+
+
 def _fingerprint(doc: Document) -> str:
     """SHA-256 over campaign.toml and the files it names, in order."""
     digest = hashlib.sha256(doc.raw)
     for file in dict.fromkeys(entry.file for entry in doc.entries):
         digest.update(f"\0{file}\0".encode())
-        digest.update(hashlib.sha256((doc.folder / file).read_bytes()).digest())
+        if (doc.folder / file).is_file():
+            with (doc.folder / file).open("rb") as recording:
+                digest.update(hashlib.file_digest(recording, "sha256").digest())
     return digest.hexdigest()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
+from types import MappingProxyType
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -31,8 +33,11 @@ def is_done(job: Job, out: Path) -> bool:
         return False
 
 
-def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda rows: None) -> None:
+def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda rows: None,
+             known: Mapping[int, pa.Table] = MappingProxyType({})) -> None:  # fmt: skip
     """Do what is not done yet, and put the parts together as `out`. `told` hears how many rows are done, as they are.
+
+    `known` are chunks whose tables another result already had.
 
     Raises Failure where the parts beside `out` are another job's.
     """
@@ -44,9 +49,9 @@ def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lamb
     for n in range(job.chunks):
         if _part(place, n).exists():
             told(job.rows(n))
-        else:
+        elif n not in known:
             missing.append(n)
-    for n, table in pool(job, missing):
+    for n, table in chain(((n, t) for n, t in known.items() if not _part(place, n).exists()), pool(job, missing)):
         with _beside(_part(place, n)) as beside:
             pq.write_table(table, beside)
         told(table.num_rows)

@@ -13,8 +13,7 @@ from rich.table import Table
 from ..campaign import CHANNELS, Campaign, Fault, read
 from ..campaign import check as faults_of
 from ..faults import ERROR
-from ..model.effects import bundled
-from ..model.variant import Variant
+from ..loop.subject import known_parameters
 from .files import print_json
 from .group import console
 
@@ -23,11 +22,6 @@ MOST = 6  # warnings that other commands repeat
 
 def register(app: typer.Typer) -> None:
     app.command()(check)
-
-
-def known_parameters() -> dict[str, tuple[float, float]]:
-    """Bounds, in SI units, of every parameter that a campaign may name."""
-    return {p.name: (p.lower, p.upper) for p in Variant().with_effects(bundled()).parameters()}
 
 
 def measurements(folder: Path) -> Campaign:

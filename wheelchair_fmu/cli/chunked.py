@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
+import pyarrow as pa
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -26,13 +28,13 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
     return dask(address) if address else here(workers or _cores())
 
 
-def done_with_a_bar(job: Job, output: Path, pool: Pool, words: str) -> None:
-    """Complete the job, or what is left of it; `words` are what the bar counts."""
+def done_with_a_bar(job: Job, output: Path, pool: Pool, words: str, known: Mapping[int, pa.Table] | None = None) -> None:
+    """Complete the job, or what is left of it and not `known`; `words` are what the bar counts."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
         with Progress(*columns, console=console(stderr=True)) as bar:
             task = bar.add_task(words, total=job.total)
-            complete(job, output, pool, lambda rows: bar.advance(task, rows))
+            complete(job, output, pool, lambda rows: bar.advance(task, rows), known or {})
     except KeyboardInterrupt:
         console(stderr=True).print(f"what is done is kept beside {output}; the same command goes on from there")
         raise

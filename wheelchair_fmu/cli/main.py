@@ -13,6 +13,7 @@ from . import (
     compare,
     diagnose,
     effects,
+    fleet,
     improve,
     linearize,
     paper,
@@ -27,8 +28,8 @@ from . import (
 from .group import Group
 
 # In the order of --help; each module has `register(app)`.
-COMMANDS = (simulate, linearize, steady, paper, sweep, tyre, check, compare, diagnose, add, improve, report, workbench, effects,
-            ssp)  # fmt: skip
+COMMANDS = (simulate, linearize, steady, paper, sweep, tyre, check, compare, diagnose, fleet, add, improve, report, workbench,
+            effects, ssp)  # fmt: skip
 
 app = typer.Typer(cls=Group, add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False,
                   rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip

@@ -9,10 +9,12 @@ from pathlib import Path
 from ..campaign import Campaign
 from ..errors import UsageError
 from ..fmu.build import with_chosen_effects
-from ..model.effects import bundled, load
+from ..loop.subject import applied, catalogue, chair
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant
 from .check import measurements
+
+__all__ = ["catalogue", "chair_of", "parse", "subject"]
 
 
 def parse(settings: Iterable[str]) -> dict[str, str]:
@@ -29,28 +31,10 @@ def parse(settings: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def applied(settings: Iterable[str], chair: Variant, measured: Campaign) -> tuple[Variant, Campaign, tuple[str, ...]]:
-    """The chair and the campaign with these values, which go before the campaign file's own; and their names.
-
-    Raises UsageError as `parse` and `Variant.with_values` do.
-    """
-    names = tuple(parse(settings))
-    chair = chair.with_values(parse(settings))
-    known = {n: chair.values[n] for n in names if n in chair.values and not n.startswith("effect.")}
-    return chair, replace(measured, known={**measured.known, **known}), names
-
-
-def catalogue(folder: Path | None) -> dict[str, Effect]:
-    """The effects that are bundled, and those of a user's own folder."""
-    return {**bundled(), **(load(folder) if folder else {})}
-
-
 def subject(campaign: Path, variant: Path | None, effects: Path | None,
             settings: Iterable[str] | None) -> tuple[Variant, Campaign, tuple[str, ...]]:  # fmt: skip
     """What a command of the loop is about, by its options: the chair, the measurements, and the names that --set fixes."""
-    known = catalogue(effects)
-    chair = read_variant(variant, known) if variant else Variant(catalogue=known)
-    return applied(settings or (), chair, measurements(campaign))
+    return applied(parse(settings or ()), chair(variant, effects), measurements(campaign))
 
 
 def chair_of(file: Path | None, equations: str | None, given: Mapping[str, str], catalogue: Mapping[str, Effect]) -> Variant:

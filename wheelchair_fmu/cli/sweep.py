@@ -15,8 +15,8 @@ from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
 from ..loop.evidence import START, Bench
+from ..loop.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, indices, prepare, read_plan
-from .check import known_parameters
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .compare import TUNING
 from .files import written

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
+from multiprocessing import parent_process
 from os import cpu_count
 from typing import Any
 
@@ -267,7 +268,8 @@ def _each(do: Callable[[Any], Any], things: Iterable[Any]) -> list[Any]:
 
 @cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(cpu_count())
+    """All cores, or one where this is one of several processes that share them."""
+    return ThreadPoolExecutor(1 if parent_process() else cpu_count())
 
 
 def block_length(run: Run) -> int:

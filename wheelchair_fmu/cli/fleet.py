@@ -1,0 +1,101 @@
+"""`wheelchair fleet`: many campaigns diagnosed side by side, and what they have in common."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import pandas as pd
+import pyarrow.parquet as pq
+import typer
+from rich import box
+from rich.table import Table
+
+from ..chunks import bad, is_done
+from ..errors import UsageError
+from ..fleet import Fleet, folders, long, summary
+from .chunked import Address, Workers, done_with_a_bar, pool_of
+from .files import written
+from .group import console
+from .settings import parse
+
+ENDINGS = (".parquet", ".csv")
+
+
+def register(app: typer.Typer) -> None:
+    app.command()(fleet)
+
+
+def fleet(
+    campaigns: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="Campaigns, or folders of campaigns.")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT", help="The table: .parquet, or .csv beside it.")],
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
+    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
+    workers: Workers = None,
+    address: Address = None,
+) -> None:
+    """Diagnose every campaign of a fleet. Killed and run again, it goes on where it stood."""
+    if output.suffix not in ENDINGS:
+        raise UsageError(f"-o {output}: give a name that ends in {' or '.join(ENDINGS)}")
+    pool = pool_of(address, workers)
+    job = Fleet(folders(campaigns), tuple(parse(settings or ()).items()), variant and variant.resolve(),
+                effects and effects.resolve())  # fmt: skip
+    job.chair()  # a wrong question is told before anything is done
+    whole = output.with_suffix(".parquet")
+    if is_done(job, whole):
+        console(stderr=True).print(f"{whole}: already done for these campaigns")
+    done_with_a_bar(job, whole, pool, "campaigns", job.known(whole))
+    _tell(whole, output)
+
+
+def _tell(whole: Path, output: Path) -> None:
+    table = pq.read_table(whole)
+    found, (failed, first) = long(table), bad(whole)
+    chairs = table.num_rows - failed
+    together = summary(found, chairs) if chairs else pd.DataFrame()
+    print(whole)
+    if output != whole:
+        _write(output, table.to_pandas())
+    _write(output.with_name(f"{output.stem}-effects.csv"), found)
+    _write(output.with_name(f"{output.stem}-summary.csv"), together)
+    if failed:
+        console(stderr=True).print(f"{failed} of {table.num_rows} campaigns were not diagnosed (see column error), "
+                                   f"the first: {first}")  # fmt: skip
+    if chairs:
+        console().print(_verdicts(table.to_pandas()))
+    if len(together):
+        console().print(_summary(together, chairs))
+
+
+def _write(file: Path, table: pd.DataFrame) -> None:
+    with written(file) as beside:
+        table.to_csv(beside, index=False, float_format="%.6g", lineterminator="\n")
+    print(file)
+
+
+def _verdicts(table: pd.DataFrame) -> Table:
+    """How often each verdict was given, and what it left on runs held out."""
+    shown = Table(box=box.SIMPLE, title="whitened RMS error on runs held out, median; 1.0 is the noise floor",
+                  title_justify="left")  # fmt: skip
+    for title in ("verdict", "chairs", "calibrated", "with what was found"):
+        shown.add_column(title, justify="left" if title == "verdict" else "right")
+    for verdict, rows in table.groupby("verdict"):
+        medians = rows[["rms_holdout_calibrated", "rms_holdout"]].median()
+        shown.add_row(str(verdict), str(len(rows)), *(f"{m:.3f}" if pd.notna(m) else "" for m in medians))
+    return shown
+
+
+def _summary(together: pd.DataFrame, chairs: int) -> Table:
+    shown = Table(box=box.SIMPLE, title=f"what {chairs} chairs lack, and whether it is as large in all that lack it",
+                  title_justify="left")  # fmt: skip
+    for title in ("effect", "missing", "tied", "small", "share", "parameter", "mean", "chair to chair", "Q", "p", "I²"):
+        shown.add_column(title, justify="left" if title in ("effect", "parameter") else "right", no_wrap=True)
+    last = ""
+    for row in together.itertuples():
+        first = (row.effect, *map(str, (row.missing, row.tied, row.small)), f"{row.low:.0%}–{row.high:.0%}")
+        mean = f"{row.mean:.3g} ± {row.se:.2g} {row.unit}" if row.n else ""
+        sameness = (f"{row.spread:.2g}", f"{row.Q:.1f}", f"{row.p:.2g}", f"{row.I2:.0%}") if row.n > 1 else ("",) * 4
+        shown.add_row(*(first if row.effect != last else ("",) * 5), row.parameter, mean, *sameness)
+        last = row.effect
+    return shown

@@ -1,0 +1,38 @@
+"""What the loop is asked about: the catalogue, the chair, and a campaign in which given values stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from ..campaign import Campaign
+from ..model.effects import bundled, load
+from ..model.stage import Effect
+from ..model.variant import Variant, read_variant
+
+
+def known_parameters() -> dict[str, tuple[float, float]]:
+    """Bounds, in SI units, of every parameter that a campaign may name."""
+    return {p.name: (p.lower, p.upper) for p in Variant().with_effects(bundled()).parameters()}
+
+
+def catalogue(folder: Path | None) -> dict[str, Effect]:
+    """The effects that are bundled, and those of a user's own folder."""
+    return {**bundled(), **(load(folder) if folder else {})}
+
+
+def chair(variant: Path | None, effects: Path | None) -> Variant:
+    """The variant in a file, or the default chair, with that catalogue."""
+    known = catalogue(effects)
+    return read_variant(variant, known) if variant else Variant(catalogue=known)
+
+
+def applied(values: Mapping[str, str], variant: Variant, measured: Campaign) -> tuple[Variant, Campaign, tuple[str, ...]]:
+    """The chair and the campaign with these values, which go before the campaign file's own; and their names.
+
+    Raises UsageError as `Variant.with_values` does.
+    """
+    variant = variant.with_values(values)
+    known = {n: variant.values[n] for n in values if n in variant.values and not n.startswith("effect.")}
+    return variant, replace(measured, known={**measured.known, **known}), tuple(values)
