@@ -13,6 +13,7 @@ from .channels import CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
 from .reading import check, fingerprint, read
 from .records import Campaign, Run
+from .windows import pieces, windows
 
-__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "read", "read_smartwheel",
-           "to_sae"]  # fmt: skip
+__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "pieces", "read",
+           "read_smartwheel", "to_sae", "windows"]  # fmt: skip

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from ..faults import Fault
-from ..tables import Rows, Table
+from ..tables import FrameTable, Rows, Table
 from ..units import UnitError, quantity
 from .axes import to_sae
 from .binding import Bindings, bind
@@ -47,6 +48,11 @@ class Draft:
     values: Mapping[str, np.ndarray]
     constants: tuple[str, ...]
     gaps: Mapping[str, tuple[Gap, ...]]
+
+    def slim(self) -> Draft:
+        """Without what only checks of the run itself read: the file's text and its columns as they were."""
+        return replace(self, table=FrameTable(self.file, self.table.headers, pd.DataFrame()), rows=Rows({}, None),
+                       whole_time=None, kept=np.empty(0, int))  # fmt: skip
 
     @property
     def file(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -45,15 +46,18 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
     if doc is None:
         return None, faults
     faults += _by_line(fault for judge in DOCUMENT_CHECKS for fault in judge(doc, known))
-    drafts, tables = [], dict[Any, Any]()
+    drafts, tables, left = [], dict[Any, Any](), Counter(entry.file for entry in doc.entries)
     for entry in doc.entries:
         file = doc.folder / entry.file
         if entry.file and file.is_file():
             draft, met = prepare(doc, entry, file, tables)
             if draft is not None:
-                drafts.append(draft)
                 met += [fault for judge in (*CLOCK_CHECKS, *RUN_CHECKS) for fault in judge(draft)]
+                drafts.append(draft.slim())
             faults += _by_line(met)
+        left[entry.file] -= 1
+        if not left[entry.file]:
+            tables.clear()  # cuts of one file stand together as a rule; what is needed again is read again
     assembly = Assembly(doc, tuple(drafts), gather(doc, drafts))
     if drafts:
         faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]

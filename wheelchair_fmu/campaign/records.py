@@ -39,7 +39,7 @@ class Campaign:
     channel that was measured and per input in `F_rl`, `F_rr`, `M_rl`, `M_rr` that was logged (0 for an input
     known exactly because no run logged it); `noise_estimated` says for which it was not given. `nuisance` names
     channels with an unknown offset, `nuisance_sd` its prior where one is given. `warnings` are what `check` found
-    that is no error.
+    that is no error; `thinned` says, in a sentence, what `windows` chose of a larger campaign.
     """
 
     name: str
@@ -54,6 +54,7 @@ class Campaign:
     runs: tuple[Run, ...]
     fingerprint: str
     warnings: tuple[Fault, ...] = ()
+    thinned: str = ""
 
     @property
     def fit(self) -> tuple[Run, ...]:

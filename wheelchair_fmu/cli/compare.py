@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,10 +12,10 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import CHANNELS, Campaign
+from ..campaign import CHANNELS, Campaign, pieces, windows
 from ..errors import UsageError, unknown
-from ..loop.compare import Comparison, RunErrors, errors_of
-from ..loop.evidence import START, Bench, Evidence
+from ..loop.compare import Comparison, RunErrors, errors_of, together
+from ..loop.evidence import START, Bench
 from ..loop.fit import fit, start_value
 from ..loop.statistics import finite
 from ..model.variant import Variant
@@ -22,10 +24,12 @@ from ..report.figures import overlay_figure, where_figure
 from ..report.saving import save
 from ..studies import Fmu, fmu_of, run_campaign_run
 from .files import print_json, written
-from .group import console
+from .group import console, working
 from .settings import subject
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
+PIECE = 60.0  # s: a longer run is compared piece by piece
+AT_ONCE = 8  # pieces whose filters are in memory together
 
 
 def register(app: typer.Typer) -> None:
@@ -43,12 +47,9 @@ def compare(
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     chair, measured, _ = subject(campaign, variant, effects, settings)
-    bench = Bench(measured, chair)
-    values = dict(chair.values)
-    with console(stderr=True).status("simulating"):
-        values |= _calibrated(bench, calibrate)
-        evidence = bench.evidence(measured.runs, values, (), tune_start=TUNING)
-        comparison = Comparison(tuple(_through_fmu(measured, chair, values, evidence)))
+    with working("simulating") as say:
+        values = {**chair.values, **_calibrated(measured, chair, calibrate)}
+        comparison = Comparison(tuple(_through_fmu(measured, chair, values, say)))
     for note in _notes(measured):
         console(stderr=True).print(note)
     if as_json:
@@ -57,11 +58,13 @@ def compare(
         _show(measured, comparison, values, calibrate)
     if output:
         offsets = {channel: values[name] for name, channel in bench.offsets.items()}
-        for file in _figures(measured, comparison, evidence, offsets, output):
+        for file in _figures(measured, comparison, offsets, output):
             print(file)
 
 
-def _calibrated(bench: Bench, names: str) -> dict[str, float]:
+def _calibrated(measured: Campaign, chair: Variant, names: str) -> dict[str, float]:
+    """Fitted values of these parameters, from windows of the campaign where it is large."""
+    bench = Bench(windows(measured), chair)
     records = {p.name: p for p in bench.variant.parameters()}
     wanted = [n.strip() for n in names.split(",") if n.strip()]
     for name in wanted:
@@ -73,21 +76,29 @@ def _calibrated(bench: Bench, names: str) -> dict[str, float]:
     return dict(fit(bench, wanted, {n: start_value(bench, bench.records[n]) for n in wanted}).values) if wanted else {}
 
 
-def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float], evidence: Evidence) -> list[RunErrors]:
-    """Each run driven through the FMU, from the start that the evidence found."""
+def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float],
+                 say: Callable[[str], None]) -> Iterator[RunErrors]:  # fmt: skip
+    """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
+    cut = {run.name: pieces(run, PIECE) for run in measured.runs}
+    bench = Bench(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
     results = [o.name for o in chair.model().outputs]
-    found = []
     with Fmu(fmu_of(chair)) as fmu:
-        for e in evidence.runs:
-            given = {**measured.known, **values, **{n: e.start[n] for n in START}}
-            predicted = run_campaign_run(fmu, e.run, {n: v for n, v in given.items() if n in fmu.parameters})
-            found.append(errors_of(e, predicted, REGIMES, results))
-    return found
+        for name, parts in cut.items():
+            say(f"simulating {name}")
+            found = []
+            for first in range(0, len(parts), AT_ONCE):
+                for e in bench.evidence(parts[first : first + AT_ONCE], values, (), tune_start=TUNING).runs:
+                    given = {**measured.known, **values, **{n: e.start[n] for n in START}}
+                    predicted = run_campaign_run(fmu, e.run, {n: v for n, v in given.items() if n in fmu.parameters})
+                    found.append(errors_of(e, predicted, REGIMES, results))
+            yield together(name, found)
 
 
 def _notes(measured: Campaign) -> list[str]:
     estimated = sorted(c for c in measured.noise_estimated if measured.noise.get(c))
     said = [f"noise of {', '.join(estimated)} is not stated and was estimated from the data"] if estimated else []
+    if any(len(pieces(run, PIECE)) > 1 for run in measured.runs):
+        said.append(f"runs of {2 * PIECE:g} s and more are compared in pieces of {PIECE:g} s, each from a start of its own")
     return [*said, "each run's start is estimated about what the file says (speed ± 0.02 m/s)"]
 
 
@@ -127,13 +138,13 @@ def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate
             out.print(f"by {name}: {share:4.0%} of the excess lies between {a:.3g} and {b:.3g} (a quarter of the samples)")
 
 
-def _figures(measured: Campaign, c: Comparison, evidence: Evidence, offsets: dict[str, float], folder: Path) -> list[Path]:
+def _figures(measured: Campaign, c: Comparison, offsets: dict[str, float], folder: Path) -> list[Path]:
     channels = list(dict.fromkeys(ch for r in c.runs for ch in r.channels))
     rms = np.array([[r.rms.get(ch, np.nan) for ch in channels] for r in c.runs])
     figures = {"where": where_figure([r.name for r in c.runs], channels, rms)}
-    for r, e in zip(c.runs, evidence.runs, strict=True):
+    for r, run in zip(c.runs, measured.runs, strict=True):
         shown = {ch: r.predicted[:, i] for i, ch in enumerate(r.channels)}
-        figures[f"run-{r.name}"] = overlay_figure(r.name, e.run.time, {ch: e.run.channels[ch] for ch in r.channels}, shown,
+        figures[f"run-{r.name}"] = overlay_figure(r.name, run.time, {ch: run.channels[ch] for ch in r.channels}, shown,
                                                   {ch: measured.noise[ch] for ch in r.channels},
                                                   units={c.name: c.unit.name for c in CHANNELS}, offsets=offsets)  # fmt: skip
     files = []

@@ -9,6 +9,7 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..campaign import windows
 from ..handling.experiments import experiments
 from ..loop.bootstrap import Bootstrap, bootstrap
 from ..loop.profile import profiles as estimate_profiles
@@ -50,6 +51,7 @@ def diagnose(
 ) -> None:  # fmt: skip
     """Say which physical effect is missing from the model, with the evidence."""
     chair, measured, fixed = subject(campaign, variant, effects, settings)
+    measured = windows(measured)  # here already, so that the rest is not kept in memory
     with working("reading", lines=progress) as say:
         found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
     content = story(found)

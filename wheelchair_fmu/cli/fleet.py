@@ -65,7 +65,8 @@ def _tell(whole: Path, output: Path) -> None:
     if chairs:
         console().print(_verdicts(table.to_pandas()))
     if len(together):
-        console().print(_summary(together, chairs))
+        console().print(_shares(together, chairs))
+        console().print(_sizes(together))
 
 
 def _write(file: Path, table: pd.DataFrame) -> None:
@@ -86,16 +87,24 @@ def _verdicts(table: pd.DataFrame) -> Table:
     return shown
 
 
-def _summary(together: pd.DataFrame, chairs: int) -> Table:
-    shown = Table(box=box.SIMPLE, title=f"what {chairs} chairs lack, and whether it is as large in all that lack it",
+def _shares(together: pd.DataFrame, chairs: int) -> Table:
+    """How many chairs lack each effect."""
+    shown = Table(box=box.SIMPLE, title=f"what {chairs} chairs lack", title_justify="left")
+    for title in ("effect", "missing", "tied", "small", "missing or tied", "95 %"):
+        shown.add_column(title, justify="left" if title == "effect" else "right")
+    for row in together.drop_duplicates("effect").itertuples():
+        counts = map(str, (row.missing, row.tied, row.small))
+        shown.add_row(row.effect, *counts, f"{row.share:.0%}", f"{row.low:.0%} to {row.high:.0%}")
+    return shown
+
+
+def _sizes(together: pd.DataFrame) -> Table:
+    """How large what is lacking is, and whether as large in all chairs."""
+    shown = Table(box=box.SIMPLE, title="its size where it is missing or tied, and whether that is the same in all chairs",
                   title_justify="left")  # fmt: skip
-    for title in ("effect", "missing", "tied", "small", "share", "parameter", "mean", "chair to chair", "Q", "p", "I²"):
-        shown.add_column(title, justify="left" if title in ("effect", "parameter") else "right", no_wrap=True)
-    last = ""
-    for row in together.itertuples():
-        first = (row.effect, *map(str, (row.missing, row.tied, row.small)), f"{row.low:.0%}–{row.high:.0%}")
-        mean = f"{row.mean:.3g} ± {row.se:.2g} {row.unit}" if row.n else ""
-        sameness = (f"{row.spread:.2g}", f"{row.Q:.1f}", f"{row.p:.2g}", f"{row.I2:.0%}") if row.n > 1 else ("",) * 4
-        shown.add_row(*(first if row.effect != last else ("",) * 5), row.parameter, mean, *sameness)
-        last = row.effect
+    for title in ("parameter", "chairs", "mean", "chair to chair", "Q", "p", "I²"):
+        shown.add_column(title, justify="left" if title == "parameter" else "right")
+    for row in together[together.n > 0].itertuples():
+        sameness = (f"{row.spread:.2g}", f"{row.Q:.3g}", f"{row.p:.2g}", f"{row.I2:.0%}") if row.n > 1 else ("",) * 4
+        shown.add_row(f"{row.effect}.{row.parameter}", str(row.n), f"{row.mean:.3g} ± {row.se:.2g} {row.unit}", *sameness)
     return shown

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..campaign import Campaign
+from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..handling.experiments import experiments
 from ..loop.evidence import Colour
@@ -43,6 +43,7 @@ def report(
 ) -> None:
     """Write one self-contained page with the verdict, its evidence, and the model itself to try it on."""
     chair, measured, fixed = subject(campaign, variant, effects, settings)
+    measured = windows(measured)
     with working("reading", lines=progress) as say:
         told = _read(diagnosis, measured) if diagnosis else story(
             diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))  # fmt: skip

@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from .. import __version__
-from ..campaign import fingerprint, read
+from ..campaign import fingerprint, read, windows
 from ..engine.cache import sources
 from ..errors import Failure, FileError, WheelchairError
 from ..loop.subject import applied, chair, known_parameters
@@ -86,7 +86,7 @@ class Fleet:
                           "the campaigns' folders under the same names")  # fmt: skip
         about = {"folder": str(place), "campaign": place.name}
         try:
-            measured = read(place, known_parameters())
+            measured = windows(read(place, known_parameters()))
             about["campaign"] = measured.name
             variant, measured, fixed = applied(dict(self.settings), chair(self.variant, self.effects), measured)
             return {**about, **of_diagnosis(diagnose(measured, variant, library(), fixed=fixed))}

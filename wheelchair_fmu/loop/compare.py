@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -26,7 +26,7 @@ class RunErrors:
 
     @property
     def rms(self) -> dict[str, float]:
-        return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2))) for i, c in enumerate(self.channels)}
+        return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2, dtype=float))) for i, c in enumerate(self.channels)}
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,14 @@ class Comparison:
 
     def rms(self, role: str | None = None) -> float:
         """Over all channels of all runs, or of those with this role; NaN where there are none."""
-        e = np.concatenate([r.e[np.isfinite(r.e)] for r in self.runs if role in (None, r.role)] or [np.empty(0)])
-        return float(np.sqrt(np.mean(e**2))) if len(e) else float("nan")
+        e = [r.e for r in self.runs if role in (None, r.role)]
+        count = sum(int(np.isfinite(one).sum()) for one in e)
+        return float(np.sqrt(sum(np.nansum(one**2, dtype=float) for one in e) / count)) if count else float("nan")
 
     def excess_by(self, name: str) -> list[tuple[float, float, float]]:
         """(from, to, share of the excess Σ(e² − 1)) over bins of a regime that hold equally many samples."""
         values = np.concatenate([r.regime[name] for r in self.runs])
-        excess = np.concatenate([np.nansum(r.e**2 - 1, axis=1) for r in self.runs])
+        excess = np.concatenate([np.nansum(r.e**2 - 1, axis=1, dtype=float) for r in self.runs])
         edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
         if len(edges) < 2:
             return []
@@ -68,3 +69,16 @@ def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None,
         where["push"] = np.sum(pushes, axis=0)
     e = (evidence.measured - there) * evidence.scale
     return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where)
+
+
+def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
+    """The pieces of a run, one after the other, as that run; in single precision, for there may be millions of samples."""
+    if len(pieces) == 1:
+        return pieces[0]
+
+    def joined(arrays: Iterable[np.ndarray]) -> np.ndarray:
+        return np.concatenate([array.astype(np.float32) for array in arrays])
+
+    regime = {name: joined(piece.regime[name] for piece in pieces) for name in pieces[0].regime}
+    return replace(pieces[0], name=name, e=joined(p.e for p in pieces), predicted=joined(p.predicted for p in pieces),
+                   regime=regime)  # fmt: skip

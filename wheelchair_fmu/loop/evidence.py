@@ -196,7 +196,8 @@ class Bench:
         S = self._columns(run, simulated, w, by, columns, which)
         white = whitener(np.concatenate([(measured - predicted)[:, :, None], S], axis=2), offset)
         k = len(by)
-        return RunEvidence(run, channels, white[:, :, 0], white[:, :, 1 : 1 + k], white[:, :, 1 + k :], start,
+        r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
+        return RunEvidence(run, channels, r[:, :, 0], S, start_S, start,
                            simulated.results, predicted, measured, whitener, offset)  # fmt: skip
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
@@ -281,12 +282,12 @@ def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
     """Where a run is expected to start, from its file and first samples."""
     first = run.time <= run.time[0] + FIRST
 
-    def mean(channel: str) -> float:
+    def mean(channel: str, otherwise: float = 0.0) -> float:
         values = run.channels[channel][first] if channel in run.channels else np.array([])
         values = values[np.isfinite(values)]
-        return float(values.mean()) if len(values) else 0.0
+        return float(values.mean()) if len(values) else otherwise
 
-    pose = {name: mean(channel) for name, channel in POSE.items()}
+    pose = {name: mean(channel, known.get(name, 0.0)) for name, channel in POSE.items()}
     return {**pose, "start.u": run.u0 if run.u0 is not None else mean("u"), "start.v": 0.0,
             "start.psi_dot": mean("yaw_rate")}  # fmt: skip
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from ..campaign import Campaign
+from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.variant import Variant
 from .diagnose import Search, Step, begin
@@ -30,7 +30,7 @@ def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = 
 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
     """
-    search = Search(Workshop(campaign, chair, fixed), progress=say)
+    search = Search(Workshop(windows(campaign), chair, fixed), progress=say)
     base, held, ladder = begin(search, say)
     on: tuple[str, ...] = ()
     for one in (*(e for e in chair.effects if e != effect and search.workshop.parameters(e)), effect):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..campaign import Campaign
+from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .diagnose import MOST_EFFECTS, TIED, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
@@ -77,6 +77,7 @@ def diagnose(
     """
     variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
+    campaign = windows(campaign)
     workshop = Workshop(campaign, variant, fixed, calibrated)
     search = Search(workshop, progress)
     base, held, ladder = begin(search, progress)
@@ -115,6 +116,7 @@ def diagnose(
     ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
+    notes = [note for note in (campaign.thinned, *notes) if note]
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
     intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}

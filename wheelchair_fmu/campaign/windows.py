@@ -1,0 +1,115 @@
+"""Long recordings in pieces, each a run of its own with its own start: all of them, or a choice spread over all runs.
+
+A model that runs open-loop for an hour tells less at its end than at its beginning, and a search that keeps derivatives of
+every sample cannot keep those of millions. A piece starts where its first samples say; where no tracking tells its heading,
+that is the yaw rate summed up from the run's start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from .records import Campaign, Run
+
+LARGE = 24_000  # samples of a campaign, above which a search works on a choice of windows
+WINDOW = 10.0  # s
+NEAR = 2.0  # s by which the start of a window may move to where the chair hardly turns
+CALM = 0.5  # s over which that is judged
+FIRST = 10  # samples from which a piece's speed is taken
+HEADING = "start.psi"
+
+Cell = tuple[Run, int, int]  # samples from … to (not included) of a run
+
+
+def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
+    """The campaign, if it has at most so many samples, or a choice of windows from it that says so in `thinned`.
+
+    Runs are cut into cells of WINDOW seconds. Of each run's cells (of each role's, where there are more runs than windows) the
+    same share is drawn: one at random from each of equally many neighbours, the same draw each time. A window keeps its run's
+    role and settings.
+    """
+    samples = sum(len(run.time) for run in campaign.runs)
+    if samples <= most or campaign.thinned:
+        return campaign
+    rng = np.random.default_rng(0)
+    chosen = [cell for role in (campaign.fit, campaign.holdout)
+              for cell in _drawn([_cells(run, WINDOW) for run in role], most / samples, rng)]  # fmt: skip
+    runs = tuple(_own(_cut(run, _calmest(run, start, stop), stop)) for run, start, stop in chosen)
+    share = sum(len(run.time) for run in runs) / samples
+    said = (f"{samples} samples are too many to search at once: {len(runs)} windows of about {WINDOW:g} s, spread over all "
+            f"runs, were used, {100 * share:.2g} % of the samples; `wheelchair compare` looks at all")  # fmt: skip
+    return replace(campaign, runs=runs, thinned=said)
+
+
+def pieces(run: Run, seconds: float) -> list[Run]:
+    """The whole run in pieces of about so many seconds that share its samples; itself where it is shorter than two."""
+    return [_cut(*cell) for cell in _cells(run, seconds)]
+
+
+def _cells(run: Run, seconds: float) -> list[Cell]:
+    count = max(1, int((run.time[-1] - run.time[0]) / seconds))
+    edges = np.searchsorted(run.time, np.linspace(run.time[0], run.time[-1], count + 1)[1:-1])
+    ends = pairwise((0, *map(int, edges), len(run.time)))
+    return [(run, start, stop) for start, stop in ends if stop - start >= FIRST]  # a gap in the record may leave fewer
+
+
+def _drawn(cells: Sequence[Sequence[Cell]], share: float, rng: np.random.Generator) -> Iterator[Cell]:
+    """Of each run's cells this share, one at least; of all of them together where that would be too many."""
+    together = [cell for run in cells for cell in run]
+    count = max(1, int(share * len(together)))
+    groups = cells if len(cells) <= count else [together]
+    for group in groups:
+        some = 1 + int((count - len(groups)) * len(group) / len(together))
+        for first, end in pairwise(len(group) * i // some for i in range(some + 1)):
+            yield group[rng.integers(first, end)]
+
+
+def _cut(run: Run, start: int, stop: int) -> Run:
+    """Samples `start` to `stop` (not included) as a run of its own."""
+    if (start, stop) == (0, len(run.time)):
+        return run
+    part, heading = slice(start, stop), _heading(run, start)
+    inputs, channels = ({name: v[part] for name, v in series.items()} for series in (run.inputs, run.channels))
+    known = run.set if heading is None else {**run.set, HEADING: heading}
+    return replace(run, name=f"{run.name}@{run.time[start]:.6g}s", u0=_speed(channels) if start else run.u0, set=known,
+                   time=run.time[part], inputs=inputs, channels=channels)  # fmt: skip
+
+
+def _own(run: Run) -> Run:
+    """The same with its samples copied, so that the recording it was cut from can be forgotten."""
+    inputs, channels = ({name: v.copy() for name, v in series.items()} for series in (run.inputs, run.channels))
+    return replace(run, time=run.time.copy(), inputs=inputs, channels=channels)
+
+
+def _calmest(run: Run, start: int, stop: int) -> int:
+    """Up to NEAR seconds after `start`, where the yaw rate is smallest: where a piece starts is known best there."""
+    time, rate = run.time[start:stop], run.channels.get("yaw_rate")
+    if rate is None or time[-1] - time[0] < 2 * NEAR:
+        return start
+    width = max(1, int(CALM / float(np.median(np.diff(time)))))
+    until = int(np.searchsorted(time, time[0] + NEAR))
+    turning = np.abs(np.nan_to_num(rate[start : start + until + width], nan=np.inf))
+    return start + int(np.argmin(np.convolve(turning, np.ones(width), "valid")[:until]))
+
+
+def _heading(run: Run, at: int) -> float | None:
+    """Heading at a sample since the run's start, by the yaw rate; None where a channel tells it, or nothing does."""
+    rate = run.channels.get("yaw_rate")
+    if "yaw" in run.channels or rate is None:
+        return None
+    good = np.isfinite(rate)
+    time, rate = run.time[good], rate[good]
+    before = time <= run.time[at]
+    return run.set.get(HEADING, 0.0) + float(trapezoid(rate[before], time[before]))
+
+
+def _speed(channels: dict[str, np.ndarray]) -> float | None:
+    """Speed at a piece's first samples, as for a run whose file states none."""
+    speeds = [channels[name] for name in ("u", "wheel_speed_l", "wheel_speed_r") if name in channels]
+    firsts = [s[np.isfinite(s)][:FIRST] for s in (speeds[:1] if "u" in channels else speeds)]
+    return float(np.mean([np.median(f) for f in firsts])) if firsts and all(f.size for f in firsts) else None
