@@ -12,7 +12,7 @@ help:
 	@echo "make test    all tests"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make lint    ruff, mypy, import-linter"
-	@echo "make bench   speed and accuracy beside CVODES, LSODA and fmpy; writes out/bench.json"
+	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make importers   the FMUs in other people's importers, as a table; these go into $(VENV)-importers"
 	@echo "make nightly     what takes longer: every platform, importers, fuzzing, a minute in real time"

@@ -14,10 +14,11 @@ from rich.console import Console
 from wheelchair_fmu.cli.files import written
 from wheelchair_fmu.engine import compiler
 
-from . import run_cost, step_cost, sweep_cost
+from . import growth, loop_cost, page_cost, run_cost, sensitivity_cost, step_cost, sweep_cost
 from .rows import table
 
-TARGET = Path("out/bench.json")
+TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
+GROUPS = (step_cost, run_cost, sensitivity_cost, sweep_cost, loop_cost, page_cost)
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 
@@ -40,14 +41,25 @@ def main() -> int:
     console = Console(highlight=False, width=180)
     on = machine()
     rows = []
-    with Console(stderr=True).status("measuring"):
-        for group in (step_cost, run_cost, sweep_cost):
+    with Console(stderr=True).status("measuring") as status:
+        for group in GROUPS:
+            status.update(f"measuring: {(group.__doc__ or '').partition('.')[0].partition(':')[0]}")
             rows += list(group.rows())
+        status.update("measuring how cost grows")
+        lines = growth.lines()
+        rows += list(growth.rows(lines))
+    on["load"] = " ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "not known"
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))
     with written(TARGET) as beside:
         beside.write_text(json.dumps({"machine": on, "rows": [row.as_json() for row in rows]}, indent=2) + "\n")
-    console.print(str(TARGET))
+    with written(FIGURE) as beside:
+        growth.figure(lines).savefig(beside, dpi=150)
+    console.print(f"{TARGET}\n{FIGURE}")
+    missed = [row for row in rows if row.met is False]
+    console.print(f"{sum(row.met is True for row in rows)} targets met, {len(missed)} missed")
+    for row in missed:
+        console.print(f"MISSED  {row.what}: {row.against_target()}")
     return 0
 
 

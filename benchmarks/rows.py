@@ -40,6 +40,12 @@ class Row:
             return None
         return self.median <= self.target if self.ratio is None else self.ratio >= self.target
 
+    def against_target(self) -> str:
+        """What was measured, and what is wanted."""
+        if self.ratio is not None:
+            return f"{self.ratio:.1f}×, not {self.target:g}×"
+        return f"{self.median:.3g} {self.unit}".rstrip() + f", not {self.target:g}"
+
     def as_json(self) -> dict[str, object]:
         return {"what": self.what, "unit": self.unit, "median": self.median, "least": min(self.samples),
                 "greatest": max(self.samples), "ratio": self.ratio, "target": self.target, "met": self.met,
