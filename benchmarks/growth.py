@@ -69,7 +69,7 @@ def figure(found: Sequence[Line]) -> Figure:
         ax.loglog(line.sizes, line.seconds[-1] * line.sizes / line.sizes[-1], ":", color="0.5", label="linear")
         ax.set(title=f"slope {line.slope:.2f}", xlabel=line.of, ylabel="time [s]")
         ax.set_xticks(line.sizes, [f"{size:g}" for size in line.sizes])
-        ax.minorticks_off()
+        ax.xaxis.minorticks_off()
         ax.legend(frameon=False)
     return shown
 
