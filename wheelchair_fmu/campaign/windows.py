@@ -16,7 +16,7 @@ from scipy.integrate import trapezoid
 
 from .records import Campaign, Run
 
-LARGE = 24_000  # samples of a campaign, above which a search works on a choice of windows
+LARGE = 36_000  # samples of a campaign, above which a search works on a choice of windows
 WINDOW = 10.0  # s
 NEAR = 2.0  # s by which the start of a window may move to where the chair hardly turns
 CALM = 0.5  # s over which that is judged

@@ -57,7 +57,7 @@ def compare(
     else:
         _show(measured, comparison, values, calibrate)
     if output:
-        offsets = {channel: values[name] for name, channel in bench.offsets.items()}
+        offsets = {c: values[f"offset.{c}"] for c in measured.nuisance if f"offset.{c}" in values}
         for file in _figures(measured, comparison, offsets, output):
             print(file)
 

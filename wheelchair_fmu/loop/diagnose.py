@@ -345,7 +345,7 @@ class Search:
         before, after = base.evidence.table(), found.evidence.table()
         return Candidate(
             effect=effect,
-            fit=found,
+            fit=replace(found, evidence=found.evidence.brief()),
             drop=drop,
             estimate=estimate,
             se=np.sqrt(np.maximum(np.diag(covariance), 0)),
@@ -353,7 +353,7 @@ class Search:
             falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
             visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
             gain=held_out_gain(base_held, held) if held is not None else None,
-            heldout=held,
+            heldout=held.brief() if held is not None else None,
             small=bool(np.all(np.abs(along) + 1.96 * np.sqrt(spread) < 1)),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )

@@ -49,6 +49,14 @@ class Colour:
 
 
 @dataclass(frozen=True)
+class Weighed:
+    """What is kept of a `Whitener` that whitens no more."""
+
+    logdet: float
+    spread: np.ndarray
+
+
+@dataclass(frozen=True)
 class RunEvidence:
     """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k) by parameters and start_S
     (n, nz, 6) by the start, and the filter that they went through."""
@@ -62,8 +70,14 @@ class RunEvidence:
     results: np.ndarray  # (n, ny) all outputs of the simulation
     predicted: np.ndarray  # (n, nz) simulated readings
     measured: np.ndarray  # (n, nz), less offsets
-    whitener: Whitener
+    whitener: Whitener | Weighed
     offset: np.ndarray  # (nx,) where the true start is expected, less the simulated one
+
+    def brief(self) -> RunEvidence:
+        """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
+        none = np.empty((*self.r.shape, 0))
+        return replace(self, S=none, start_S=none, results=np.empty((0, 0)),
+                       whitener=Weighed(self.whitener.logdet, self.whitener.spread))  # fmt: skip
 
     @property
     def scale(self) -> np.ndarray:
@@ -110,6 +124,10 @@ class Evidence:
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
         return {e.run.name: e.rms for e in self.runs}
+
+    def brief(self) -> Evidence:
+        """See `RunEvidence.brief`."""
+        return Evidence(tuple(e.brief() for e in self.runs), ())
 
     def only(self, names: Sequence[str]) -> Evidence:
         """The same evidence with sensitivities by some of its parameters."""

@@ -116,11 +116,11 @@ def diagnose(
     ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
-    notes = [note for note in (campaign.thinned, *notes) if note]
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
     intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}
-    notes = (*search.notes, *search.noise_notes)
+    thinned = (campaign.thinned,) if campaign.thinned else ()
+    notes = (*thinned, *search.notes, *search.noise_notes)
     return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
                      base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
 
