@@ -310,7 +310,8 @@ class Search:
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
-        sizes = [expected, *(f * delta for f in SIZES if f > 0 or (lower < 0).all())]
+        alone = [*np.diag(delta)] if len(delta) > 1 else []  # one parameter of several
+        sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
         tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
         best = sorted(tries, key=lambda theta: (self._promise(bench, known, names, np.array(theta)), theta))
