@@ -17,7 +17,7 @@ import numpy as np
 
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.engine.wasm import module
+from wheelchair_fmu.engine.wasm import modules
 from wheelchair_fmu.loop.evidence import START
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
@@ -51,7 +51,7 @@ def rows() -> Iterator[Row]:
         return
     light = Workshop(read(SAMPLE), Variant()).light
     for words, variant in (("without effects", Variant()), ("with the light effects", Variant().with_effects(light))):
-        wasm = module(variant.choice, variant.active(), START)
+        (wasm,) = modules([(variant.choice, variant.active())], START)
         took, off = _run(wasm, variant)
         yield Row(f"20 s run in the page, {words}", "ms", took, MILLISECONDS, note=f"states agree to {off:.0e}")
         yield Row(f"the page's model, {words}", "kB", [len(wasm) / 1e3], KILOBYTES)
