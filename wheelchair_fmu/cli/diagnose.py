@@ -109,9 +109,9 @@ def _show_bootstrap(b: Bootstrap) -> None:
 def _ranking(content: dict[str, Any]) -> Table:
     """One line per parameter of the likeliest effects."""
     table = Table(box=box.SIMPLE)
-    for title in ("effect", "parameter", "estimate", "of interest", "p", "power", "gain in −2 log L", "verdict"):
-        right = title in ("p", "power", "gain in −2 log L")
-        table.add_column(title, no_wrap=title != "verdict", justify="right" if right else "left")
+    for title in ("effect", "parameter", "estimate", "of interest", "p", "power", "Δ(−2 log L)", "verdict"):
+        right = title in ("p", "power", "Δ(−2 log L)")
+        table.add_column(title, no_wrap=True, justify="right" if right else "left")
     for row in content["ranking"][:8]:
         figures = (f"{row['p']:.1g}", f"{row['power']:.2f}", f"{row['lr']:.0f}", row["verdict"])
         for i, (name, v) in enumerate(row["parameters"].items()):

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from .. import __version__
+from .. import __version__, loop
 from ..campaign import fingerprint, read, windows
 from ..engine.cache import sources
 from ..errors import Failure, FileError, WheelchairError
@@ -23,6 +23,7 @@ from ..model.variant import Variant
 from .rows import KEY, of_diagnosis, schema
 
 FILE = "campaign.toml"
+LOOP = Path(loop.__file__).parent
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Fleet:
     def keys(self) -> tuple[str, ...]:
         """For each campaign what decides its row: the files' content, the question, and this program."""
         files = [*([self.variant] if self.variant else []), *(sorted(self.effects.glob("*.py")) if self.effects else [])]
-        asked = (__version__, sources(), repr(self.settings), *(f.read_text(encoding="utf-8") for f in files))
+        asked = (__version__, sources(), _loop(), repr(self.settings), *(f.read_text(encoding="utf-8") for f in files))
         return tuple(_hash(*asked, str(place), fingerprint(place)) for place in self.places)
 
     @cached_property
@@ -94,6 +95,11 @@ class Fleet:
             return {**about, "error": _first(error, place)}
         except WheelchairError as error:
             return {**about, "error": str(error)}
+
+
+def _loop() -> str:
+    """What decides a diagnosis beside the equations."""
+    return _hash(*(f.read_text(encoding="utf-8") for f in sorted(LOOP.glob("*.py"))))
 
 
 def _hash(*words: str) -> str:
