@@ -363,10 +363,11 @@ class Search:
 
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
               most: int = SHORTLIST, visible: float = 0.0) -> Round:  # fmt: skip
-        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible` is not refitted."""
+        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, as far as slopes tell,
+        is not refitted."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
-        for s in shortlist([s for s in screened if s.shows(visible)], most):
+        for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most):
             leader = max((c.drop for c in candidates), default=0.0)
             if self._linear(s.score.effect) and s.score.drop < HOPELESS * leader:
                 continue

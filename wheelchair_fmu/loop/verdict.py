@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..campaign import Campaign, windows
+from ..errors import SimulationError
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .diagnose import MOST_EFFECTS, TIED, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
@@ -113,7 +114,8 @@ def diagnose(
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
         climbed(ladder[-1])
-    ties = tuple(t for t in map(_tied, rounds) if len(t) > 1) if proposal is None else ()
+    groups = (_still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
+    ties = tuple(group for group in groups if len(group) > 1)
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
@@ -171,6 +173,25 @@ def _tied(r: Round) -> tuple[str, ...]:
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
+
+
+def _still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
+    """What a round tied, less those that fall behind in the place of its effect once all that was found later is in too."""
+    group = _tied(r)
+    if len(group) < 2 or len(effects) <= len(r.effects) + 1:
+        return group
+    candidates = {c.effect: c.fit.values for c in r.candidates}
+
+    def keeps_up(rival: str) -> bool:
+        own = {n: candidates[rival][n] for n in search.workshop.parameters(rival)}
+        swapped = [rival if e == group[0] else e for e in effects]
+        try:
+            found = search.refit(swapped, {**final.values, **own}, rival=final.misfit)
+        except SimulationError:
+            return False
+        return found.misfit - final.misfit < TIED * correlation_time(final.evidence)
+
+    return (group[0], *(rival for rival in group[1:] if rival not in effects and keeps_up(rival)))
 
 
 def margin(leader: Candidate) -> float:
