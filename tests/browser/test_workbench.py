@@ -44,7 +44,7 @@ def page(browser: Any, address: str) -> Iterator[Any]:
 
 def take_in(page: Any, *files: Path) -> None:
     page.set_input_files("#files", [str(f) for f in files])
-    page.wait_for_function("() => window.workbench?.state?.files.length > 0")
+    page.wait_for_function("n => window.workbench?.state?.files.length === n", arg=len(files))  # they go one by one
 
 
 def recordings() -> list[Path]:
