@@ -1,6 +1,7 @@
 """`python -m benchmarks.diagnosis`: run the trials that are not done yet, then print the table.
 
-Thresholds of the loop were chosen on the even half of the trials; the table reports the odd half as well.
+The table comes by halves, so that thresholds can be chosen on one and reported on the other. Those of today were chosen with
+both in view.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def main() -> None:
             text = json.dumps(trial(case, chosen.baselines), ensure_ascii=False)
             file.write_text(text + "\n", encoding="utf-8")
         done.append(json.loads(file.read_text(encoding="utf-8")))
-    for half, side in enumerate(("tuned", "kept aside")):
+    for half, side in enumerate(("one half", "the other")):
         trials = [t for t in done if crc32(t["case"].encode()) % 2 == half]
         if trials:
             console.print(as_table(trials, floors(done), f"{side}: {len(trials)} trials"))

@@ -15,12 +15,12 @@ import pytest
 from typer.testing import CliRunner
 
 from wheelchair_fmu import __version__
-from wheelchair_fmu.cli.files import written
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant, variant_text
 from wheelchair_fmu.quantities import Parameter
 from wheelchair_fmu.studies import Fmu, fmu_of
+from wheelchair_fmu.writing import written
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "sample-campaign"

@@ -121,8 +121,11 @@ class Chair:
         self.drop(state)
         return made
 
+    def deserialized(self, serialized: bytes):
+        return self.fmu.deSerializeFMUstate(serialized)
+
     def revive(self, serialized: bytes) -> None:
-        state = self.fmu.deSerializeFMUstate(serialized)
+        state = self.deserialized(serialized)
         self.restore(state)
         self.drop(state)
 

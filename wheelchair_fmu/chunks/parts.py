@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
@@ -14,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import Failure
+from ..writing import written
 from .job import ERROR, FINGERPRINT, Job
 from .pools import Pool
 
@@ -52,7 +51,7 @@ def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lamb
         elif n not in known:
             missing.append(n)
     for n, table in chain(((n, t) for n, t in known.items() if not _part(place, n).exists()), pool(job, missing)):
-        with _beside(_part(place, n)) as beside:
+        with written(_part(place, n)) as beside:
             pq.write_table(table, beside)
         told(table.num_rows)
     _assemble(job, place, out)
@@ -74,7 +73,7 @@ def _claimed(job: Job, out: Path) -> Path:
     place.mkdir(parents=True, exist_ok=True)
     owner = place / "fingerprint"
     if not owner.exists():
-        with _beside(owner) as beside:
+        with written(owner) as beside:
             beside.write_text(job.fingerprint)
     elif owner.read_text() != job.fingerprint:
         raise Failure(f"{place}: parts of another {job.what}; remove this folder, or give another -o")
@@ -86,18 +85,8 @@ def _part(place: Path, number: int) -> Path:
 
 
 def _assemble(job: Job, place: Path, out: Path) -> None:
-    with _beside(out) as beside, pq.ParquetWriter(beside, job.schema()) as writer:
+    with written(out) as beside, pq.ParquetWriter(beside, job.schema()) as writer:
         together = max(1, ROW_GROUP // job.rows(0))
         for first in range(0, job.chunks, together):
             parts = range(first, min(first + together, job.chunks))
             writer.write_table(pa.concat_tables([pq.read_table(_part(place, n)) for n in parts]))
-
-
-@contextmanager
-def _beside(path: Path) -> Iterator[Path]:
-    beside = path.with_name(f".{os.getpid()}-{path.name}")
-    try:
-        yield beside
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)

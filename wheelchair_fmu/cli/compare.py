@@ -23,7 +23,8 @@ from ..model.wheelchair import REGIMES
 from ..report.figures import overlay_figure, where_figure
 from ..report.saving import save
 from ..studies import Fmu, fmu_of, run_campaign_run
-from .files import print_json, written
+from ..writing import written
+from .files import print_json
 from .group import console, working
 from .settings import subject
 
@@ -63,7 +64,9 @@ def compare(
 
 
 def _calibrated(measured: Campaign, chair: Variant, names: str) -> dict[str, float]:
-    """Fitted values of these parameters, from windows of the campaign where it is large."""
+    """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large."""
+    if not names and not measured.nuisance:
+        return {}
     bench = Bench(windows(measured), chair)
     records = {p.name: p for p in bench.variant.parameters()}
     wanted = [n.strip() for n in names.split(",") if n.strip()]

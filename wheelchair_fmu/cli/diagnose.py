@@ -19,7 +19,8 @@ from ..loop.verdict import diagnose as run_diagnosis
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from .files import write_json, written
+from ..writing import written
+from .files import write_json
 from .group import Progress, console, working
 from .settings import subject
 from .staircase import staircase_table

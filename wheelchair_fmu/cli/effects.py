@@ -15,7 +15,8 @@ from ..model.effects import bundled
 from ..model.expression import effect_file
 from ..model.stage import Effect
 from ..quantities import N, Parameter
-from .files import print_json, written
+from ..writing import written
+from .files import print_json
 from .group import console
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")

@@ -1,31 +1,16 @@
-"""Output files: written beside their place, then renamed, so that nothing there is replaced by half a result."""
+"""Tables and JSON, into a file or to stdout."""
 
 from __future__ import annotations
 
 import csv
 import json
-import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-
-@contextmanager
-def written(path: Path) -> Iterator[Path]:
-    """A path to write to, with the same ending; what is there becomes `path` if all goes well.
-
-    Raises OSError where the folder cannot be made or written.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{os.getpid()}-{path.name}")
-    try:
-        yield beside
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
+from ..writing import written
 
 
 def write_table(path: Path, columns: Mapping[str, np.ndarray]) -> None:

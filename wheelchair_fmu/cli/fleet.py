@@ -14,8 +14,8 @@ from rich.table import Table
 from ..chunks import bad, is_done
 from ..errors import UsageError
 from ..fleet import Fleet, folders, long, summary
+from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
-from .files import written
 from .group import console
 from .settings import parse
 

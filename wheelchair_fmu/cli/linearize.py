@@ -18,7 +18,8 @@ from ..handling.linearize import Linear, linearize, radius_sensitivities, radius
 from ..handling.trim import Chair, SteadyState, trim
 from ..model.effects import catalogue_of
 from ..quantities import ONE
-from .files import print_json, written
+from ..writing import written
+from .files import print_json
 from .group import console
 from .settings import chair_of, parse
 

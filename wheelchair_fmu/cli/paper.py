@@ -16,7 +16,8 @@ from ..report.families import family_figure, radius_family_figure
 from ..report.saving import save
 from ..studies import Fmu, fmu_of
 from ..studies.paper import FIGURES, STATEMENTS, FamilyFigure, Finding, OpenValue, Range, Runs, Setting, ranges
-from .files import print_json, written
+from ..writing import written
+from .files import print_json
 from .group import console
 from .settings import parse
 

@@ -21,7 +21,7 @@ from ..model.variant import Variant
 from ..report.content import content
 from ..report.page import page
 from ..report.words import particulars, sentence
-from .files import written
+from ..writing import written
 from .group import Progress, working
 from .settings import subject
 

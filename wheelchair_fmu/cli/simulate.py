@@ -19,7 +19,8 @@ from ..model.variant import Variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save
 from ..studies import Fmu, Result, fmu_of
-from .files import write_table, written
+from ..writing import written
+from .files import write_table
 from .group import console
 from .settings import chair_of, parse
 

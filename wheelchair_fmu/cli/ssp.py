@@ -21,7 +21,8 @@ from ..studies.ssp.checking import check
 from ..studies.ssp.recordings import read_recording
 from ..studies.ssp.records import MAIN
 from ..studies.ssp.running import Trace, run
-from .files import print_json, write_table, written
+from ..writing import written
+from .files import print_json, write_table
 from .group import console
 from .settings import catalogue
 

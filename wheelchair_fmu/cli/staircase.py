@@ -13,7 +13,7 @@ from ..loop.diagnose import Step
 from ..model.variant import Variant, variant_text
 from ..report.figures import staircase_figure
 from ..report.saving import save
-from .files import written
+from ..writing import written
 
 BAR = 24  # characters, for the highest step
 FLOOR = "whitened RMS error, 1.0 is the noise floor"

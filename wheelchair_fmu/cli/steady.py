@@ -17,7 +17,8 @@ from ..handling.steady import HEIGHT, Gradients, Turns, gradients, limits, root_
 from ..handling.trim import Chair, SteadyState
 from ..report.saving import save
 from ..report.turning import turning_figure
-from .files import print_json, write_table, written
+from ..writing import written
+from .files import print_json, write_table
 from .group import console
 from .linearize import steady_chair, turn
 from .settings import parse

@@ -17,9 +17,9 @@ from ..errors import UsageError, unknown
 from ..loop.evidence import START, Bench
 from ..loop.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, indices, prepare, read_plan
+from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .compare import TUNING
-from .files import written
 from .group import console
 
 

@@ -24,7 +24,8 @@ from ..tyres.records import KM_H, SLIP
 from ..tyres.summary import condition as summarised
 from ..tyres.summary import summary
 from ..tyres.tir import tir_text
-from .files import print_json, written
+from ..writing import written
+from .files import print_json
 from .group import console
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Tyres identified from rig data.")

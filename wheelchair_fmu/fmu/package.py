@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ..errors import BuildError
+from ..writing import written
 
 EPOCH = datetime(1980, 1, 1, tzinfo=UTC)  # the earliest a zip file can say, so that no build shows its date
 Files = Mapping[str, bytes]
@@ -30,16 +31,11 @@ def moment() -> datetime | None:
 
 def write(target: Path, files: Files, faults: Callable[[Path], list[str]]) -> Path:
     """Write an archive of `files` by path, if it has no faults. Raises BuildError where that is not possible."""
-    beside = target.with_name(f".{os.getpid()}-{target.name}")
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        try:
+        with written(target) as beside:
             _zip(beside, files)
             if found := faults(beside):
                 raise BuildError(f"{target}: would not be valid: {'; '.join(found)}")
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
     except OSError as error:
         raise BuildError(f"{target}: cannot be written: {error.strerror}; give another place with -o") from error
     return target

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .diagnose import Round
+from .diagnose import Round, decisive
 from .evidence import Evidence, block_length
 from .fit import Fit
 from .statistics import difference_blocks
-from .verdict import Diagnosis, margin
+from .verdict import Diagnosis
 
 INTERVAL = (0.025, 0.975)
 
@@ -65,7 +65,7 @@ def _stability(r: Round, rng: np.random.Generator, resamples: int) -> Stability:
     drops = np.stack([_likelihood_blocks(r.fit.evidence, c.fit.evidence) for c in candidates], axis=1)
     drawn = _weights(len(drops), rng, resamples) @ drops  # (resamples, candidates)
     best, own = drawn.argmax(axis=1), drawn[:, [c.effect for c in candidates].index(leader.effect)]
-    near = drawn >= own[:, None] - margin(leader)
+    near = drawn >= own[:, None] - decisive(leader.fit.evidence)
     predicts = None
     if leader.heldout is not None and leader.heldout.runs:
         gains = difference_blocks(r.heldout, leader.heldout)

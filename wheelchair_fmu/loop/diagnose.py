@@ -36,6 +36,11 @@ SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refi
 STARTS = 2  # of these, for an effect whose slope at zero says little
 
 
+def decisive(evidence: Evidence) -> float:
+    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for odds of a hundred to one."""
+    return TIED * correlation_time(evidence)
+
+
 @dataclass(frozen=True)
 class Step:
     """One step of the staircase: whitened RMS on fitted and on held-out runs."""
@@ -90,8 +95,8 @@ class Round:
         best = next((c for c in self.candidates if c.found), None)
         if best is None:
             return None
-        margin = TIED * correlation_time(best.fit.evidence)
-        better = (c for c in self.candidates if c.small and c.lawful and c.drop > best.drop + margin)
+        far = best.drop + decisive(best.fit.evidence)
+        better = (c for c in self.candidates if c.small and c.lawful and c.drop > far)
         return None if any(better) else best
 
 
@@ -158,8 +163,7 @@ class Search:
         for effect in effects[:-1]:
             fewer = tuple(e for e in effects if e != effect)
             without = self.refit(fewer, found.values)
-            margin = TIED * correlation_time(found.evidence) * float(np.mean(found.evidence.r**2))
-            if without.misfit - found.misfit < margin:
+            if without.misfit - found.misfit < decisive(found.evidence) * float(np.mean(found.evidence.r**2)):
                 return self.pruned(fewer, without)
         return effects, found
 

@@ -7,7 +7,7 @@ uncertainty (see `innovations`); where the simulation is best started is found o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -120,6 +120,13 @@ class Evidence:
         """Whitened RMS error over all runs and channels: 1.0 is the noise floor."""
         e = np.concatenate([e.e[np.isfinite(e.e)] for e in self.runs] or [np.empty(0)])
         return float(np.sqrt(e @ e / len(e))) if len(e) else float("nan")
+
+    def parts(self) -> Iterator[tuple[RunEvidence, np.ndarray, slice]]:
+        """Each run, which of its innovations (n, nz) are finite, and where these stand in `r` and `S`."""
+        at = 0
+        for e in self.runs:
+            good = np.isfinite(e.r)
+            yield e, good, slice(at, at := at + int(good.sum()))
 
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""

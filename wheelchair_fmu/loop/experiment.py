@@ -11,10 +11,9 @@ import numpy as np
 
 from ..campaign import CHANNELS, Run
 from ..errors import SimulationError
-from .diagnose import TIED, Search
+from .diagnose import TIED, Search, decisive
 from .evidence import Bench, Colour
 from .fit import Fit, prior_of
-from .statistics import correlation_time
 
 MOST_REPEATS = 20
 
@@ -41,7 +40,7 @@ def separate(
     its parameters, is −2 log of the odds that one run gives.
     """
     bench = search.workshop.bench([e for e in effects if e in search.workshop.catalogue])
-    needed = TIED * correlation_time(one.evidence)  # as the verdict on a tie has it
+    needed = decisive(one.evidence)  # as the verdict on a tie has it
     odds = []
     for experiment in among:
         try:

@@ -106,11 +106,18 @@ class Problem:
         """−2 log likelihood, with the prior."""
         return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
 
+    def information(self, here: Evidence) -> np.ndarray:
+        """Sᵀ S (k, k), and the prior's."""
+        return here.S.T @ here.S + self.prior.slopes**2
+
+    def gradient(self, S: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Sᵀ r (k,), and the prior's."""
+        return S.T @ r + self.prior.slopes @ self.prior.rows(theta)
+
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
         """How much the squares would fall at most, if slopes held all the way."""
-        rows, slopes = self.prior.rows(theta), self.prior.slopes
-        g = here.S.T @ here.r + slopes @ rows
-        return float(g @ np.linalg.pinv(here.S.T @ here.S + slopes**2, hermitian=True) @ g)
+        g = self.gradient(here.S, here.r, theta)
+        return float(g @ np.linalg.pinv(self.information(here), hermitian=True) @ g)
 
     def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
         """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
@@ -147,8 +154,8 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     problem = Problem(bench, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
-    for _ in range(MOST):
-        if not names or problem.expected(here, theta) < STRAIGHT:
+    for _ in range(MOST if names else 0):
+        if problem.expected(here, theta) < STRAIGHT:
             break
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
@@ -160,8 +167,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
         if further is None:
             break
         theta, here = further
-    A = here.S.T @ here.S + problem.prior.slopes**2
-    covariance = np.linalg.pinv(A, hermitian=True) if names else np.zeros((0, 0))
+    covariance = np.linalg.pinv(problem.information(here), hermitian=True) if names else np.zeros((0, 0))
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 

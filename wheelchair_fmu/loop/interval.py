@@ -6,6 +6,8 @@ Unlike estimate ± 1.96 standard errors they follow a valley that bends, and nee
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
@@ -26,46 +28,45 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     at = found.names.index(name)
     se = float(np.sqrt(sandwich(found)[at, at]))
     threshold = stats.chi2.ppf(LEVEL, 1) * se**2 / found.covariance[at, at]
-    record, best = bench.records[name], found.values[name]
+    record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
 
-    def above(value: float) -> float:
-        return _profiled(bench, found, at, value) - found.misfit - threshold
+    def above(distance: float) -> float:
+        return misfit(best + distance) - found.misfit - threshold
 
     def end(side: float) -> float:
         bound = record.upper if side > 0 else record.lower
         reach = min(abs(bound - best), FARTHEST * se)
         near, far = 0.0, min(2.2 * se, reach)
-        while above(best + side * far) < 0:
+        while above(side * far) < 0:
             if far >= reach:
                 return best + side * reach
             near, far = far, min(1.6 * far, reach)
-        return best + side * float(brentq(lambda d: above(best + side * d) if d else -threshold, near, far, xtol=PRECISE * se))
+        return best + side * float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
 
     if not se > 0:
         return best, best
     return end(-1.0), end(1.0)
 
 
-def _profiled(bench: Bench, found: Fit, at: int, value: float) -> float:
-    """The misfit with one parameter held, the others where that lets them be."""
-    problem = Problem(bench, found.names)
+def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:
+    """The misfit by one parameter, the others where that lets them be."""
+    problem, S = Problem(bench, found.names), found.evidence.S
     others = np.arange(len(found.names)) != at
-    S, prior = found.evidence.S, problem.prior
-    A = S.T @ S + prior.slopes**2
+    A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
     inverse = np.linalg.pinv(A[np.ix_(others, others)], hermitian=True)
-    theta = np.array([found.values[n] for n in found.names])
-    step = value - theta[at]
-    theta[at] = value
-    theta[others] -= inverse @ A[others, at] * step
-    lowest = np.inf
-    for _ in range(CORRECTIONS):
-        theta[others] = np.clip(theta, problem.lower, problem.upper)[others]
-        try:
-            there = bench.again(found.evidence, problem.values(theta))
-        except SimulationError:
-            break
-        lowest = min(lowest, problem.misfit(there, theta))
-        g = S.T @ there.r + prior.slopes @ prior.rows(theta)
-        theta[others] += inverse @ g[others]
-    return lowest
 
+    def misfit(value: float) -> float:
+        theta, lowest = best.copy(), np.inf
+        theta[at] = value
+        theta[others] -= inverse @ A[others, at] * (value - best[at])
+        for _ in range(CORRECTIONS):
+            theta[others] = np.clip(theta, problem.lower, problem.upper)[others]
+            try:
+                there = bench.again(found.evidence, problem.values(theta))
+            except SimulationError:
+                break
+            lowest = min(lowest, problem.misfit(there, theta))
+            theta[others] += inverse @ problem.gradient(S, there.r, theta)[others]
+        return lowest
+
+    return misfit

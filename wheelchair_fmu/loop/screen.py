@@ -45,11 +45,8 @@ def projector(Z: np.ndarray, prior_slopes: np.ndarray):
 
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
     """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
-    total, at = np.zeros((s.shape[1], s.shape[1])), 0
-    for e in evidence.runs:
-        good = np.isfinite(e.r)
-        part = slice(at, at + int(good.sum()))
-        at = part.stop
+    total = np.zeros((s.shape[1], s.shape[1]))
+    for e, good, part in evidence.parts():
         terms = np.zeros((*e.r.shape, s.shape[1]))
         terms[good] = s[part] * r[part, None]
         total += _long_run_variance(terms.sum(axis=1), max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
@@ -66,11 +63,9 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
 
 def largest_fall(evidence: Evidence, before: np.ndarray, after: np.ndarray) -> float:
     """Of the RMS of residuals (N,), over the channels of every run."""
-    most, at = 0.0, 0
-    for e in evidence.runs:
-        channel = np.nonzero(np.isfinite(e.r))[1]
-        part = slice(at, at + len(channel))
-        at = part.stop
+    most = 0.0
+    for e, good, part in evidence.parts():
+        channel = np.nonzero(good)[1]
         count = np.maximum(np.bincount(channel, minlength=e.r.shape[1]), 1)
         sizes = [np.sqrt(np.bincount(channel, weights=r[part] ** 2, minlength=e.r.shape[1]) / count) for r in (before, after)]
         most = max(most, float((sizes[0] - sizes[1]).max(initial=0)))

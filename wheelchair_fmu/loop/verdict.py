@@ -14,12 +14,12 @@ from ..campaign import Campaign, windows
 from ..errors import SimulationError
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import MOST_EFFECTS, TIED, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
+from .diagnose import MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, decisive, first_steps
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
-from .statistics import alike, correlation_time, difference_blocks, finite, resampled_totals, sandwich
+from .statistics import alike, difference_blocks, finite, resampled_totals, sandwich
 from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
@@ -93,9 +93,7 @@ def diagnose(
     for effect in variant.effects:
         if workshop.parameters(effect):
             effects = (*effects, effect)
-            base, held = search.with_given(effects, base)
-            if search.recolour(base.evidence, again=True):
-                base, held, ladder = _anew(search, effects, base)
+            base, held, ladder = _by_its_noise(search, effects, *search.with_given(effects, base), ladder)
             climb(effect)
     already = effects
     for _ in range(MOST_EFFECTS):
@@ -106,9 +104,7 @@ def diagnose(
         if best is None:
             break
         effects = (*effects, best.effect)
-        base, held = search.settled(effects, best.fit)
-        if search.recolour(base.evidence, again=True):
-            base, held, ladder = _anew(search, effects, base)
+        base, held, ladder = _by_its_noise(search, effects, *search.settled(effects, best.fit), ladder)
         climb(best.effect)
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
@@ -133,8 +129,11 @@ def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], 
     return {n: profile_interval(bench, found, n) for n in names if n in found.names}
 
 
-def _anew(search: Search, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence, list[Step]]:
-    """The model with these effects and the staircase up to the last, with noise that shows only now that they are in."""
+def _by_its_noise(search: Search, effects: Sequence[str], found: Fit, held: Evidence,
+                  ladder: list[Step]) -> tuple[Fit, Evidence, list[Step]]:  # fmt: skip
+    """The model with these effects and the staircase up to the last: anew if another noise shows, now that they are in."""
+    if not search.recolour(found.evidence, again=True):
+        return found, held, ladder
     search.say("calibrating with the noise that is left")
     base, held, ladder = first_steps(search)
     for i in range(1, len(effects)):
@@ -166,9 +165,9 @@ def _tied(r: Round) -> tuple[str, ...]:
     leader = r.winner
     if leader is None:
         return ()
-    group = [leader.effect]
+    group, margin = [leader.effect], decisive(leader.fit.evidence)
     for c in r.candidates:
-        near = leader.drop - c.drop <= margin(leader)
+        near = leader.drop - c.drop <= margin
         same = c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
@@ -180,7 +179,7 @@ def _still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) ->
     group = _tied(r)
     if len(group) < 2 or len(effects) <= len(r.effects) + 1:
         return group
-    candidates = {c.effect: c.fit.values for c in r.candidates}
+    candidates, margin = {c.effect: c.fit.values for c in r.candidates}, decisive(final.evidence)
 
     def keeps_up(rival: str) -> bool:
         own = {n: candidates[rival][n] for n in search.workshop.parameters(rival)}
@@ -189,14 +188,9 @@ def _still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) ->
             found = search.refit(swapped, {**final.values, **own}, rival=final.misfit)
         except SimulationError:
             return False
-        return found.misfit - final.misfit < TIED * correlation_time(final.evidence)
+        return found.misfit - final.misfit < margin
 
     return (group[0], *(rival for rival in group[1:] if rival not in effects and keeps_up(rival)))
-
-
-def margin(leader: Candidate) -> float:
-    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for odds of a hundred to one."""
-    return TIED * correlation_time(leader.fit.evidence)
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
@@ -220,7 +214,7 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
         first = rounds[0]
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=3, visible=PLAINLY_VISIBLE)
         lone = next((c for c in alone.candidates if _clear(c)), None)
-        if lone is not None and lone.fit.misfit < base.misfit - TIED * correlation_time(base.evidence):
+        if lone is not None and lone.fit.misfit < base.misfit - decisive(base.evidence):
             return alone, lone
     left = generic_search.round(effects, base, held, list(generic), most=3, visible=PLAINLY_VISIBLE)
     return left, next((c for c in left.candidates if _clear(c)), None)

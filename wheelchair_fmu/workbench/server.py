@@ -22,6 +22,8 @@ from starlette.routing import Route
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
+from ..loop.subject import known_parameters
+from ..loop.workshop import CALIBRATED
 from ..model.dimensions import targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
@@ -33,7 +35,6 @@ from .session import Session, channel_list, write
 
 HEADER = "x-workbench"  # only a page of ours can send it: other sites would have to ask first
 EFFECT = re.compile(r"[a-z][a-z0-9_]*")
-CALIBRATED = "tyre.C_lambda,resistance.f_r,resistance.f_f,chair.I_z"
 EARLIER = 12  # pieces of work that are listed
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
 POLICY = ("default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -49,9 +50,9 @@ class Workbench:
     def __init__(self, root: Path, campaign: Path | None = None):
         self.root, self.campaign, self.jobs = root, campaign, Jobs()
         chair = Variant()
-        self.bounds = {p.name: (p.lower, p.upper) for p in chair.with_effects(bundled()).parameters()}
+        self.bounds = known_parameters()
         self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default,
-                            "uncertainty": p.uncertainty, "calibrated": p.name in CALIBRATED.split(",")}
+                            "uncertainty": p.uncertainty, "calibrated": p.name in CALIBRATED}
                            for p in chair.parameters() if p.name.startswith(KNOWN)]  # fmt: skip
         model = assemble()
         self.words = {
@@ -193,7 +194,7 @@ class Workbench:
         return ["--variant", session.variant_file.relative_to(session.folder).as_posix(), *own]
 
     def _calibrate(self, session: Session, asked: dict[str, Any]) -> Job:
-        names = [n for n in str(asked.get("names") or CALIBRATED).split(",") if n]
+        names = [n for n in str(asked.get("names") or ",".join(CALIBRATED)).split(",") if n]
 
         def after(outputs: list[str]) -> None:
             values = printed_json(outputs[0])["values"]

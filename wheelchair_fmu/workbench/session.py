@@ -34,6 +34,7 @@ from ..errors import CampaignError, Failure, UsageError
 from ..model.effects import bundled, load
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
+from ..writing import written
 
 SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
 MOST_BYTES = 200_000_000  # of one file
@@ -304,13 +305,8 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def write(path: Path, content: bytes) -> None:
     """Beside its place, then renamed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{os.getpid()}-{uuid4().hex[:6]}-{path.name}")
-    try:
+    with written(path) as beside:
         beside.write_bytes(content)
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def _run(name: str) -> dict[str, Any]:

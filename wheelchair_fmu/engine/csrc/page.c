@@ -19,8 +19,8 @@ long EXPORT(wc_page_work)(int active) { return wc_tangent_work(&model_kernel, &t
 int wc_page_step(const double **arg, double **res, long long *iw, double *work, int mem) {
     (void)iw, (void)work, (void)mem;
     double mass[WC_MAX_STATES];
-    double *masses[] = {mass, 0};
-    tangent_tangent.masses(&arg[4], masses, 0, 0, 0);
+    double *masses[] = {mass};
+    model_kernel.mass(&arg[4], masses, 0, 0, 0);
     wc_rodas_step((wc_rodas_given){.k = &model_kernel, .g = &tangent_tangent, .mass = mass, .x = arg[0], .w0 = arg[1],
                                    .w1 = arg[2], .h = *arg[3], .p = arg[4]}, res);
     return 0;

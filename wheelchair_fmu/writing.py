@@ -1,0 +1,25 @@
+"""Files written beside their place, then renamed, so that nothing there is replaced by half a result."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from uuid import uuid4
+
+
+@contextmanager
+def written(path: Path) -> Iterator[Path]:
+    """A path to write to, with the same ending; what is there becomes `path` if all goes well.
+
+    Several threads and processes may write the same path; the last one stands. Raises OSError where the folder cannot be
+    made or written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(f".{os.getpid()}-{uuid4().hex[:6]}-{path.name}")
+    try:
+        yield beside
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
