@@ -38,7 +38,7 @@ def paper(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out/paper"),
 ) -> None:
-    """Run sections 6.1 to 6.3 of the paper: Figs. 12 to 19, and which of its statements hold."""
+    """Run sections 6.1 to 6.3 of the paper, its figures 12 to 19, and which of its statements hold."""
     chair = replace(Variant(), choice=replace(Variant().choice, equations=equations))
     with Fmu(fmu_of(chair)) as fmu:
         setting = Setting(delta_force, period, values=fmu.checked(parse(settings or ())))

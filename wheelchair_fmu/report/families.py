@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from .canvas import blank
 from .figures import BLACK, BLUE, GREY, ORANGE, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 STYLES = ((BLUE, "-."), (BLACK, "-"), (ORANGE, "--"))  # less, reference, more
 WIDEST = 15.0  # m; a larger radius is not drawn
@@ -22,7 +26,7 @@ def family_figure(title: str, time: np.ndarray, runs: Mapping[str, Columns]) -> 
 
     `time` is (n,) in s; each run holds (n,) of chair.x, chair.y, slip.rl and slip.rr, SI units. x points up, y to the right.
     """
-    figure = Figure(figsize=(10, 5), layout="constrained")
+    figure = blank(10, 5)
     axes = figure.subplot_mosaic([["path", "left"], ["path", "right"]], width_ratios=[1, 1.2])
     figure.suptitle(title)
     for (label, run), (colour, style) in zip(runs.items(), STYLES, strict=False):
@@ -46,7 +50,7 @@ def radius_family_figure(title: str, time: np.ndarray, runs: Mapping[str, Column
 
     `time` is (n,) in s; each run holds chair.curvature (n,), in 1/m.
     """
-    figure = Figure(figsize=(10, 4), layout="constrained")
+    figure = blank(10, 4)
     ax = figure.subplots()
     figure.suptitle(title)
     for (label, run), (colour, style) in zip(runs.items(), STYLES, strict=False):

@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+
+from .canvas import blank
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 BLACK, BLUE, ORANGE, GREEN, GREY = "#000000", "#0072B2", "#D55E00", "#009E73", "#767676"
 BAND = "#CFE3EF"
@@ -32,7 +36,7 @@ def manoeuvre_figure(title: str, time: np.ndarray, columns: Mapping[str, np.ndar
     `time` is (n,) in s; `columns` hold (n,) each, SI units, by FMI name: chair.x, chair.y, slip.rl, slip.rr,
     chair.curvature and `watch`, one of WATCHED. x (forward) points up and y to the right, with equal scales.
     """
-    figure = Figure(figsize=(10, 7), layout="constrained")
+    figure = blank(10, 7)
     axes = figure.subplot_mosaic([["path", "slip"], ["path", "radius"], ["path", "watch"]], width_ratios=[1, 1.25])
     figure.suptitle(title)
     _path(axes["path"], time, columns["chair.x"], columns["chair.y"])
@@ -105,7 +109,7 @@ def overlay_figure(
     is taken off what they read, and said above the channel.
     """
     names = list(measured)
-    figure = Figure(figsize=(10, 0.6 + 2.6 * len(names)), layout="constrained")
+    figure = blank(10, 0.6 + 2.6 * len(names))
     figure.suptitle(run)
     grid = figure.subplots(2 * len(names), 1, sharex=True, squeeze=False, height_ratios=[2, 1] * len(names))[:, 0]
     for name, above, below in zip(names, grid[::2], grid[1::2], strict=True):
@@ -137,7 +141,7 @@ def staircase_figure(ladder: Sequence[Mapping[str, Any]]) -> Figure:
     `ladder` is a sequence of {"step": name, "fit": whitened RMS, "heldout": whitened RMS or None}, in order; the noise
     floor of 1.0 is marked.
     """
-    figure = Figure(figsize=(1.6 + 1.5 * max(len(ladder), 2), 4.2), layout="constrained")
+    figure = blank(1.6 + 1.5 * max(len(ladder), 2), 4.2)
     ax = figure.subplots()
     place = np.arange(len(ladder))
     width = 0.38
@@ -161,7 +165,7 @@ def where_figure(runs: Sequence[str], channels: Sequence[str], rms: np.ndarray) 
 
     NaN, for a channel that a run lacks, stays white. 1.0 is the noise floor; the colours are logarithmic.
     """
-    figure = Figure(figsize=(2.6 + 1.15 * len(channels), 1.4 + 0.42 * len(runs)), layout="constrained")
+    figure = blank(2.6 + 1.15 * len(channels), 1.4 + 0.42 * len(runs))
     ax = figure.subplots()
     shown = np.log10(np.maximum(np.asarray(rms, float), FLOOR))
     most = max(1.0, float(np.nanmax(shown)) if np.isfinite(shown).any() else 1.0)
@@ -207,7 +211,7 @@ def missing_figure(words: str, unit: str, panels: Sequence[Mapping[str, Any]]) -
     `words` and `unit` say what is missing; a panel is {"variable": words, "unit": its unit, "knots": (k,), "estimate": (k,),
     "se": (k,)}, with NaN where the data say nothing.
     """
-    figure = Figure(figsize=(3.4 * min(3, len(panels)), 0.5 + 2.8 * math.ceil(len(panels) / 3)), layout="constrained")
+    figure = blank(3.4 * min(3, len(panels)), 0.5 + 2.8 * math.ceil(len(panels) / 3))
     figure.suptitle(f"estimated missing {words}, with its 95 % band")
     axes = figure.subplots(math.ceil(len(panels) / 3), min(3, len(panels)), squeeze=False, sharey=True).ravel()
     for ax, panel in zip(axes, panels, strict=False):

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from .canvas import blank
 from .figures import BAND, BLACK, BLUE, GREEN, ORANGE, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def carried_figure(
@@ -18,7 +22,7 @@ def carried_figure(
     `slip` and `carried` are (3, n): a lower bound, the median and an upper bound; `lines` are slip [deg] and force/load by
     label.
     """
-    figure = Figure(figsize=(8, 5), layout="constrained")
+    figure = blank(8, 5)
     ax = figure.subplots()
     figure.suptitle(title)
     ax.errorbar(slip[1], carried[1], xerr=np.abs(slip[[0, 2]] - slip[1]), yerr=np.abs(carried[[0, 2]] - carried[1]), fmt="o-",

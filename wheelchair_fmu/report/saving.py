@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 from PIL import Image
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 STEADY: Any = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "path"}
 COLOURS = 32  # of a film
@@ -18,7 +19,9 @@ UNDATED = {".svg": {"Date": None, "Creator": None}, ".png": {"Software": None}}
 
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG or SVG, by the path's ending."""
-    with matplotlib.rc_context(STEADY):
+    from matplotlib import rc_context  # here, not above: see `canvas`
+
+    with rc_context(STEADY):
         figure.savefig(path, dpi=150, metadata=UNDATED[path.suffix])
 
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from .canvas import blank
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 LINES = ((BLUE, ":"), (BLACK, "-"), (GREEN, "-."), (ORANGE, "--"))
 WIDEST = 10.0  # m; a larger radius is not drawn
@@ -22,7 +26,7 @@ def turning_figure(title: str, curves: Mapping[float, Columns], locus: Columns, 
     `curves` are, by speed in m/s, columns (n,) delta_force [N], radius [m], slip [deg], a_y [m/s²], each ending at the first
     limit; `locus` holds speed (m,) and eigenvalues (m, k), complex, in 1/s; `slip_limit` is in degrees.
     """
-    figure = Figure(figsize=(10, 7), layout="constrained")
+    figure = blank(10, 7)
     axes = figure.subplot_mosaic([["radius", "force"], ["slip", "locus"]])
     figure.suptitle(title)
     for (speed, curve), (colour, style) in zip(curves.items(), LINES, strict=False):

@@ -5,16 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ..tyres.identify import ConditionFit, Identified
 from ..tyres.magic_formula import FORCE, TORQUE
 from ..tyres.parameters import chosen
 from ..tyres.records import CAMBER, SLIP
+from .canvas import blank
 from .figures import BAND, BLACK, BLUE, GREEN, GREY, ORANGE, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 PANELS = (
     (SLIP, FORCE, "side slip force / load [1]", "slip angle λ [deg]"),
@@ -67,7 +71,7 @@ def _at(fit: ConditionFit) -> str:
 
 def comparison_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) -> Figure:
     """Forces and torques over the load, corrected for the curvature force, of labelled conditions: Figs. 4, 6 and 7."""
-    figure = Figure(figsize=(10, 7.5), layout="constrained")
+    figure = blank(10, 7.5)
     figure.suptitle(title)
     for ax, (kind, channel, above, below) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
         for (label, fit), look in zip(curves, cycle(LOOKS), strict=False):
@@ -82,7 +86,7 @@ def comparison_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) ->
 
 def single_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) -> Figure:
     """The side slip force alone: Fig. 5."""
-    figure = Figure(figsize=(6.5, 4.5), layout="constrained")
+    figure = blank(6.5, 4.5)
     figure.suptitle(title)
     ax = figure.subplots()
     for (label, fit), look in zip(curves, cycle(LOOKS), strict=False):
@@ -101,7 +105,7 @@ def laws_figure(
 
     The band is where the linear law is within `tolerance` [1] of the Magic Formula.
     """
-    figure = Figure(figsize=(4.2 * len(curves) + 0.5, 4.6), layout="constrained")
+    figure = blank(4.2 * len(curves) + 0.5, 4.6)
     figure.suptitle(title)
     row = figure.subplots(1, len(curves), sharex=True, sharey=True, squeeze=False)[0]
     for ax, (label, fit) in zip(row, curves, strict=True):
