@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -133,10 +134,9 @@ class Search:
 
     # -- models ---------------------------------------------------------------------------------------------
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None,
-              rival: float = math.inf) -> Fit:  # fmt: skip
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
-        return fit(self.workshop.bench(effects), self.names(effects), start, here, rival)
+        return fit(self.workshop.bench(effects), self.names(effects), start, here, **how)
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""
@@ -182,53 +182,73 @@ class Search:
     # -- screen ---------------------------------------------------------------------------------------------
 
     def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
-        """Score tests of every effect not yet in the model, by slope at zero and, where that may mislead, by secant."""
+        """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or
+        may mislead."""
         w = self.workshop
         free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
-        found: list[Screened] = []
-        for group in (w.light, w.heavy, w.demanding):
-            here = [e for e in free if e in group]
-            if here:
-                bench = w.bench((*effects, *(e for e in here if group is not w.light)))
-                found += self._screen_on(bench, effects, base, here)
+        found, here = self._by_slopes(effects, base, [e for e in free if e in w.light])
+        for group in (w.heavy, w.demanding):
+            more = [e for e in free if e in group]
+            if more:
+                found += self._by_secants(w.bench((*effects, *more)), base, here, more)
         return sorted(found, key=lambda s: -s.score.drop)
 
-    def _screen_on(self, bench: Bench, effects: Sequence[str], base: Fit, here: list[str]) -> list[Screened]:
+    def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
+        """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
         w = self.workshop
-        names = [n for e in here for n in w.parameters(e)]
+        bench, names = w.bench(effects), [n for e in light for n in w.parameters(e)]
+        here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
+        off, unbent = self._off(bench, base, here), self._unbent(bench, base, names)
+        found = []
+        for effect in light:
+            if self._is_an_offset(effect, here):
+                found += self._by_slopes(effects, self._base(effect, effects, base, None)[0], [effect])[0]
+                continue
+            own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
+            tangent = self._score(here, off, effect, here.S[:, own])
+            bent = [] if self._linear(effect) else self._secants(bench, here, base.values, effect)
+            secants = [self._score(here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
+            found.append(self._screened([tangent, *secants], here))
+        return found, here
+
+    def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
+        """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
+        and the filters of the model without them serve: at zero they change nothing."""
+        values = [base.values, *self._straightened(bench, base)]
         try:
-            evidence = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
+            at = [bench.again(here, v) for v in values]
         except SimulationError:
             return []
-        off = projector(evidence.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
-        unbent = self._unbent(bench, base, names)
-        found = []
-        for effect in here:
-            if self._is_an_offset(effect, evidence):
-                fewer, _ = self._base(effect, effects, base, None)
-                found += self._screen_on(bench, effects, fewer, [effect])
-                continue
-            own = [evidence.by.index(n) for n in w.parameters(effect)]
-            tangent = self._score(evidence, off, effect, evidence.S[:, own])
-            columns = [names.index(n) for n in w.parameters(effect)]
-            others = [*self._secants(bench, base, evidence, effect), *(S[:, columns] for S in unbent)]
-            secants = [self._score(evidence, off, effect, S) for S in others]
-            best = max(secants, key=lambda s: s.drop, default=tangent)
-            delta = np.array([self.records[n].smallest_interesting for n in w.parameters(effect)])
-            found.append(Screened(tangent if best.drop <= tangent.drop else replace(best, p=tangent.p), evidence, delta))
+        off, found = self._off(bench, base, here), []
+        for effect in effects:
+            secants = [S for e, v in zip(at, values, strict=True) for S in self._secants(bench, e, v, effect)]
+            if secants:
+                found.append(self._screened([self._score(at[0], off, effect, S) for S in secants], here))
         return found
+
+    def _off(self, bench: Bench, base: Fit, here: Evidence) -> Callable[[np.ndarray], np.ndarray]:
+        """Takes what calibration can imitate off any columns."""
+        return projector(here.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
+
+    def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
+        """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
+        best = max(scores, key=lambda s: s.drop)
+        delta = np.array([self.records[n].smallest_interesting for n in best.names])
+        return Screened(replace(best, p=scores[0].p), here, delta)
 
     def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
         """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
         them: what it bent to imitate an effect may be what the effect works through."""
-        straight, off = _straight(prior_of(bench, base.names), np.array([base.values[n] for n in base.names]))
-        if off <= BENT:
-            return []
         try:
-            values = dict(zip(base.names, map(float, straight), strict=True))
-            return [bench.evidence(self.workshop.campaign.fit, values, names).S]
+            return [bench.evidence(self.workshop.campaign.fit, v, names).S for v in self._straightened(bench, base) if names]
         except SimulationError:
             return []
+
+    @staticmethod
+    def _straightened(bench: Bench, base: Fit) -> list[dict[str, float]]:
+        """Calibrated values as the campaign has them, if a fit has bent them."""
+        straight, off = _straight(prior_of(bench, base.names), np.array([base.values[n] for n in base.names]))
+        return [dict(zip(base.names, map(float, straight), strict=True))] if off > BENT else []
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
         """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
@@ -260,17 +280,18 @@ class Search:
         delta = np.array([r.smallest_interesting for r in records])
         return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))
 
-    def _secants(self, bench: Bench, base: Fit, known: Evidence, effect: str) -> list[np.ndarray]:
-        """What the effect really does at its smallest interesting size, and at minus that: (N, k) per unit, each."""
-        records = [] if self._linear(effect) else [self.records[n] for n in self.workshop.parameters(effect)]
+    def _secants(self, bench: Bench, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
+        """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
+        (N, k) per unit, each. `known` is the evidence at `values`, where it is off."""
+        records = [self.records[n] for n in self.workshop.parameters(effect)]
         found = []
-        for sign in (1.0, -1.0):
+        for sign in (1.0,) if self._linear(effect) else (1.0, -1.0):
             sizes = {r.name: sign * r.smallest_interesting for r in records if r.lower <= sign * r.smallest_interesting}
             try:
-                columns = [(known.r - bench.again(known, {**base.values, n: size}).r) / size for n, size in sizes.items()]
+                columns = [(known.r - bench.again(known, {**values, n: size}).r) / size for n, size in sizes.items()]
             except SimulationError:
                 continue
-            if columns and len(columns) == len(records):
+            if len(columns) == len(records):
                 found.append(np.stack(columns, axis=1))
         return found
 
@@ -287,22 +308,22 @@ class Search:
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self._base(effect, effects, base, base_held)
-        fits = []
+        begun = []
         for start, here in self._starts(bench, base, s):
             try:
-                fits.append(self.refit((*effects, effect), start, here, rival))
+                begun.append(self.refit((*effects, effect), start, here, rival=rival, most=1))
             except SimulationError:
                 continue
-            rival = min(rival, fits[-1].misfit)
-        if not fits:
+        if not begun:
             return None
-        found = min(fits, key=lambda f: f.misfit)
+        ahead = min(begun, key=lambda f: f.misfit)
+        found = self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival)
         held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
         return self._judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
     def _starts(self, bench: Bench, base: Fit, s: Screened) -> list[tuple[dict[str, float], Evidence | None]]:
         """Where to start refits, and what is known there: a linear effect from zero, others from the most promising of
-        several sizes: the expected change, both signs of δ, and larger ones."""
+        several sizes: the expected change, both signs of δ, and larger ones. None, if none of these promises anything."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         calibrated = np.array([base.values[n] for n in base.names])
@@ -310,7 +331,8 @@ class Search:
         calibrations = [calibrated, straight] if off > BENT else [calibrated]
         linear = self._linear(s.score.effect)
         if linear and len(calibrations) == 1:
-            return [({n: base.values.get(n, 0.0) for n in names}, s.evidence.only(names))]
+            known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
+            return [({n: base.values.get(n, 0.0) for n in names}, known)]
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
@@ -318,7 +340,10 @@ class Search:
         sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
         tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
-        best = sorted(tries, key=lambda theta: (self._promise(bench, known, names, np.array(theta)), theta))
+        promises = {theta: self._promise(bench, known, names, np.array(theta)) for theta in tries}
+        off = self._promise(bench, known, names, np.concatenate([calibrated, np.zeros(len(records))]))
+        enough = off - PROMISING * float(np.mean(known.r**2))
+        best = sorted((t for t, promise in promises.items() if promise < enough), key=lambda t: (promises[t], t))
         return [(dict(zip(names, map(float, theta), strict=True)), None) for theta in best[: 1 if linear else STARTS]]
 
     def _promise(self, bench: Bench, known: Evidence, names: list[str], theta: np.ndarray) -> float:
@@ -372,11 +397,10 @@ class Search:
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
         for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most):
-            leader = max((c.drop for c in candidates), default=0.0)
-            if self._linear(s.score.effect) and s.score.drop < HOPELESS * leader:
+            rival = min((c.fit.misfit for c in candidates), default=math.inf)
+            if self._linear(s.score.effect) and s.score.drop < HOPELESS * (base.misfit - rival):
                 continue
             self.say(f"refitting {s.score.effect}")
-            rival = min((c.fit.misfit for c in candidates), default=math.inf)
             c = self.candidate(base, base_held, effects, s, len(screened), rival)
             if c is not None:
                 candidates.append(c)

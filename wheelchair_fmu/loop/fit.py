@@ -21,6 +21,7 @@ from .evidence import Bench, Evidence
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 MOST = 8  # linearisations
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
+AT_BOUND = 1e-3  # of a parameter's scale
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -115,9 +116,11 @@ class Problem:
         return S.T @ r + self.prior.slopes @ self.prior.rows(theta)
 
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
-        """How much the squares would fall at most, if slopes held all the way."""
+        """How much the squares would fall at most, if slopes held all the way: of what no bound holds."""
         g = self.gradient(here.S, here.r, theta)
-        return float(g @ np.linalg.pinv(self.information(here), hermitian=True) @ g)
+        near = AT_BOUND * self.scale
+        free = ~((theta < self.lower + near) & (g < 0) | (theta > self.upper - near) & (g > 0))
+        return float(g[free] @ np.linalg.pinv(self.information(here)[np.ix_(free, free)], hermitian=True) @ g[free])
 
     def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
         """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
@@ -145,17 +148,18 @@ class Problem:
 
 
 def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None,
-        rival: float = math.inf) -> Fit:  # fmt: skip
+        rival: float = math.inf, most: int = MOST) -> Fit:  # fmt: skip
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
-    `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end.
+    `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
+    how often all is linearised anew.
     Raises SimulationError where the model cannot be simulated at the start.
     """
     problem = Problem(bench, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
-    for _ in range(MOST if names else 0):
-        if problem.expected(here, theta) < STRAIGHT:
+    for _ in range(most if names else 0):
+        if problem.expected(here, theta) < max(STRAIGHT, (problem.misfit(here, theta) - rival) / MOST):
             break
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
