@@ -114,28 +114,6 @@ def test_cm_lateral_offset_balances_loads_and_turns_a_straight_push():
     assert M_z.item() == pytest.approx(2 * 10.0 * 0.01)  # the pushes pass 10 mm to the left of the CM
 
 
-def test_caster_friction_pushes_the_swinging_caster_with_its_lever():
-    variant = Variant().with_values({**SMOOTH, "effect.caster_friction.M": 0.2})
-    model = variant.model()
-    x = np.zeros(model.x.numel())
-    x[3], x[5] = 1.0, 0.1  # casters straight while the chair begins to turn: they swing to the right
-    F_yf, rate = evaluate(model, Place(x, np.zeros(9), variant.vector()), model.quantities["F_yf"],
-                          model.quantities["swivel_rate"])  # fmt: skip
-    assert np.all(rate > 1)
-    np.testing.assert_allclose(F_yf, -0.2 / 0.05, rtol=1e-6)
-
-
-def test_casters_swing_round_when_the_chair_backs_up():
-    variant = Variant().with_effects(["caster_friction"])
-    simulator = Simulator(variant)
-    t = np.linspace(0, 4, 401)
-    nudge = np.where(t < 0.2, 1.0, 0.0)
-    result = simulator.run(t, simulator.inputs(401, {"push.F_rl": -10.0 - nudge, "push.F_rr": -10.0}),
-                           variant.with_values({"start.u": -0.3}).vector())  # fmt: skip
-    assert np.abs(np.abs(result["caster.fl"][-1]) - np.pi) < 0.3
-    assert np.isfinite(result.results).all()
-
-
 def test_push_force_gain_divides_the_record():
     result = run({**SMOOTH, "effect.push_force_gain.r": 0.25, "effect.push_force_gain.l": 0.25, "start.u": 0.0},
                  {"push.F_rl": 10.0, "push.F_rr": 10.0})  # fmt: skip

@@ -1,7 +1,8 @@
-"""Swivel inertia of the casters: turning one takes a torque,  M_w = −I (δ'' + ψ'').
+"""Swivel inertia of the casters: turning one takes a lateral force at its patch,  c F = −I (δ'' + ψ''), (8).
 
-The acceleration is that of the swivel rate through a short filter, Ω' = (δ' + ψ' − Ω)/τ, because the
-rate itself may jump with the pushes.
+No bearing turns the caster, so the chair feels the force at the pivot and no moment: what the inertia adds to the torque M_w
+it takes off the moment M_f. The acceleration is that of the swivel rate through a short filter,
+Ω' = (δ' + ψ' − Ω)/τ, because the rate itself may jump with the pushes.
 """
 
 from ...quantities import FRONT, KG_M2, RAD_S, Parameter, S, State
@@ -28,7 +29,7 @@ EFFECT = Effect(
     "swivel inertia of the casters",
     parameters=(INERTIA,),
     constants=(FILTER,),
-    contributions=(adds("M_w", reaction),),
+    contributions=(adds("M_w", reaction), adds("M_f", reaction)),
     rows=(Row(RATE, lambda: 1.0, acceleration),),
     needs={"caster": "swivelling"},
 )
