@@ -1,0 +1,124 @@
+"""Where the mass is and how it moves, each against a truth its file does not contain."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_simpson
+
+from tests.model.effects.chair import I_Z, MASS, SMOOTH, T_F, T_R, TOP, A, B, G, run, snapshot
+
+PUSH = {"push.F_rl": 20.0, "push.F_rr": 20.0}
+
+
+def overturning(now: dict) -> float:
+    """Moment of the loads about the chair's long axis, positive where the left wheels carry more."""
+    (rl, rr), (fl, fr) = now["N_r"], now["N_f"]
+    return (rl - rr) * T_R / 2 + (fl - fr) * T_F / 2
+
+
+def pitching(now: dict) -> float:
+    """Moment of the loads about the CM's transverse axis, positive where the rear wheels carry more."""
+    return sum(now["N_r"]) * B - sum(now["N_f"]) * A
+
+
+@pytest.mark.effect("lateral_load_transfer")
+def test_lateral_load_transfer_balances_the_overturning_moment():
+    h = 0.5
+    now = snapshot({"effect.lateral_load_transfer.h": h, "start.u": 1.5, "start.v": 0.18, "start.psi_dot": 1.0,
+                    "start.psi": 0.7}, {"floor.slope_x": 0.05})  # fmt: skip
+    assert abs(now["sensor.a_y"]) > 0.1
+    assert overturning(now) == pytest.approx(MASS * now["sensor.a_y"] * h, rel=1e-9)
+    assert sum(now["N_r"]) + sum(now["N_f"]) == pytest.approx(MASS * G)
+
+
+@pytest.mark.effect("longitudinal_load_transfer")
+def test_longitudinal_load_transfer_balances_the_pitching_moment():
+    h = 0.6
+    for start, slope in (({}, 0.0), ({"start.psi": np.pi, "start.u": 0.5}, 0.05)):
+        now = snapshot({**start, "effect.longitudinal_load_transfer.h": h}, {**PUSH, "floor.slope_x": slope})
+        assert abs(now["sensor.a_x"]) > 0.1
+        assert pitching(now) == pytest.approx(MASS * now["sensor.a_x"] * h, rel=1e-9)
+        assert sum(now["N_r"]) + sum(now["N_f"]) == pytest.approx(MASS * G)
+
+
+@pytest.mark.effect("longitudinal_load_transfer")
+def test_the_casters_lift_at_the_push_that_tips_the_chair():
+    """About the rear contact patches: m a_x h = m g b."""
+    h = 0.6
+    values = {**SMOOTH, "effect.longitudinal_load_transfer.h": h}
+    for share in (1 - 1e-6, 1 + 1e-6):
+        each = share * MASS * G * B / h / 2
+        assert snapshot(values, {"push.F_rl": each, "push.F_rr": each})["load.lifted"] == (share > 1)
+
+
+@pytest.mark.effect("cm_lateral_offset")
+def test_cm_lateral_offset_balances_loads_and_turns_a_straight_push():
+    y = 0.01
+    now = snapshot({**SMOOTH, "effect.cm_lateral_offset.y": y}, PUSH)
+    assert overturning(now) == pytest.approx(-MASS * G * y, rel=1e-9)
+    assert now["M_z"] == pytest.approx(2 * 20.0 * y)  # the pushes pass 10 mm to the left of the CM
+
+
+@pytest.mark.effect("cm_lateral_offset")
+def test_resistance_in_proportion_to_load_does_not_turn_a_coasting_chair():
+    """On each axle it acts where the load does, and that is in line with the CM, wherever this lies."""
+    coasting = {"effect.cm_lateral_offset.y": 0.03, "start.u": 1.0}
+    now, uneven = snapshot(coasting), snapshot({**coasting, "effect.rolling_resistance_asymmetry.D": 0.1})
+    assert now["D_r"][1] > 1.1 * now["D_r"][0]
+    assert now["M_z"] == pytest.approx(0, abs=1e-12)
+    assert abs(uneven["M_z"]) > 0.01
+
+
+@pytest.mark.effect("wheel_inertia")
+def test_wheel_inertia_is_mass_ahead_and_in_the_turn():
+    """Two wheels of 0.14 kg m² on 0.31 m: ahead both add I/R² to the mass, on the spot at the arm t_r/2 to I_z."""
+    I, R, F = 0.14, 0.31, 10.0  # noqa: E741
+    values = {**TOP, "effect.wheel_inertia.m": 2 * I / R**2}
+    ahead = run(values, {"push.F_rl": F, "push.F_rr": F})
+    np.testing.assert_allclose(ahead["chair.u"], 2 * F / (MASS + 2 * I / R**2) * ahead.time, rtol=1e-8, atol=1e-12)
+    spin = run(values, {"push.F_rl": F, "push.F_rr": -F})
+    inertia = I_Z + 2 * I / R**2 * (T_R / 2) ** 2
+    np.testing.assert_allclose(spin["chair.psi_dot"], T_R * F / inertia * spin.time, rtol=1e-8, atol=1e-12)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_a_steady_push_moves_the_trunk_ahead_and_the_frame_back():
+    """The CM obeys Newton; the frame is the CM less s = s₁ (1 − exp(−t/T)), and carries the instruments."""
+    F, lag, amplitude = 40.0, 0.15, 0.02
+    result = run({**SMOOTH, "start.u": 0.0, "effect.trunk_motion.amplitude": amplitude}, PUSH, T=1.0, n=101)
+    t, s1 = result.time, amplitude * F / 80
+    fading = np.exp(-t / lag)
+    np.testing.assert_allclose(result["chair.x"], F / MASS * t**2 / 2, rtol=1e-7, atol=1e-12)
+    np.testing.assert_allclose(result["effect.trunk_motion.lean"], s1 * (1 - fading), rtol=1e-7, atol=1e-12)
+    np.testing.assert_allclose(result["sensor.wheel_speed_l"], F / MASS * t - s1 / lag * fading, rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(result["sensor.a_x"], F / MASS + s1 / lag**2 * fading, rtol=1e-6)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_a_trunk_that_leans_moves_the_load_with_it():
+    s = 0.03
+    now = snapshot({"effect.trunk_motion.amplitude": 0.02}, states={"effect.trunk_motion.lean": s})
+    assert pitching(now) == pytest.approx(-MASS * G * s, rel=1e-9)  # about where the CM was
+    assert sum(now["N_r"]) + sum(now["N_f"]) == pytest.approx(MASS * G)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_the_frame_stays_rigid_while_the_trunk_leans():
+    """Hubs and pivots keep their distances, and all of the frame falls back against the CM as fast as the trunk leans."""
+    turning = {"start.u": 1.0, "start.v": 0.1, "start.psi_dot": 0.8}
+    leaning = snapshot({**turning, "effect.trunk_motion.amplitude": 0.02}, PUSH, {"effect.trunk_motion.lean": 0.004})
+    lean_rate = leaning["effect.trunk_motion.lean'"]
+    assert lean_rate > 0.01
+    for velocity, arms in ((leaning["v_xf"], T_F / 2), (leaning["v_xr"], T_R / 2)):
+        np.testing.assert_allclose(velocity, 1.0 - lean_rate + 0.8 * arms * np.array([1, -1]), rtol=1e-12)
+    np.testing.assert_allclose(leaning["v_yf"] - leaning["v_yr"], 0.8 * (A + B), rtol=1e-12)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_an_accelerometer_on_the_frame_adds_up_to_the_frames_speed():
+    result = run({**SMOOTH, "effect.trunk_motion.amplitude": 0.02},
+                 dict.fromkeys(PUSH, lambda t: 40 * np.sin(np.pi * t) ** 2), T=2.0, n=4001)  # fmt: skip
+    assert np.ptp(result["sensor.wheel_speed_l"] - result["chair.u"]) > 0.02
+    added = cumulative_simpson(result["sensor.a_x"], x=result.time, initial=0)
+    np.testing.assert_allclose(result["sensor.wheel_speed_l"] - result["sensor.wheel_speed_l"][0], added, atol=5e-6)

@@ -1,0 +1,123 @@
+"""What slows, turns or pulls a rolling chair, each against a truth its file does not contain."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, I_Z, MASS, SMOOTH, T_R, TOP, B, G, run
+
+ALL = ("aerodynamic_drag", "floor_cross_slope", "floor_slope", "rolling_resistance_asymmetry", "rolling_resistance_speed",
+       "scrub_torque", "scrub_torque_viscous")  # fmt: skip
+
+
+def drive(values, inputs=None, **how):
+    return run(values, inputs, among=ALL, **how)
+
+
+@pytest.mark.effect("rolling_resistance_speed")
+def test_rolling_resistance_speed_decays_exponentially():
+    k = 20.0
+    result = drive({**SMOOTH, "effect.rolling_resistance_speed.k": k})
+    np.testing.assert_allclose(result["chair.u"], np.exp(-k / MASS * result.time), rtol=1e-7)
+
+
+@pytest.mark.effect("aerodynamic_drag")
+@pytest.mark.parametrize("u", [3.0, -3.0])
+def test_air_slows_a_coasting_chair_by_the_quadratic_law(u):
+    """m u' = −k u |u|: 1/|u| grows linearly, the way like a logarithm; backward as forward."""
+    k = 5.0
+    result = drive({**SMOOTH, "start.u": u, "effect.aerodynamic_drag.k": k})
+    growth = 1 + k * abs(u) / MASS * result.time
+    np.testing.assert_allclose(result["chair.u"], u / growth, rtol=1e-7)
+    np.testing.assert_allclose(result["chair.x"], np.sign(u) * MASS / k * np.log(growth), rtol=1e-7)
+
+
+@pytest.mark.effect("aerodynamic_drag")
+def test_down_a_slope_the_chair_ends_at_its_terminal_speed():
+    k, slope = 20.0, 0.1
+    result = drive({**SMOOTH, "start.u": 0.0, "effect.aerodynamic_drag.k": k}, {"floor.slope_x": slope}, T=30)
+    terminal = np.sqrt(MASS * G * np.sin(slope) / k)
+    np.testing.assert_allclose(
+        result["chair.u"], terminal * np.tanh(G * np.sin(slope) / terminal * result.time), rtol=1e-6, atol=1e-9
+    )
+
+
+@pytest.mark.effect("scrub_torque")
+def test_dry_scrub_stops_a_spin_at_its_time_and_angle():
+    """I_z ψ'' = −M: linearly down to rest at t = I_z ψ'₀ / M, after the angle ½ I_z ψ'₀² / M that energy says."""
+    M, spin = 1.0, 1.0
+    result = drive({**TOP, "start.psi_dot": spin, "effect.scrub_torque.M": M, "effect.scrub_torque.rate": 1e-5})
+    expected = np.maximum(spin - M / I_Z * result.time, 0)
+    np.testing.assert_allclose(result["chair.psi_dot"], expected, atol=1e-5)  # the rate within which it builds up
+    assert result["chair.psi"][-1] == pytest.approx(I_Z * spin**2 / (2 * M), rel=1e-5)
+
+
+@pytest.mark.effect("scrub_torque")
+def test_dry_scrub_holds_a_chair_against_a_weaker_torque():
+    M = 1.0
+    for share, turns in ((0.99, False), (1.5, True)):
+        F = share * M / T_R
+        result = drive({**TOP, "effect.scrub_torque.M": M, "effect.scrub_torque.rate": 1e-5},
+                       {"push.F_rl": F, "push.F_rr": -F})  # fmt: skip
+        expected = (share - 1) * M / I_Z * result.time[-1] if turns else 0.0
+        assert result["chair.psi_dot"][-1] == pytest.approx(expected, rel=1e-4, abs=2e-5)
+
+
+@pytest.mark.effect("scrub_torque_viscous")
+def test_viscous_scrub_fades_a_spin_exponentially():
+    """I_z ψ'' = −d ψ', which ends after the angle I_z ψ'₀ / d."""
+    d, spin = 3.0, 2.0
+    result = drive({**TOP, "start.psi_dot": spin, "effect.scrub_torque_viscous.d": d}, T=20)
+    np.testing.assert_allclose(result["chair.psi_dot"], spin * np.exp(-d / I_Z * result.time), rtol=1e-6, atol=1e-8)
+    assert result["chair.psi"][-1] == pytest.approx(I_Z * spin / d, rel=1e-6)
+
+
+@pytest.mark.effect("rolling_resistance_asymmetry")
+def test_a_wheel_that_rolls_harder_is_held_by_as_much_more_push():
+    """With D more on the left a chair coasts to the left, keeps its speed, and runs straight under D more push there."""
+    D = 1.5
+    values = {"effect.rolling_resistance_asymmetry.D": D}
+    even, free = drive({}), drive(values)
+    assert free["chair.psi"][100] < -0.01
+    np.testing.assert_allclose(free["chair.u"][:2], even["chair.u"][:2], rtol=1e-6)
+    held = drive(values, {"push.F_rl": D / 2, "push.F_rr": -D / 2})
+    np.testing.assert_allclose(held["chair.u"], even["chair.u"], rtol=1e-12)
+    np.testing.assert_allclose(held["chair.psi"], 0, atol=1e-12)
+
+
+@pytest.mark.effect("floor_slope")
+def test_a_floor_that_falls_along_its_diagonal_is_rolled_down_and_up():
+    """Slopes x and y alike: heading 45° is the fall line, on which u' = √2 g sin; the floor does not turn with the chair."""
+    fall = np.sqrt(2) * G * np.sin(0.02)
+    floor = {**SMOOTH, "effect.floor_slope.x": 0.02, "effect.floor_slope.y": 0.02}
+    down = drive({**floor, "start.psi": np.pi / 4, "start.u": 0.0})
+    np.testing.assert_allclose(down["chair.u"], fall * down.time, rtol=1e-7, atol=1e-12)
+    up = drive({**floor, "start.psi": np.pi / 4 + np.pi, "start.u": 1.0}, n=5001)
+    highest = -(up["chair.x"] + up["chair.y"]).min() / np.sqrt(2)
+    assert highest == pytest.approx(1.0 / (2 * fall), rel=1e-6)  # ½ u² = g h
+    np.testing.assert_allclose(down["sensor.a_x"], 0, atol=1e-9)  # a free fall along the floor
+
+
+@pytest.mark.effect("floor_cross_slope")
+def test_across_a_slope_a_free_chair_turns_downhill_in_a_circle():
+    """Without self-aligning torque the rear tyres can carry no force, so u ψ' = g sin θ, whatever the heading by then."""
+    theta, u = 0.02, 1.0
+    result = drive({**SMOOTH, "tyre.C_m_lambda": 0.0, "speed.mode": "prescribed", "speed.u": u,
+                    "effect.floor_cross_slope.theta": theta}, T=30)  # fmt: skip
+    late = result.time > 15
+    np.testing.assert_allclose(result["chair.psi_dot"][late], G * np.sin(theta) / u, rtol=1e-6)
+    np.testing.assert_allclose(result["sensor.a_y"][late], 0, atol=1e-6)
+    assert result["chair.psi"][-1] > 5
+
+
+@pytest.mark.effect("floor_cross_slope")
+def test_across_a_slope_a_chair_is_kept_straight_by_the_arm_of_its_tyres():
+    """The rear tyres carry m g sin θ at b and the pneumatic trail behind the CM, which the pushes must balance."""
+    weight, slip = MASS * G * np.sin(0.02), -MASS * G * np.sin(0.02) / (2 * C_LAMBDA)
+    difference = -weight * (B + C_M_LAMBDA / C_LAMBDA) / T_R
+    result = drive({**SMOOTH, "speed.mode": "prescribed", "effect.floor_cross_slope.theta": 0.02},
+                   {"push.F_rl": difference, "push.F_rr": -difference})  # fmt: skip
+    assert result["chair.psi_dot"][-1] == pytest.approx(0, abs=1e-5)
+    assert result["slip.rl"][-1] == pytest.approx(slip, rel=1e-4)
+    assert result["sensor.a_y"][-1] == pytest.approx(-G * np.sin(0.02), rel=1e-4)
