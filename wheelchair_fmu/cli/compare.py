@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import chain, islice
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 import typer
@@ -30,7 +32,9 @@ from .settings import subject
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
 PIECE = 60.0  # s: a longer run is compared piece by piece
-AT_ONCE = 8  # pieces whose filters are in memory together
+AT_ONCE = 4  # pieces whose filters are made together, while those before them go through the FMU
+
+Item = TypeVar("Item")
 
 
 def register(app: typer.Typer) -> None:
@@ -85,16 +89,27 @@ def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float],
     cut = {run.name: pieces(run, PIECE) for run in measured.runs}
     bench = Bench(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
     results = [o.name for o in chair.model().outputs]
+    batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
+    batch_by_batch = _ahead(bench.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
+    evidence = chain.from_iterable(batch_by_batch)
     with Fmu(fmu_of(chair)) as fmu:
         for name, parts in cut.items():
             say(f"simulating {name}")
             found = []
-            for first in range(0, len(parts), AT_ONCE):
-                for e in bench.evidence(parts[first : first + AT_ONCE], values, (), tune_start=TUNING).runs:
-                    given = {**measured.known, **values, **{n: e.start[n] for n in START}}
-                    predicted = run_campaign_run(fmu, e.run, {n: v for n, v in given.items() if n in fmu.parameters})
-                    found.append(errors_of(e, predicted, REGIMES, results))
+            for e in islice(evidence, len(parts)):
+                given = {**measured.known, **values, **{n: e.start[n] for n in START}}
+                predicted = run_campaign_run(fmu, e.run, {n: v for n, v in given.items() if n in fmu.parameters})
+                found.append(errors_of(e, predicted, REGIMES, results))
             yield together(name, found)
+
+
+def _ahead(items: Iterable[Item]) -> Iterator[Item]:
+    """The same items, each made while the one before it is used."""
+    with ThreadPoolExecutor(1) as beside:
+        making = beside.submit(next, iterator := iter(items), None)
+        while (item := making.result()) is not None:
+            making = beside.submit(next, iterator, None)
+            yield item
 
 
 def _notes(measured: Campaign) -> list[str]:

@@ -31,6 +31,7 @@ START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about wha
 POSE_SD = 0.05
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
+SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
 FIRST = 0.2  # s of samples that say where a run starts
 
 
@@ -170,7 +171,7 @@ class Bench:
                  tune_start: int = 0) -> Evidence:  # fmt: skip
         """Evidence of these runs at parameter `values` (SI), with sensitivities `by` some of them.
 
-        `tune_start`: how often to move the simulated start to where the readings want it.
+        `tune_start`: how often at most to move the simulated start to where the readings want it.
         """
 
         def one(run: Run) -> RunEvidence:
@@ -195,9 +196,14 @@ class Bench:
         return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
+        e = self._one(run, values, by)
         for _ in range(rounds):
-            self.starts[run.name] = self._better_start(self._one(run, values, ()))
-        return self._one(run, values, by)
+            better, sd = self._better_start(e), start_sd(run)
+            if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in START):
+                break
+            self.starts[run.name] = better
+            e = self._one(run, values, by)
+        return e
 
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
         """The start given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
