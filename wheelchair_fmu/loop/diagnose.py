@@ -73,11 +73,16 @@ class Candidate:
     lawful: bool
 
     @property
-    def found(self) -> bool:
-        """There, large enough to matter, visible, and it predicts runs it has not seen."""
+    def proven(self) -> bool:
+        """There, visible, and it predicts runs it has not seen."""
         predicts = self.gain is None or self.gain[1] > 0 or (self.p < PLAIN and self.gain[2] > 0)
         shows = self.visible > VISIBLE and self.falls
-        return self.lawful and self.p < SIGNIFICANT and not self.small and shows and predicts
+        return self.lawful and self.p < SIGNIFICANT and shows and predicts
+
+    @property
+    def found(self) -> bool:
+        """Proven, and large enough to matter."""
+        return self.proven and not self.small
 
 
 @dataclass(frozen=True)

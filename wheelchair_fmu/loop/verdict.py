@@ -212,17 +212,20 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=3, visible=PLAINLY_VISIBLE)
+        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=3)
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - decisive(base.evidence):
             return alone, lone
-    left = generic_search.round(effects, base, held, list(generic), most=3, visible=PLAINLY_VISIBLE)
-    return left, next((c for c in left.candidates if _clear(c)), None)
+    left = generic_search.round(effects, base, held, list(generic), most=3)
+    catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
+    better = catalogued + decisive(base.evidence)  # than an effect that was too small, or not proven
+    return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)
 
 
 def _clear(c: Candidate) -> bool:
-    """A term that nobody asked for must show more plainly than an effect of the catalogue."""
-    return c.found and c.visible > PLAINLY_VISIBLE
+    """A term that nobody asked for must show more plainly than an effect of the catalogue. What size of it would be of
+    interest nobody has said."""
+    return c.proven and c.visible > PLAINLY_VISIBLE
 
 
 def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate,

@@ -50,6 +50,11 @@ CASTER = {
     "spring_dry": ("that pulls the casters straight, the same at any angle", "-direction(sin(delta), 0.02)"),
     "one_sided": ("that turns both casters to one side", "1 + 0 * delta"),
 }
+WHEEL = {
+    "speed": ("proportional to speed", "magnitude(u, 0.01)"),
+    "right": ("in right turns", "(1 + direction(psi_dot, 0.02)) / 2"),
+    "left": ("in left turns", "(1 - direction(psi_dot, 0.02)) / 2"),
+}
 READINGS = {
     "read_yaw_rate": (RAD_S, "yaw rate reading"),
     "read_a_x": (M_S2, "forward acceleration reading"),
@@ -95,6 +100,8 @@ def terms() -> dict[str, Term]:
         *_family("M_z", N_M, "a turning moment", ODD),
         *_family("M_z", N_M, "a turning moment", ONE_SIDED, "_sided"),
         *_family("M_w", N_M, "a torque on each caster", CASTER),
+        *_family("D_r", N, "a drag of the left rear wheel", _of_wheel("vertcat({}, 0 * u)"), "_l"),
+        *_family("D_r", N, "a drag of the right rear wheel", _of_wheel("vertcat(0 * u, {})"), "_r"),
     ]
     for to, (unit, noun) in READINGS.items():
         found.append(Term(f"generic_{to}_offset", f"an offset of the {noun}", to, unit, "q + 0 * psi_dot"))
@@ -105,6 +112,10 @@ def terms() -> dict[str, Term]:
 def _family(to: str, unit: Unit, noun: str, bases: dict[str, tuple[str, str]], suffix: str = "") -> list[Term]:
     return [Term(f"generic_{to}_{key}{suffix}", f"{noun} {words}", to, unit, f"q * ({expression})")
             for key, (words, expression) in bases.items()]  # fmt: skip
+
+
+def _of_wheel(which: str) -> dict[str, tuple[str, str]]:
+    return {key: (words, which.format(expression)) for key, (words, expression) in WHEEL.items()}
 
 
 def library() -> dict[str, Effect]:
