@@ -396,12 +396,12 @@ class Search:
     # -- search ---------------------------------------------------------------------------------------------
 
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
-              most: int = SHORTLIST, visible: float = 0.0) -> Round:  # fmt: skip
+              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE) -> Round:  # fmt: skip
         """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, as far as slopes tell,
-        is not refitted."""
+        is not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
-        for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most):
+        for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most, twin):
             rival = min((c.fit.misfit for c in candidates), default=math.inf)
             if self._linear(s.score.effect) and s.score.drop < HOPELESS * (base.misfit - rival):
                 continue
@@ -463,8 +463,8 @@ def _late(run: str, seconds: float, left_out: bool) -> str:
             f"measured; {after}. Correct its time column")  # fmt: skip
 
 
-def shortlist(screened: Sequence[Screened], most: int) -> list[Screened]:
+def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
     """The best by expected drop, and whatever looks like the leader; not what is surely far too small to matter."""
     promising = [s for s in screened if s.score.drop > PROMISING and not s.negligible]
     first, rest = promising[:most], promising[most:]
-    return [*first, *(s for s in rest if alike(s.score, first[0].score) > ALIKE)]
+    return [*first, *(s for s in rest if alike(s.score, first[0].score) > twin)]

@@ -27,6 +27,7 @@ WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they we
 NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
+TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
 
@@ -212,11 +213,11 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=3)
+        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0)
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - decisive(base.evidence):
             return alone, lone
-    left = generic_search.round(effects, base, held, list(generic), most=3)
+    left = generic_search.round(effects, base, held, list(generic), most=TERMS, twin=1.0)
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = catalogued + decisive(base.evidence)  # than an effect that was too small, or not proven
     return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)
