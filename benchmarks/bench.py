@@ -11,14 +11,14 @@ from pathlib import Path
 
 from rich.console import Console
 
-from wheelchair_fmu.cli.files import written
 from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.writing import written
 
-from . import growth, loop_cost, page_cost, run_cost, sensitivity_cost, step_cost, sweep_cost
+from . import file_cost, growth, loop_cost, page_cost, run_cost, sensitivity_cost, step_cost, sweep_cost
 from .rows import table
 
 TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
-GROUPS = (step_cost, run_cost, sensitivity_cost, sweep_cost, loop_cost, page_cost)
+GROUPS = (step_cost, run_cost, sensitivity_cost, file_cost, sweep_cost, loop_cost, page_cost)
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import time
 
 import numpy as np
 import pytest
@@ -223,18 +222,3 @@ def test_parameters_priors_sets_and_nuisances(campaign):
     assert c.priors == {"tyre.C_lambda": 500.0, "chair.I_z": 0.3}
     assert c.runs[1].set == {"chair.m": 90.0, "tyre.force.C": 1.5}
     assert (c.nuisance, c.nuisance_sd) == (("yaw_rate", "a_y"), {"yaw_rate": 0.002})
-
-
-def test_speed(campaign):
-    """Ten runs of 2000 rows in well under 0.3 s; the best of three, as other work may be going on."""
-    data = motion(2000)
-    files = {f"r{i}.csv": csv_text(SI, rows(data)) for i in range(10)}
-    runs = "".join(f'[[run]]\nfile = "{f}"\nmanoeuvre = "x"\nrole = "{"fit" if i else "holdout"}"\nu0 = 1\n'
-                   for i, f in enumerate(files))  # fmt: skip
-    folder = campaign(runs=runs, files=files)
-    seconds = []
-    for _ in range(3):
-        start = time.perf_counter()
-        assert len(read(folder).runs) == 10
-        seconds.append(time.perf_counter() - start)
-    assert min(seconds) < 0.3
