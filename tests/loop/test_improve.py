@@ -14,9 +14,10 @@ from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.handling.experiments import experiments
+from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.effects import load
-from wheelchair_fmu.model.variant import read_variant
+from wheelchair_fmu.model.variant import Variant, read_variant
 
 FAST = Run("fast-coast", "coast-down", "fit", 2.5, 14.0, coast(0.0, 1.0))
 
@@ -38,6 +39,22 @@ def test_improve_finds_adds_and_then_finds_nothing(tmp_path):
     again = diagnose(read(folder), chair)
     assert again.already == ("aerodynamic_drag",) and again.effects == ()
     assert again.verdict in ("adequate", "cannot_see", "small")
+
+
+def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
+    """Toe, which a screen looks at by sizes: none promises anything once the drag of the left wheel is in."""
+    dragging = add(sample, Variant(), "rolling_resistance_asymmetry")
+    toed = add(sample, dragging.variant, "toe_misalignment")
+    assert [step.name for step in toed.ladder[2:]] == ["+rolling_resistance_asymmetry", "+toe_misalignment"]
+    assert abs(toed.ladder[-1].heldout - dragging.ladder[-1].heldout) < 0.01
+    assert abs(toed.fit.values["effect.toe_misalignment.tau_r"]) < 3 * toed.fit.se("effect.toe_misalignment.tau_r")
+
+
+def test_who_watches_is_told_the_whole_staircase(sample):
+    """Every time: steps before the last change when the noise is estimated anew."""
+    seen = []
+    found = diagnose(sample, climbed=seen.append)
+    assert [len(ladder) for ladder in seen] == [2, 3] and seen[-1] == found.ladder
 
 
 def test_the_proposed_runs_break_the_tie(tmp_path):

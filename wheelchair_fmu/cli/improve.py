@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -76,18 +76,16 @@ def improve(
 
 @dataclass
 class _Watch:
-    """What is going on, and the staircase so far; drawn anew whenever either changes."""
+    """What is going on, below the staircase so far."""
 
     live: Live
     bar: Progress
-    ladder: list[Step] = field(default_factory=list)
 
     def says(self, words: str) -> None:
         self.bar.update(self.bar.task_ids[0], description=words, advance=1)
 
-    def climbs(self, step: Step) -> None:
-        self.ladder.append(step)
-        self.live.update(Stacked(staircase_table(self.ladder), self.bar))
+    def climbs(self, ladder: Sequence[Step]) -> None:
+        self.live.update(Stacked(staircase_table(ladder), self.bar))
 
 
 @contextmanager

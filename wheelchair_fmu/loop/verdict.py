@@ -69,13 +69,13 @@ def diagnose(
     progress: Callable[[str], None] = lambda words: None,
     experiments: Sequence[Experiment] = (),
     fixed: Iterable[str] = (),
-    climbed: Callable[[Step], None] = lambda step: None,
+    climbed: Callable[[Sequence[Step]], None] = lambda ladder: None,
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words, and `climbed` each step of the staircase.
+    what is being done, in words, and `climbed` the staircase whenever it has changed.
     """
     variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
@@ -86,10 +86,9 @@ def diagnose(
 
     def climb(effect: str) -> None:
         ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
-        climbed(ladder[-1])
+        climbed(tuple(ladder))
 
-    for step in ladder:
-        climbed(step)
+    climbed(tuple(ladder))
     rounds, effects = [], ()
     for effect in variant.effects:
         if workshop.parameters(effect):
@@ -110,7 +109,7 @@ def diagnose(
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
-        climbed(ladder[-1])
+        climbed(tuple(ladder))
     groups = (_still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
     ties = tuple(group for group in groups if len(group) > 1)
     effects = tuple(e for e in effects if e not in already)
