@@ -308,14 +308,13 @@ class Search:
     # -- refits ---------------------------------------------------------------------------------------------
 
     def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
-                  tests: int, rival: float = math.inf, least: float = -math.inf) -> Candidate | None:  # fmt: skip
-        """Refit with one more effect, from the expected change and from sizes of interest; `rival` is the best misfit yet, and
-        `least` the fall that some start has to promise."""
+                  tests: int, rival: float = math.inf) -> Candidate | None:  # fmt: skip
+        """Refit with one more effect, from the expected change and from sizes of interest; `rival` is the best misfit yet."""
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self._base(effect, effects, base, base_held)
         begun = []
-        for start, here in self._starts(bench, base, s, least):
+        for start, here in self._starts(bench, base, s):
             try:
                 begun.append(self.refit((*effects, effect), start, here, rival=rival, most=1))
             except SimulationError:
@@ -327,9 +326,9 @@ class Search:
         held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
         return self._judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
-    def _starts(self, bench: Bench, base: Fit, s: Screened, least: float) -> list[tuple[dict[str, float], Evidence | None]]:
+    def _starts(self, bench: Bench, base: Fit, s: Screened) -> list[tuple[dict[str, float], Evidence | None]]:
         """Where to start refits, and what is known there: a linear effect from zero, others from the most promising of
-        several sizes: the expected change, both signs of δ, and larger ones; of those that promise a fall of `least`."""
+        several sizes: the expected change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         calibrated = np.array([base.values[n] for n in base.names])
@@ -346,10 +345,7 @@ class Search:
         sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
         tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
-        promises = {theta: self._promise(bench, known, names, np.array(theta)) for theta in tries}
-        off = self._promise(bench, known, names, np.concatenate([calibrated, np.zeros(len(records))]))
-        enough = off - least * float(np.mean(known.r**2))
-        best = sorted((t for t, promise in promises.items() if promise < enough), key=lambda t: (promises[t], t))
+        best = sorted(tries, key=lambda theta: (self._promise(bench, known, names, np.array(theta)), theta))
         return [(dict(zip(names, map(float, theta), strict=True)), None) for theta in best[: 1 if linear else STARTS]]
 
     def _promise(self, bench: Bench, known: Evidence, names: list[str], theta: np.ndarray) -> float:
@@ -407,7 +403,7 @@ class Search:
             if self._linear(s.score.effect) and s.score.drop < HOPELESS * (base.misfit - rival):
                 continue
             self.say(f"refitting {s.score.effect}")
-            c = self.candidate(base, base_held, effects, s, len(screened), rival, PROMISING)
+            c = self.candidate(base, base_held, effects, s, len(screened), rival)
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)
