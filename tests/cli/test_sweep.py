@@ -54,6 +54,21 @@ def test_the_rms_is_that_of_compare(tmp_path):
     assert f"held-out runs together: {row['rms_holdout']:.3f}" in shown
 
 
+def test_effects_of_ones_own_are_in_the_sweep(tmp_path):
+    folder, out = tmp_path / "effects", tmp_path / "out.parquet"
+    assert wheelchair("effects", "new", "my_drag", "-o", folder).exit_code == 0
+    plan = '[parameters]\n"effect.my_drag.q" = [0, 2]\n[[manoeuvre]]\nname = "coast-down"\ntime = 1\n'
+    (tmp_path / "plan.toml").write_text(plan)
+    words = ("sweep", tmp_path / "plan.toml", "-o", out, "--workers", 1)
+    assert "no parameter 'effect.my_drag.q'" in wheelchair(*words).stderr
+    assert wheelchair(*words, "--effects", folder).exit_code == 0
+    without, slowed = pd.read_parquet(out).speed_end
+    assert slowed < without - 0.02
+    (folder / "my_drag.py").write_text("EFFECT = 1\n")
+    spoilt = wheelchair(*words, "--effects", folder)
+    assert spoilt.exit_code == 1 and f"{folder / 'my_drag.py'}: no record EFFECT" in spoilt.stderr
+
+
 def test_the_examples_indices_say_what_the_paper_says(tmp_path):
     """Slip goes inversely with the cornering stiffness; the radius hardly notices it (section 6.1)."""
     done = wheelchair("sweep", SAMPLE.parent / "sweep.toml", "-o", tmp_path / "out.parquet")
@@ -69,6 +84,7 @@ def test_the_examples_indices_say_what_the_paper_says(tmp_path):
     (("plan.toml", "-o", "o.parquet", "--engine", "fmi"), 2, "no engine 'fmi'; did you mean 'fmu'?"),
     (("plan.toml", "-o", "o.parquet", "--dask", "x", "--workers", 2), 2, "give one of them"),
     (("none.toml", "-o", "o.parquet"), 1, "none.toml: no such file"),
+    (("plan.toml", "-o", "o.parquet", "--effects", "none"), 1, "none: no such folder; `wheelchair effects new ID` starts one"),
     (("plan.toml",), 2, "--output"),
 ])  # fmt: skip
 def test_sweep_refuses_in_one_sentence(tmp_path, monkeypatch, words, code, sentence):

@@ -30,6 +30,7 @@ def register(app: typer.Typer) -> None:
 def run(
     plan: Annotated[Path, typer.Argument(metavar="PLAN.toml", help="Parameters, manoeuvres, variants.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT.parquet", help="Where the table goes.")],
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     engine: Annotated[str, typer.Option(help=f"{' or '.join(ENGINES)}, with the same numbers.")] = "kernel",
     workers: Workers = None,
     address: Address = None,
@@ -40,7 +41,7 @@ def run(
     pool = pool_of(address, workers)
     if output.suffix != ".parquet":
         raise UsageError(f"-o {output}: the table is Parquet; give a name that ends in .parquet")
-    planned = read_plan(plan)
+    planned = read_plan(plan, effects)
     _needs_salib(planned)
     job = _job(planned, engine)
     if is_done(job, output):

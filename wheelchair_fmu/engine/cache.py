@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import linecache
 import os
 import tempfile
 from collections.abc import Iterable, Sequence
@@ -87,8 +88,8 @@ def effect_key(effect: Effect) -> str:
     """An effect by its files' content and its laws' code, so that an edited file is a new effect."""
     laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
     codes = [law.__code__ for law in laws]
-    files = sorted({c.co_filename for c in codes if Path(c.co_filename).is_file()})
-    words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not Path(c.co_filename).is_file()])
+    files = {c.co_filename: "".join(linecache.getlines(c.co_filename)) for c in codes}
+    words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]])
     targets = repr([(c.to, c.factor) for c in effect.contributions])
-    texts = b"".join(Path(f).read_bytes() for f in files)
-    return f"{effect.id} {targets} {words} {hashlib.sha256(texts).hexdigest()}"
+    texts = "".join(files[name] for name in sorted(files))
+    return f"{effect.id} {targets} {words} {hashlib.sha256(texts.encode()).hexdigest()}"

@@ -122,7 +122,7 @@ def test_parts_of_another_plan_are_not_mixed_in(tmp_path):
     job, out = job_of(tmp_path, SMALL), tmp_path / "out.parquet"
     folder(out).mkdir()
     (folder(out) / "fingerprint").write_text("another")
-    with pytest.raises(Failure, match="parts of another plan, engine or version; remove this folder"):
+    with pytest.raises(Failure, match="parts of another plan, effects, engine or version; remove this folder"):
         complete(job, out, in_order)
     assert not is_done(job, out)
 

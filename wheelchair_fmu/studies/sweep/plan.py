@@ -26,6 +26,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from inspect import signature
 from itertools import product
 from math import isfinite
@@ -35,7 +36,8 @@ from typing import Any
 from ...errors import FileError, WheelchairError
 from ...faults import Fault, not_utf8, suggestion
 from ...handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
-from ...model.effects import bundled
+from ...model.effects import Sources, bundled, defined, sources
+from ...model.stage import Effect
 from ...model.variant import Variant, number, read_variant
 from ...model.wheelchair import Choice
 from ...quantities import Parameter
@@ -65,22 +67,20 @@ class Course:
 
 @dataclass(frozen=True)
 class Chair:
-    """A variant by what it is made of, so that it can go to other processes."""
+    """A variant by what it is made of, so that it can go to other processes; `own` are the files of a user's effects."""
 
     label: str
-    choice: Choice
-    effects: tuple[str, ...]
-    values: tuple[tuple[str, float], ...]
+    choice: Choice = Choice()
+    effects: tuple[str, ...] = ()
+    values: tuple[tuple[str, float], ...] = ()
+    own: Sources = ()
 
     def variant(self) -> Variant:
-        return Variant(self.choice, self.effects, dict(self.values))
+        return Variant(self.choice, self.effects, dict(self.values), catalogue={**bundled(), **defined(self.own)})
 
     def with_effects(self, ids: Iterable[str]) -> Chair:
         grown = self.variant().with_effects(ids)
         return replace(self, choice=grown.choice, effects=grown.effects)
-
-
-BARE = Chair("default", Choice(), (), ())
 
 
 @dataclass(frozen=True)
@@ -102,9 +102,12 @@ class Plan:
         return self.design.chairs * self.cases
 
 
-def read_plan(path: Path) -> Plan:
-    """The plan in a TOML file. Raises PlanError with every fault."""
-    reader = _Reader(path)
+def read_plan(path: Path, effects: Path | None = None) -> Plan:
+    """The plan in a TOML file, which may name the `effects` in a folder of the user's own.
+
+    Raises PlanError with every fault, and ModelError for a folder that is not there or a file in it that is no effect.
+    """
+    reader = _Reader(path, Chair("default", own=sources(effects) if effects else ()))
     plan = reader.plan()
     if reader.faults or plan is None:
         raise PlanError(sorted(reader.faults, key=lambda fault: (fault.line is None, fault.line or 0)))
@@ -114,9 +117,14 @@ def read_plan(path: Path) -> Plan:
 @dataclass
 class _Reader:
     path: Path
+    bare: Chair
     faults: list[Fault] = field(default_factory=list)
     data: dict[str, Any] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
+
+    @cached_property
+    def catalogue(self) -> Mapping[str, Effect]:
+        return self.bare.variant().catalogue
 
     def plan(self) -> Plan | None:
         if not self._load():
@@ -136,7 +144,7 @@ class _Reader:
             self.fault("", "there is nothing to run", 'add [[manoeuvre]] with name = "steady-turn", or a campaign')
         if self.faults:
             return None
-        effects = _effects_of(axis.name for axis in design.axes)
+        effects = self._effects_of(axis.name for axis in design.axes)
         return Plan(design, courses, tuple(c.with_effects(effects) for c in chairs), campaign)
 
     def fault(self, key: str, fact: str, cure: str) -> None:
@@ -216,15 +224,15 @@ class _Reader:
         return least
 
     def _axes(self, method: str, chairs: tuple[Chair, ...]) -> Iterator[Axis]:
-        given = dict(_flat(self._table("parameters"), set(_records((BARE,), tuple(bundled())))))
-        records = _records(chairs or (BARE,), _effects_of(given))
+        given = dict(_flat(self._table("parameters"), set(self._records((self.bare,), tuple(self.catalogue)))))
+        records = self._records(chairs or (self.bare,), self._effects_of(given))
         for name, value in given.items():
             key = f"parameters.{name}"
             if name not in records:
                 self.fault(key, f"no parameter {name!r}", suggestion(name, records))
                 continue
             effect = name.split(".")[1] if name.startswith("effect.") else ""
-            if effect and bundled()[effect].delays_record:
+            if effect and self.catalogue[effect].delays_record:
                 self.fault(key, f"effect {effect!r} shifts recorded pushes and is no part of a chair", "leave it out")
                 continue
             try:
@@ -234,6 +242,17 @@ class _Reader:
             except ValueError as error:
                 fact, cure = error.args
                 self.fault(key, f"{name}: {fact}", cure)
+
+    def _effects_of(self, names: Iterable[str]) -> tuple[str, ...]:
+        """The effects in the catalogue that parameters named so belong to."""
+        words = dict.fromkeys(name.split(".")[1] for name in names if name.startswith("effect.") and name.count(".") > 1)
+        return tuple(word for word in words if word in self.catalogue)
+
+    def _records(self, chairs: tuple[Chair, ...], effects: tuple[str, ...]) -> dict[str, Parameter]:
+        """Every parameter that all of the chairs have, or can have by an effect; with these `effects` on."""
+        optional = {p.name: p for e in self.catalogue.values() for p in e.owned}
+        own = [{p.name: p for p in c.with_effects(effects).variant().parameters()} for c in chairs]
+        return optional | {name: p for name, p in own[0].items() if all(name in other for other in own)}
 
     def _axis(self, method: str, record: Parameter, value: Any) -> Axis:
         """Raises ValueError(fact, cure), or what `number` raises."""
@@ -311,7 +330,7 @@ class _Reader:
 
     def _chairs(self) -> tuple[Chair, ...]:
         chairs = tuple(self._named_chairs())
-        return chairs if self._tables("variant") else (BARE,)
+        return chairs if self._tables("variant") else (self.bare,)
 
     def _named_chairs(self) -> Iterator[Chair]:
         labels: set[str] = set()
@@ -329,11 +348,12 @@ class _Reader:
                 self.fault(key, f"variant {label!r} comes twice", "give each its own name")
             labels.add(label)
             try:
-                variant = read_variant(self.path.parent / file)
+                variant = read_variant(self.path.parent / file, self.catalogue)
             except WheelchairError as error:
                 self.refused(f"{key}.file", error)
             else:
-                yield Chair(label, variant.choice, variant.effects, tuple(variant.values.items()))
+                yield replace(self.bare, label=label, choice=variant.choice, effects=variant.effects,
+                              values=tuple(variant.values.items()))  # fmt: skip
 
     def _campaign(self, sweep: Mapping[str, Any]) -> Path | None:
         if "campaign" not in sweep:
@@ -344,22 +364,8 @@ class _Reader:
         return place
 
 
-def _effects_of(names: Iterable[str]) -> tuple[str, ...]:
-    """The effects in the catalogue that parameters named so belong to."""
-    words = dict.fromkeys(name.split(".")[1] for name in names if name.startswith("effect.") and name.count(".") > 1)
-    return tuple(word for word in words if word in bundled())
-
-
 def _plain(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-
-
-def _records(chairs: tuple[Chair, ...], effects: tuple[str, ...]) -> dict[str, Parameter]:
-    """Every parameter that all of the chairs have, or can have by an effect; with these `effects` on."""
-    whole = Variant().with_effects(effects)
-    optional = {p.name: p for e in whole.catalogue.values() for p in e.owned}
-    own = [{p.name: p for p in c.with_effects(effects).variant().parameters()} for c in chairs]
-    return optional | {name: p for name, p in own[0].items() if all(name in other for other in own)}
 
 
 def _flat(table: Mapping[str, Any], known: set[str], prefix: str = "") -> Iterator[tuple[str, Any]]:

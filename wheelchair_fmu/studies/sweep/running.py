@@ -34,7 +34,7 @@ class Job:
     campaign: str = ""
     measured: str = ""  # the campaign's fingerprint: with the plan it decides the yardsticks
     chunk: int = CHUNK
-    what: ClassVar[str] = "plan, engine or version"
+    what: ClassVar[str] = "plan, effects, engine or version"
 
     @cached_property
     def fingerprint(self) -> str:
