@@ -1,8 +1,11 @@
-"""What several tests need: evaluating a model, random places to evaluate it at, and its mirror image."""
+"""What several tests need: evaluating a model, random places to evaluate it at, its mirror image; a campaign's own settings."""
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import casadi as cs
 import numpy as np
@@ -77,3 +80,26 @@ def mirrored_place(model: Model, place: Place) -> Place:
     return Place(
         mirrored(model.states, place.x), mirrored(model.inputs, place.w), mirrored(model.parameters, place.p)
     )
+
+
+# what runs of the sample campaign may set, each another kind
+SETTINGS = {
+    "coast-down": '{ "start.psi" = 1.2, "chair.m" = 95 }',
+    "straight-strokes": '{ "start.u" = 0.55 }',
+    "steady-right": '{ "start.psi_dot" = 0.3 }',
+    "steady-left": '{ "start.v" = 0.05, "start.x" = 2.0 }',
+    "slalom-slow": '{ "tyre.C_lambda" = 3000 }',
+}
+
+
+def with_settings(source: Path, folder: Path, settings: Mapping[str, str] = SETTINGS) -> Path:
+    """A copy of a campaign, in `folder`, some of whose runs `set` something."""
+    shutil.copytree(source, folder)
+    file = folder / "campaign.toml"
+    text = file.read_text(encoding="utf-8")
+    for name, own in settings.items():
+        line = f'file = "runs/{name}.csv"\n'
+        assert line in text, f"no run {name} in {source}"
+        text = text.replace(line, f"{line}set = {own}\n")
+    file.write_text(text, encoding="utf-8")
+    return folder

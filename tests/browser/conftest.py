@@ -34,8 +34,12 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="session")
 def report_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("report") / "report.html"
-    done = CliRunner().invoke(app, ["report", str(SAMPLE), "--diagnosis", str(DIAGNOSIS), "-o", str(file)])
+    return report_of(SAMPLE, tmp_path_factory.mktemp("report") / "report.html")
+
+
+def report_of(campaign: Path, file: Path) -> Path:
+    """The report of the sample campaign, or of one like it."""
+    done = CliRunner().invoke(app, ["report", str(campaign), "--diagnosis", str(DIAGNOSIS), "-o", str(file)])
     assert done.exit_code == 0, done.output
     return file
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader
+from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader, report_of
+from tests.kit import with_settings
 from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.loop.evidence import Bench
@@ -64,6 +65,21 @@ def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
     for run, row in expected.items():
         for channel, rms in row.items():
             assert found[run][channel] == pytest.approx(rms, rel=1e-7), (run, channel)
+
+
+def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
+    """Starts and parameters of single runs: the same starts and errors as `Bench`."""
+    folder = with_settings(SAMPLE, tmp_path / "campaign")
+    reader, measured = Reader(browser, report_of(folder, tmp_path / "report.html")), read(folder)
+    for step in MODELS:
+        reader.set(MODELS[step])
+        expected = Bench(measured, variant_of(reader, 0)).evidence(measured.runs, MODELS[step], tune_start=2)
+        found = reader.table()
+        for i, e in enumerate(expected.runs):
+            assert found[e.run.name] == pytest.approx(e.rms, rel=1e-7), e.run.name
+            assert reader.page.evaluate("i => report.results[i].start", i) == pytest.approx(e.start, abs=1e-7)
+            assert {n: e.start[n] for n in e.run.set if n in e.start} == {n: v for n, v in e.run.set.items() if n in e.start}
+    reader.close()
 
 
 @pytest.mark.parametrize("model", [0, 1, 2])

@@ -47,6 +47,16 @@ def test_a_piece_has_the_heading_that_the_yaw_rate_says_or_a_channel_tells():
     assert pieces(tracked, 60)[1].set == {"chair.m": 90.0}
 
 
+def test_where_a_run_starts_says_nothing_of_its_later_pieces_but_the_heading():
+    run = turning("a", seconds=120)
+    said = {"start.u": 0.5, "start.x": 2.0, HEADING: 1.0}
+    first, second = pieces(replace(run, set={**run.set, **said}), 60)
+    assert first.set == {"chair.m": 90.0, **said}
+    assert second.set == {"chair.m": 90.0, HEADING: pytest.approx(1 + 0.2 * 30, abs=0.01)}
+    blind = replace(run, set={**run.set, **said}, channels={"wheel_speed_l": 1 + 0 * run.time})
+    assert pieces(blind, 60)[1].set == {"chair.m": 90.0, HEADING: 1.0}  # nothing says otherwise
+
+
 def test_a_small_campaign_is_left_alone():
     small = campaign(turning("a", seconds=20))
     assert windows(small) is small

@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from tests.kit import with_settings
+from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.model.variant import Variant
 
 SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")
 
@@ -26,6 +30,14 @@ def test_compare_says_where_the_error_is():
     assert told["runs"][0].keys() == {"run", "role", "rms"}
     for bins in told["excess"].values():
         assert sum(b["share"] for b in bins) == pytest.approx(1.0)
+
+
+def test_compare_weighs_what_the_fmu_simulates(tmp_path):
+    """By whatever a run sets, the FMU goes as the model does by which its errors are weighed."""
+    measured = read(with_settings(Path(SAMPLE), tmp_path / "campaign"))
+    expected = Bench(measured, Variant()).evidence(measured.runs, {}, tune_start=2).table()
+    for told in json.loads(run("compare", str(measured.path), "--json").stdout)["runs"]:
+        assert told["rms"] == pytest.approx(expected[told["run"]], rel=2e-3), told["run"]
 
 
 def test_compare_with_what_was_hidden_comes_near_the_floor():

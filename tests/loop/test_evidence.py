@@ -40,6 +40,18 @@ def test_again_is_the_evidence_itself_where_nothing_moved(short):
     assert again.rms == pytest.approx(here.rms, rel=1e-9)
 
 
+def test_a_start_that_a_run_sets_stands(short):
+    """Whatever its first samples say, and however the readings pull."""
+    said = {"start.x": 3.0, "start.y": -1.0, "start.psi": 0.7, "start.u": 0.4, "start.v": 0.02, "start.psi_dot": 0.1}
+    run = replace(short.fit[1], set=said, channels={**short.fit[1].channels, "yaw": 0 * short.fit[1].time})
+    bench = Bench(replace(short, runs=(run,), noise={**short.noise, "yaw": 0.01}), Variant())
+    (e,) = bench.evidence([run], {}, tune_start=2).runs
+    assert e.start == said
+    assert dict(zip(("x", "y", "psi", "u", "v", "psi_dot"), e.results[0], strict=False)) == pytest.approx(
+        {name.partition(".")[2]: value for name, value in said.items()})
+    assert not e.start_S.any() and not e.offset.any()
+
+
 def test_again_follows_the_slopes_for_a_small_step(short):
     bench = Bench(short, Variant())
     here = bench.evidence(short.fit, {"resistance.f_r": 0.012}, NAMES)

@@ -17,7 +17,8 @@ class Run:
     `time` is (n,), in s, strictly rising, with the file's own values. `inputs` are (n,) without gaps, by the name
     of the FMU input; `channels` are (n,) with NaN in gaps, by the names of `CHANNELS`. `u0` is the speed at the
     first sample in m/s, from the file or else from the first wheel speeds, None where neither tells.
-    `set` holds dotted parameters that differ from the campaign's in this run.
+    `set` holds dotted parameters that differ from the campaign's in this run; where it says how the run starts
+    (`start.psi`, ...), that is not estimated.
     """
 
     name: str

@@ -21,6 +21,7 @@ WINDOW = 10.0  # s
 NEAR = 2.0  # s by which the start of a window may move to where the chair hardly turns
 CALM = 0.5  # s over which that is judged
 FIRST = 10  # samples from which a piece's speed is taken
+STARTS = "start."  # parameters that say where a run starts
 HEADING = "start.psi"
 
 Cell = tuple[Run, int, int]  # samples from … to (not included) of a run
@@ -75,7 +76,8 @@ def _cut(run: Run, start: int, stop: int) -> Run:
         return run
     part, heading = slice(start, stop), _heading(run, start)
     inputs, channels = ({name: v[part] for name, v in series.items()} for series in (run.inputs, run.channels))
-    known = run.set if heading is None else {**run.set, HEADING: heading}
+    known = {name: value for name, value in run.set.items() if not start or not name.startswith(STARTS)}
+    known |= {} if heading is None else {HEADING: heading}
     return replace(run, name=f"{run.name}@{run.time[start]:.6g}s", u0=_speed(channels) if start else run.u0, set=known,
                    time=run.time[part], inputs=inputs, channels=channels)  # fmt: skip
 
@@ -98,10 +100,13 @@ def _calmest(run: Run, start: int, stop: int) -> int:
 
 
 def _heading(run: Run, at: int) -> float | None:
-    """Heading at a sample since the run's start, by the yaw rate; None where a channel tells it, or nothing does."""
+    """Heading at a sample: that of the run's start, and what the yaw rate adds to it; None where a channel tells it, or
+    nothing does."""
     rate = run.channels.get("yaw_rate")
-    if "yaw" in run.channels or rate is None:
+    if "yaw" in run.channels:
         return None
+    if rate is None:
+        return run.set.get(HEADING)
     good = np.isfinite(rate)
     time, rate = run.time[good], rate[good]
     before = time <= run.time[at]

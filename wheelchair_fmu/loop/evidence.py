@@ -26,7 +26,8 @@ from ..quantities import Parameter
 
 TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
-POSE = {"start.x": "x", "start.y": "y", "start.psi": "yaw"}
+POSE = START[:3]
+TELLS = {"start.x": "x", "start.y": "y", "start.psi": "yaw", "start.u": "u", "start.psi_dot": "yaw_rate"}  # by channel
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
 SCATTER = 1.15  # ratio of two estimates of the same noise
@@ -310,20 +311,21 @@ def block_length(run: Run) -> int:
 
 
 def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
-    """Where a run is expected to start, from its file and first samples."""
+    """Where a run is expected to start: as it is set, or else as its first samples and what is known say."""
     first = run.time <= run.time[0] + FIRST
 
-    def mean(channel: str, otherwise: float = 0.0) -> float:
+    def mean(name: str, channel: str) -> float:
         values = run.channels[channel][first] if channel in run.channels else np.array([])
         values = values[np.isfinite(values)]
-        return float(values.mean()) if len(values) else otherwise
+        return float(values.mean()) if len(values) else known.get(name, 0.0)
 
-    pose = {name: mean(channel, known.get(name, 0.0)) for name, channel in POSE.items()}
-    return {**pose, "start.u": run.u0 if run.u0 is not None else mean("u"), "start.v": 0.0,
-            "start.psi_dot": mean("yaw_rate")}  # fmt: skip
+    found = {name: mean(name, channel) for name, channel in TELLS.items()}
+    if run.u0 is not None:
+        found["start.u"] = run.u0
+    return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in START}
 
 
 def start_sd(run: Run) -> dict[str, float]:
-    """Standard deviations of the above; a pose that nobody measured is wherever it is said to be."""
-    pose = {name: POSE_SD if channel in run.channels else 0.0 for name, channel in POSE.items()}
-    return {**pose, **START_SD}
+    """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be."""
+    pose = {name: POSE_SD if TELLS[name] in run.channels else 0.0 for name in POSE}
+    return {name: 0.0 if name in run.set else sd for name, sd in {**pose, **START_SD}.items()}
