@@ -89,6 +89,8 @@ SETTINGS = {
     "steady-right": '{ "start.psi_dot" = 0.3 }',
     "steady-left": '{ "start.v" = 0.05, "start.x" = 2.0 }',
     "slalom-slow": '{ "tyre.C_lambda" = 3000 }',
+    "slalom-quick": '{ "effect.floor_slope.x" = 0.01 }',
+    "holdout-slalom": '{ "effect.relaxation_length.sigma" = 0.3 }',
 }
 
 

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
+from tests.kit import with_settings
 from wheelchair_fmu.cli.main import app
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
@@ -46,10 +47,11 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
 
 
 def test_the_rms_is_that_of_compare(tmp_path):
-    (tmp_path / "plan.toml").write_text(f'[sweep]\ncampaign = "{SAMPLE}"\n')
+    folder = with_settings(SAMPLE, tmp_path / "campaign")
+    (tmp_path / "plan.toml").write_text('[sweep]\ncampaign = "campaign"\n')
     assert wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "o.parquet", "--workers", 1).exit_code == 0
     (row,) = pd.read_parquet(tmp_path / "o.parquet").to_dict("records")
-    shown = wheelchair("compare", SAMPLE).output
+    shown = wheelchair("compare", folder).output
     assert f"fitted runs together: {row['rms_fit']:.3f}" in shown
     assert f"held-out runs together: {row['rms_holdout']:.3f}" in shown
 

@@ -52,6 +52,18 @@ def test_a_start_that_a_run_sets_stands(short):
     assert not e.start_S.any() and not e.offset.any()
 
 
+def test_an_effect_that_a_run_sets_is_on_in_that_run(short):
+    """Also one that brings states, which a bench has only where somebody asks for it."""
+    sigma = "effect.relaxation_length.sigma"
+    first, second, *_ = short.runs
+    bench = Bench(replace(short, runs=(replace(first, set={sigma: 0.5}), second)), Variant())
+    found = bench.evidence(bench.campaign.runs, {}).table()
+    other = Bench(short, Variant().with_effects(["relaxation_length"]))
+    assert found[first.name] == pytest.approx(other.evidence([first], {sigma: 0.5}).table()[first.name])
+    assert found[second.name] == pytest.approx(other.evidence([second], {}).table()[second.name])
+    assert found[first.name]["a_y"] != pytest.approx(other.evidence([first], {}).table()[first.name]["a_y"], rel=1e-3)
+
+
 def test_again_follows_the_slopes_for_a_small_step(short):
     bench = Bench(short, Variant())
     here = bench.evidence(short.fit, {"resistance.f_r": 0.012}, NAMES)

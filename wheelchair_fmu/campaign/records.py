@@ -58,6 +58,12 @@ class Campaign:
     thinned: str = ""
 
     @property
+    def effects(self) -> tuple[str, ...]:
+        """Ids of the effects that the file gives a size, in all runs or in one."""
+        given = [*self.known.items(), *(item for run in self.runs for item in run.set.items())]
+        return tuple(dict.fromkeys(name.split(".")[1] for name, size in given if size and name.startswith("effect.")))
+
+    @property
     def fit(self) -> tuple[Run, ...]:
         return tuple(run for run in self.runs if run.role == "fit")
 

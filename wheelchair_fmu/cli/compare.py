@@ -52,6 +52,7 @@ def compare(
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     chair, measured, _ = subject(campaign, variant, effects, settings)
+    chair = chair.with_effects(measured.effects)  # for the FMU to have
     with working("simulating") as say:
         values = {**chair.values, **_calibrated(measured, chair, calibrate)}
         comparison = Comparison(tuple(_through_fmu(measured, chair, values, say)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -88,6 +89,7 @@ def _job(plan: Plan, engine: str) -> Job:
     if plan.campaign is None:
         return Job(plan, engine)
     measured = read(plan.campaign, known_parameters())
+    plan = replace(plan, chairs=tuple(chair.with_effects(measured.effects) for chair in plan.chairs))
     yardsticks = {}
     with console(stderr=True).status("reading the campaign"):
         for chair in plan.chairs:

@@ -147,21 +147,22 @@ class Evidence:
 class Bench:
     """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
 
-    `variant` has every effect that may be asked for; effects at zero change nothing. `colour` is the noise. Sensor offsets
+    `variant` has every effect that may be asked for, besides those that the campaign gives a size; effects at zero change
+    nothing. `colour` is the noise. Sensor offsets
     that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
     the parameters that sensitivities may be asked by, all if not given; the start is among them in any case.
     """
 
     def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None,
                  columns: Sequence[str] | None = None):  # fmt: skip
-        self.campaign, self.variant = campaign, variant
-        self.sensitivities = Sensitivities(variant, columns and (*columns, *START))
+        self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
+        self.sensitivities = Sensitivities(self.variant, columns and (*columns, *START))
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
         channels = {c.name: c for c in CHANNELS if any(c.name in r.channels for r in campaign.runs)}
         self.offsets = {f"offset.{c}": c for c in campaign.nuisance if c in channels}
         offsets = (Parameter(name, channels[c].unit, f"offset of {c}") for name, c in self.offsets.items())
-        self.records: dict[str, Parameter] = {p.name: p for p in (*variant.parameters(), *offsets)}
+        self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
     def known(self, run: Run) -> dict[str, float]:

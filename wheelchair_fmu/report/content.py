@@ -30,7 +30,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
     workshop = Workshop(campaign, variant, fixed)
-    variants = [variant.with_effects(ids) for ids in layers(workshop, diagnosis["effects"])]
+    variants = [variant.with_effects(ids) for ids in layers(workshop, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], START)
     measured = {name for r in campaign.runs for name in r.channels}
     return {
@@ -53,12 +53,12 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
     }
 
 
-def layers(w: Workshop, found: Sequence[str]) -> list[tuple[str, ...]]:
-    """Effects of each model the page carries, the lightest first: what brings no state, that and what was `found`, what
-    brings states, what needs other laws."""
+def layers(w: Workshop, given: Sequence[str], found: Sequence[str]) -> list[tuple[str, ...]]:
+    """Effects of each model the page carries, the lightest first: what brings no state and what the campaign has `given` a
+    size, that and what was `found`, what brings states, what needs other laws."""
     seldom = (*w.heavy, *w.demanding)
-    groups = [tuple(w.light), (*w.light, *(e for e in seldom if e in found)), (*w.light, *w.heavy), (*w.light, *seldom)]
-    return list(dict.fromkeys(groups))
+    more = (given, (*given, *found), (*given, *w.heavy), seldom)
+    return list(dict.fromkeys((*w.light, *(e for e in seldom if e in some)) for some in more))
 
 
 def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
