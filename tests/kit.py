@@ -91,6 +91,7 @@ SETTINGS = {
     "slalom-slow": '{ "tyre.C_lambda" = 3000 }',
     "slalom-quick": '{ "effect.floor_slope.x" = 0.01 }',
     "holdout-slalom": '{ "effect.relaxation_length.sigma" = 0.3 }',
+    "holdout-strokes": '{ "effect.push_force_delay.tau" = 0.03 }',
 }
 
 

@@ -32,11 +32,13 @@ def test_compare_says_where_the_error_is():
         assert sum(b["share"] for b in bins) == pytest.approx(1.0)
 
 
-def test_compare_weighs_what_the_fmu_simulates(tmp_path):
+@pytest.mark.parametrize("values", [{}, {"chair.m": 90.0, "effect.push_force_delay.tau": 0.02}])
+def test_compare_weighs_what_the_fmu_simulates(tmp_path, values):
     """By whatever a run sets, the FMU goes as the model does by which its errors are weighed."""
     measured = read(with_settings(Path(SAMPLE), tmp_path / "campaign"))
-    expected = Bench(measured, Variant()).evidence(measured.runs, {}, tune_start=2).table()
-    for told in json.loads(run("compare", str(measured.path), "--json").stdout)["runs"]:
+    expected = Bench(measured, Variant()).evidence(measured.runs, values, tune_start=2).table()
+    settings = [word for n, v in values.items() for word in ("--set", f"{n}={v}")]
+    for told in json.loads(run("compare", str(measured.path), "--json", *settings).stdout)["runs"]:
         assert told["rms"] == pytest.approx(expected[told["run"]], rel=2e-3), told["run"]
 
 

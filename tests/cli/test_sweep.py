@@ -46,10 +46,12 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
     assert again.exit_code == 0 and "already done by this plan" in again.stderr
 
 
-def test_the_rms_is_that_of_compare(tmp_path):
+@pytest.mark.parametrize("engine", ["kernel", "fmu"])
+def test_the_rms_is_that_of_compare(tmp_path, engine):
     folder = with_settings(SAMPLE, tmp_path / "campaign")
     (tmp_path / "plan.toml").write_text('[sweep]\ncampaign = "campaign"\n')
-    assert wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "o.parquet", "--workers", 1).exit_code == 0
+    words = ("-o", tmp_path / "o.parquet", "--workers", 1, "--engine", engine)
+    assert wheelchair("sweep", tmp_path / "plan.toml", *words).exit_code == 0
     (row,) = pd.read_parquet(tmp_path / "o.parquet").to_dict("records")
     shown = wheelchair("compare", folder).output
     assert f"fitted runs together: {row['rms_fit']:.3f}" in shown

@@ -93,10 +93,11 @@ def _job(plan: Plan, engine: str) -> Job:
     yardsticks = {}
     with console(stderr=True).status("reading the campaign"):
         for chair in plan.chairs:
-            bench = Bench(measured, chair.variant())
-            found = bench.evidence(measured.runs, chair.variant().values, (), tune_start=TUNING)
+            variant = chair.variant()
+            bench = Bench(measured, variant)
+            found = bench.evidence(measured.runs, variant.values, (), tune_start=TUNING)
             yardsticks[chair.label] = tuple(
-                Yardstick(e.run, e.channels, e.measured, e.scale, measured.known,
+                Yardstick(bench.on_time(e.run, variant.values), e.channels, e.measured, e.scale, measured.known,
                           {**e.run.set, **{name: e.start[name] for name in START}})
                 for e in found.runs
             )  # fmt: skip

@@ -246,15 +246,21 @@ class Bench:
     def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Parameters (np,) and inputs (n, nw) of a run; what the run itself sets stands."""
         given = {**self.variant.values, **self.known(run), **values, **run.set, **start}
-        delay = sum(values.get(d, 0.0) for d in self._delays)
-        return self.variant.vector(given), self._inputs(run, delay)
+        return self.variant.vector(given), self.inputs(self.on_time(run, values))
 
-    def _inputs(self, run: Run, delay: float) -> np.ndarray:
-        """Recorded inputs (n, nw); a record that is early by `delay` is read that much later."""
+    def on_time(self, run: Run, values: Mapping[str, float]) -> Run:
+        """The run with its pushes when the chair felt them: a record that is early is read that much later."""
+        given = {**self.variant.values, **self.known(run), **values, **run.set}
+        delay = sum(given.get(d, 0.0) for d in self._delays)
+        inputs = {n: np.interp(run.time - delay, run.time, v) for n, v in run.inputs.items()} if delay else run.inputs
+        return replace(run, inputs=inputs, set={n: v for n, v in run.set.items() if n not in self._delays})
+
+    def inputs(self, run: Run) -> np.ndarray:
+        """Recorded inputs (n, nw)."""
         names = [i.name for i in self.sensitivities.model.inputs]
         w = np.tile([i.start for i in self.sensitivities.model.inputs], (len(run.time), 1))
         for name, values in run.inputs.items():
-            w[:, names.index(name)] = np.interp(run.time - delay, run.time, values) if delay else values
+            w[:, names.index(name)] = values
         return w
 
     def _columns(self, run, simulated, w, by, columns, which) -> np.ndarray:

@@ -112,7 +112,7 @@ def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
                 experiment.time, dict(experiment.inputs), {})  # fmt: skip
     bench.starts[blank.name] = {"start.x": 0.0, "start.y": 0.0, "start.psi": experiment.heading,
                                 "start.u": experiment.speed, "start.v": 0.0, "start.psi_dot": 0.0}  # fmt: skip
-    w = bench._inputs(blank, 0.0)
+    w = bench.inputs(blank)
     p = bench.variant.vector({**known, **model.values, **given, **bench.starts[blank.name]})
     simulated = bench.sensitivities.run(experiment.time, w, p)
     places = {c.name: bench.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}

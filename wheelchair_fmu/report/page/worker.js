@@ -215,8 +215,9 @@ function frame(kernel, index, values) {
 
 /** Parameters and inputs of a run; what the run itself sets stands. */
 function given({ kernel, run }, values, start) {
-  const delay = kernel.delays.reduce((sum, name) => sum + (values[name] ?? 0), 0);
-  return [kernel.vector({ ...campaign.known, ...run.set, ...values, ...run.set, ...start }), run.time, kernel.inputRows(run.time, run.inputs, delay)];
+  const all = { ...campaign.known, ...values, ...run.set, ...start };
+  const delay = kernel.delays.reduce((sum, name) => sum + (all[name] ?? 0), 0);
+  return [kernel.vector(all), run.time, kernel.inputRows(run.time, run.inputs, delay)];
 }
 
 function readings({ kernel, n, nz, place }, y) {

@@ -49,6 +49,7 @@ class FmuEngine:
         self._own["tyre.law"] = 1 + LAWS["tyre"].index(variant.choice.tyre)
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
+        values = {name: value for name, value in values.items() if name in self._fmu.parameters}  # a record's delay is not
         return self._fmu.run(time, inputs, {**self._own, **values}).columns
 
 

@@ -17,9 +17,9 @@ from .engines import Engine, encoded
 
 @dataclass(frozen=True, eq=False)
 class Yardstick:
-    """One recorded run: `channels` measured (n, nz), NaN in gaps, and `scale` (n, nz), one over the standard deviation
-    of each reading. `known` is what the campaign says of the chair, over which a variant's values and the plan's go;
-    `fixed`, what the run itself sets and where it starts, goes over everything."""
+    """One recorded run, its pushes when the chair felt them: `channels` measured (n, nz), NaN in gaps, and `scale` (n, nz),
+    one over the standard deviation of each reading. `known` is what the campaign says of the chair, over which a variant's
+    values and the plan's go; `fixed`, what the run itself sets and where it starts, goes over everything."""
 
     run: Run
     channels: tuple[str, ...]
