@@ -156,6 +156,24 @@ def test_a_campaign_is_edited_undone_and_done_again(client):
     assert any("'kg' measures a mass" in f["text"] for f in bad["faults"])
 
 
+def test_comments_and_layout_outlast_the_forms(client, bench):
+    file = Session(bench.root, client.base.rpartition("/")[2]).campaign / "campaign.toml"
+    text = "# as weighed in spring\n" + (SAMPLE / "campaign.toml").read_text()
+    state = upload(client, ("campaign.toml", text.encode()), *((f"runs/{n}", c) for n, c in recordings())).json()
+    assert file.read_text() == text
+    state["campaign"]["chair"]["m"] = 82
+    client.put(f"{client.base}/campaign", json=state["campaign"])
+    edited = text.replace("m = 80.0", "m = 82")
+    assert file.read_text() == edited
+    assert client.delete(f"{client.base}/files/runs/slalom-slow.csv").status_code == 200
+    head, _, rest = edited.partition('[[run]]\nfile = "runs/slalom-slow.csv"')
+    assert file.read_text() == head + rest[rest.index("[[run]]") :]
+    client.post(f"{client.base}/history", json={"by": -1})
+    assert file.read_text().startswith("# as weighed in spring") and "m = 80.0" in file.read_text()
+    late = upload(client, ("late.csv", recordings()[0][1])).json()
+    assert late["campaign"]["run"][-1]["file"] == "late.csv" and "# from the test rig" in file.read_text()
+
+
 def test_old_work_goes_and_what_is_in_use_stays(client, bench, tmp_path):
     sessions = {name: Session.begin(tmp_path / "work") for name in ("recent", "old", "empty", "new")}
     for name in ("recent", "old"):

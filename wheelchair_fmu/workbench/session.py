@@ -23,8 +23,6 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 from uuid import uuid4
 
-import tomli_w
-
 from ..campaign import CHANNELS, INPUTS, check, read
 from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
@@ -35,6 +33,7 @@ from ..model.effects import bundled, load
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
 from ..writing import written
+from .layout import relaid
 
 SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
 MOST_BYTES = 200_000_000  # of one file
@@ -156,8 +155,11 @@ class Session:
             return None
 
     def write_content(self, content: Mapping[str, Any]) -> None:
+        """Change campaign.toml to this; comments and layout stay. Raises UsageError for what TOML cannot hold."""
+        file = self.campaign / "campaign.toml"
+        text = file.read_bytes().decode("utf-8-sig") if self.content() else ""
         try:
-            write(self.campaign / "campaign.toml", tomli_w.dumps(content).encode())
+            write(file, relaid(text, content).encode())
         except TypeError as error:
             raise UsageError(f"campaign.toml cannot hold this: {error}") from None
 
