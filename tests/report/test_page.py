@@ -18,16 +18,15 @@ LADDER = [{"step": "nominal", "fit": 9.0, "heldout": 8.0}, {"step": "calibrated"
           {"step": "+drag", "fit": 1.01, "heldout": 1.02}]  # fmt: skip
 
 
-def told(verdict, effects=(), **more):
-    ranking = [{"effect": e, "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}}} for e in effects]
-    return {"verdict": verdict, "effects": list(effects), "ranking": ranking, "ladder": LADDER, "notes": [], **more}
+def told(verdict, effects=(), ties=(), **more):
+    ranking = [{"effect": e, "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}},
+                "verdict": "tie" if any(e in group for group in ties) else "missing"} for e in effects]  # fmt: skip
+    return {"verdict": verdict, "effects": list(effects), "ties": ties, "ranking": ranking, "ladder": LADDER, **more}
 
 
 @pytest.mark.parametrize(("verdict", "effects", "expected"), [
     ("missing", ["drag"], "Missing from the model: air that resists."),
     ("missing", ["drag", "slope"], "Missing from the model: air that resists and a floor that slopes."),
-    ("tie", ["drag", "slope"], "One of these is missing, and this campaign cannot tell which: "
-                               "air that resists or a floor that slopes."),
     ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
     ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
     ("outside", [], "Something is left that no effect in the catalogue explains."),
@@ -38,12 +37,28 @@ def test_a_verdict_is_one_sentence(verdict, effects, expected):
     assert sentence(told(verdict, effects), TITLES) == expected
 
 
+@pytest.mark.parametrize(("effects", "ties", "expected"), [
+    (["drag", "slope"], [["drag", "slope"]],
+     "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes."),
+    (["drag", "slope", "toe"], [["drag", "slope"]],
+     "Missing: toe; and one of these is missing, and this campaign cannot tell which: air that resists or a floor that "
+     "slopes."),
+    (["drag", "slope", "toe", "trail"], [["drag", "slope"], ["toe", "trail"]],
+     "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes; and one of these "
+     "is missing, and this campaign cannot tell which: toe or trail."),
+])  # fmt: skip
+def test_a_tie_names_what_is_sure_first(effects, ties, expected):
+    assert sentence(told("tie", effects, ties), TITLES) == expected
+
+
 def test_the_sizes_and_the_fall_come_next():
     records = {"effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),
                "effect.odd.q": Parameter("effect.odd.q", RAD, "a lean")}  # fmt: skip
     lines = particulars(told("missing", ["drag"]), records)
     left = {"proposal": {"term": "odd", "estimate": -0.01, "se": 0.001}}
     assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06 deg."
+    assert particulars(told("tie", ["drag"], [["slope", "toe"]]), records) == lines
+    assert particulars(told("tie", ["drag", "slope"], [["drag", "slope"]]), records) == lines[1:]  # no size of what may not be
     assert lines == ["Drag: size of the drag = 1.234 ± 0.021 N s/m.",
                      "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone."]  # fmt: skip
 

@@ -19,6 +19,7 @@ from ..loop.verdict import diagnose as run_diagnosis
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
+from ..report.words import tied
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -27,7 +28,6 @@ from .staircase import staircase_table
 
 SENTENCES = {
     "missing": "Missing: {effects}.",
-    "tie": "One of these is missing, and this campaign cannot tell which: {effects}.",
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
     "cannot_see": "Nothing was found, but these runs could not have shown most effects of interesting size.",
@@ -74,9 +74,12 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     out = console()
     for note in d.notes:
         out.print(f"note: {note}")
-    out.print(f"{d.campaign}: {SENTENCES[d.verdict].format(effects=', '.join(d.effects))}")
+    listed = ", ".join(d.effects)
+    ids = {e: e for e in d.effects}
+    said = tied(d.effects, d.ties, ids) if d.verdict == "tie" else SENTENCES[d.verdict].format(effects=listed)
+    out.print(f"{d.campaign}: {said}")
     if d.verdict == "outside" and d.effects:
-        out.print(f"These help but do not suffice: {', '.join(d.effects)}.")
+        out.print(f"These help but do not suffice: {listed}.")
     if d.proposal:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"

@@ -26,6 +26,7 @@ PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long 
 SHORTLIST = 5
 HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less is not refitted
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
+SLIGHTLY = 0.1  # the same, where it costs little to look at both
 PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
 SAME = 1.002  # ratio of two RMS errors that do not differ
@@ -108,11 +109,13 @@ class Round:
 
 @dataclass(frozen=True)
 class Screened:
-    """An effect's score, and the evidence it rests on, with sensitivities by what is fitted, by this effect and by others."""
+    """An effect's score, and the evidence it rests on, with sensitivities by what is fitted, by this effect and by others.
+    `straight`: it does most about calibrated values as the campaign has them, not as a fit without it left them."""
 
     score: Score
     evidence: Evidence
     delta: np.ndarray
+    straight: bool = False
 
     @property
     def negligible(self) -> bool:
@@ -219,16 +222,19 @@ class Search:
     def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
         """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
         and the filters of the model without them serve: at zero they change nothing."""
-        values = [base.values, *self._straightened(bench, base)]
+        values = [base.values, *self._straightened(bench, base, SLIGHTLY)]
         try:
             at = [bench.again(here, v) for v in values]
         except SimulationError:
             return []
         off, found = self._off(bench, base, here), []
         for effect in effects:
-            secants = [S for e, v in zip(at, values, strict=True) for S in self._secants(bench, e, v, effect)]
-            if secants:
-                found.append(self._screened([self._score(at[0], off, effect, S) for S in secants], here))
+            by = [[self._score(at[0], off, effect, S) for S in self._secants(bench, e, v, effect)]
+                  for e, v in zip(at, values, strict=True)]  # fmt: skip
+            scores = [score for group in by for score in group]
+            if scores:
+                best = self._screened(scores, here)
+                found.append(replace(best, straight=all(best.score.drop > score.drop for score in by[0])))
         return found
 
     def _off(self, bench: Bench, base: Fit, here: Evidence) -> Callable[[np.ndarray], np.ndarray]:
@@ -244,16 +250,17 @@ class Search:
     def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
         """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
         them: what it bent to imitate an effect may be what the effect works through."""
+        straightened = self._straightened(bench, base, BENT) if names else []
         try:
-            return [bench.evidence(self.workshop.campaign.fit, v, names).S for v in self._straightened(bench, base) if names]
+            return [bench.evidence(self.workshop.campaign.fit, values, names).S for values in straightened]
         except SimulationError:
             return []
 
     @staticmethod
-    def _straightened(bench: Bench, base: Fit) -> list[dict[str, float]]:
-        """Calibrated values as the campaign has them, if a fit has bent them."""
+    def _straightened(bench: Bench, base: Fit, least: float) -> list[dict[str, float]]:
+        """Calibrated values as the campaign has them, if a fit has bent them by `least` standard deviations."""
         straight, off = _straight(prior_of(bench, base.names), np.array([base.values[n] for n in base.names]))
-        return [dict(zip(base.names, map(float, straight), strict=True))] if off > BENT else []
+        return [dict(zip(base.names, map(float, straight), strict=True))] if off > least else []
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
         """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
@@ -333,7 +340,7 @@ class Search:
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         calibrated = np.array([base.values[n] for n in base.names])
         straight, off = _straight(prior_of(bench, base.names), calibrated)
-        calibrations = [calibrated, straight] if off > BENT else [calibrated]
+        calibrations = [calibrated, straight] if off > BENT or s.straight else [calibrated]
         linear = self._linear(s.score.effect)
         if linear and len(calibrations) == 1:
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None

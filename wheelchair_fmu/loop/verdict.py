@@ -114,7 +114,7 @@ def diagnose(
     ties = tuple(group for group in groups if len(group) > 1)
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
-    named = ties[0] if verdict == "tie" else effects if verdict in ("missing", "outside") else _small(rounds, verdict)
+    named = _with_ties(effects, ties) if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
     intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
@@ -158,6 +158,11 @@ def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: S
         weak = [s.effect for s in rounds[0].scores if s.power < ENOUGH_POWER]
         return reveal(search, rounds[0].fit, weak, experiments)
     return None
+
+
+def _with_ties(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """The effects in the order found, each with those it is tied with."""
+    return tuple(dict.fromkeys(e for found in effects for e in next((group for group in ties if found in group), (found,))))
 
 
 def _tied(r: Round) -> tuple[str, ...]:
@@ -326,10 +331,10 @@ def _rivals(s: Any, scores: Sequence[Any]) -> list[dict[str, Any]]:
 
 
 def _row_verdict(d: Diagnosis, s: Any, c: Candidate | None) -> str:
-    if s.effect in d.effects:
-        return "tie" if d.verdict == "tie" else "missing"
     if any(s.effect in t for t in d.ties):
         return "tie"
+    if s.effect in d.effects:
+        return "small" if d.verdict == "small" else "missing"
     if c and c.small and c.p < 0.05:
         return "small"
     return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"

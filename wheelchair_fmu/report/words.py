@@ -10,11 +10,12 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
     """The verdict in one sentence; `titles` say what each effect is."""
+    if diagnosis["verdict"] == "tie":
+        return tied(diagnosis["effects"], diagnosis["ties"], titles)
     names = [titles.get(e, e.replace("_", " ")) for e in diagnosis["effects"]]
     several = len(names) > 1
     return {
         "missing": f"Missing from the model: {_listed(names, 'and')}.",
-        "tie": f"One of these is missing, and this campaign cannot tell which: {_listed(names, 'or')}.",
         "small": f"The model is adequate: {_listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
@@ -23,10 +24,23 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
     }[diagnosis["verdict"]]  # fmt: skip
 
 
+def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
+    """What is missing where this campaign cannot tell some effects apart."""
+    def name(effect: str) -> str:
+        return titles.get(effect, effect.replace("_", " "))
+
+    groups = [_listed([name(e) for e in group], "or") for group in ties]
+    first, *more = [f"one of these is missing, and this campaign cannot tell which: {group}" for group in groups]
+    said = "; ".join([first, *(f"and {words}" for words in more)])
+    sure = [name(e) for e in effects if not any(e in group for group in ties)]
+    said = f"missing: {_listed(sure, 'and')}; and {said}" if sure else said
+    return f"{said[0].upper()}{said[1:]}."
+
+
 def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
     """What comes next to the verdict: sizes, the fall of the error, the next experiment, notes."""
     rows = {row["effect"]: row for row in diagnosis["ranking"]}
-    said = [_size(e, rows[e], records) for e in diagnosis["effects"] if e in rows and diagnosis["verdict"] != "tie"]
+    said = [_size(e, rows[e], records) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
     said += _proposal(diagnosis.get("leftover") or {}, records)
     said.append(_fall(diagnosis["ladder"]))
     following = diagnosis.get("next_experiment")
