@@ -51,6 +51,11 @@ def test_a_tie_names_what_is_sure_first(effects, ties, expected):
     assert sentence(told("tie", effects, ties), TITLES) == expected
 
 
+def test_what_helps_is_named_with_its_ties():
+    said = sentence(told("outside", ["drag", "slope", "toe"], [["slope", "toe"]]), TITLES)
+    assert said.endswith("what helps but does not suffice: air that resists and a floor that slopes or toe.")
+
+
 def test_the_sizes_and_the_fall_come_next():
     records = {"effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),
                "effect.odd.q": Parameter("effect.odd.q", RAD, "a lean")}  # fmt: skip

@@ -19,7 +19,7 @@ from ..loop.verdict import diagnose as run_diagnosis
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from ..report.words import tied
+from ..report.words import helpers, tied
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -79,7 +79,7 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     said = tied(d.effects, d.ties, ids) if d.verdict == "tie" else SENTENCES[d.verdict].format(effects=listed)
     out.print(f"{d.campaign}: {said}")
     if d.verdict == "outside" and d.effects:
-        out.print(f"These help but do not suffice: {listed}.")
+        out.print(f"These help but do not suffice: {helpers(d.effects, d.ties, ids)}.")
     if d.proposal:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"

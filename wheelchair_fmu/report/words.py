@@ -12,7 +12,8 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
     """The verdict in one sentence; `titles` say what each effect is."""
     if diagnosis["verdict"] == "tie":
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
-    names = [titles.get(e, e.replace("_", " ")) for e in diagnosis["effects"]]
+    names = [_title(e, titles) for e in diagnosis["effects"]]
+    helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     several = len(names) > 1
     return {
         "missing": f"Missing from the model: {_listed(names, 'and')}.",
@@ -20,21 +21,28 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
         "outside": "Something is left that no effect in the catalogue explains"
-                   + (f"; what helps but does not suffice: {_listed(names, 'and')}." if names else "."),
+                   + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]  # fmt: skip
 
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
     """What is missing where this campaign cannot tell some effects apart."""
-    def name(effect: str) -> str:
-        return titles.get(effect, effect.replace("_", " "))
-
-    groups = [_listed([name(e) for e in group], "or") for group in ties]
+    sure = [_title(e, titles) for e in effects if not any(e in group for group in ties)]
+    groups = [_listed([_title(e, titles) for e in group], "or") for group in ties]
     first, *more = [f"one of these is missing, and this campaign cannot tell which: {group}" for group in groups]
     said = "; ".join([first, *(f"and {words}" for words in more)])
-    sure = [name(e) for e in effects if not any(e in group for group in ties)]
     said = f"missing: {_listed(sure, 'and')}; and {said}" if sure else said
     return f"{said[0].upper()}{said[1:]}."
+
+
+def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
+    """Effects that help, each with those this campaign cannot tell it from."""
+    groups = [next((group for group in ties if e in group), (e,)) for e in effects]
+    return _listed([_listed([_title(e, titles) for e in group], "or") for group in dict.fromkeys(map(tuple, groups))], "and")
+
+
+def _title(effect: str, titles: Mapping[str, str]) -> str:
+    return titles.get(effect, effect.replace("_", " "))
 
 
 def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
