@@ -31,7 +31,7 @@ from wheelchair_fmu.studies import fmu_of
 from wheelchair_fmu.studies.sweep import Job, Plan, prepare
 from wheelchair_fmu.studies.sweep.design import Axis, Design
 from wheelchair_fmu.studies.sweep.engines import encoded
-from wheelchair_fmu.studies.sweep.plan import BARE, Course
+from wheelchair_fmu.studies.sweep.plan import Chair, Course
 
 from .rows import Row
 
@@ -43,7 +43,7 @@ AXES = (Axis("tyre.C_lambda", lower=2500, upper=10_000), Axis("chair.m", lower=6
 
 
 def job() -> Job:
-    return Job(Plan(Design("random", AXES, CHAIRS, 1), (Course("steady-turn", "steady-turn", ()),), (BARE,)))
+    return Job(Plan(Design("random", AXES, CHAIRS, 1), (Course("steady-turn", "steady-turn", ()),), (Chair("default"),)))
 
 
 class _Loop:
