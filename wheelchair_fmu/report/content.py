@@ -11,7 +11,7 @@ import numpy as np
 from ..campaign import CHANNELS, Campaign, Run
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
-from ..loop.evidence import START, TOLERANCE, Colour, prior_start, start_sd
+from ..loop.evidence import SETTLED, START, TOLERANCE, Colour, prior_start, start_sd
 from ..loop.statistics import finite
 from ..loop.workshop import Workshop
 from ..model.stage import Effect
@@ -49,6 +49,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
         "geometry": _geometry(campaign, variant),
         "start": START,
         "tuning": TUNING,
+        "settled": SETTLED,
         "tolerance": TOLERANCE,
     }
 

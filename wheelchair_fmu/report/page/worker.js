@@ -277,15 +277,17 @@ function betterStart(f, s, predicted, slopes) {
   return found;
 }
 
-/** As `wheelchair compare` does it: the start is moved to where the readings want it, then all is found from there. */
+/** As `wheelchair compare` does it: the start is moved to where the readings want it, until it is there. */
 function exactly(f, values) {
-  let start = f.run.start;
+  let start = f.run.start, s = linearised(f, values, start), slopes = startSlopes(f, s);
   for (let round = 0; round < campaign.tuning; round++) {
-    const s = linearised(f, values, start);
-    start = betterStart(f, s, s.predicted, startSlopes(f, s));
+    const better = betterStart(f, s, s.predicted, slopes);
+    if (campaign.start.every((name) => Math.abs(better[name] - start[name]) <= campaign.settled * f.run.start_sd[name])) break;
+    start = better;
+    s = linearised(f, values, start);
+    slopes = startSlopes(f, s);
   }
-  const s = linearised(f, values, start);
-  return { ...s, slopes: startSlopes(f, s), spread: s.whitener.spread() };
+  return { ...s, slopes, spread: s.whitener.spread() };
 }
 
 /** Simulated anew, with the filter of the last exact evaluation; a better start moves the readings to first order. */
