@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import chain, islice
+from os import cpu_count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -32,7 +33,7 @@ from .settings import subject
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
 PIECE = 60.0  # s: a longer run is compared piece by piece
-AT_ONCE = 4  # pieces whose filters are made together, while those before them go through the FMU
+AT_ONCE = cpu_count() or 1  # pieces whose filters are made together, while those before them go through the FMU
 
 Item = TypeVar("Item")
 
@@ -55,7 +56,7 @@ def compare(
     chair = chair.with_effects(measured.effects)  # for the FMU to have
     with working("simulating") as say:
         values = {**chair.values, **_calibrated(measured, chair, calibrate)}
-        comparison = Comparison(tuple(_through_fmu(measured, chair, values, say)))
+        comparison = Comparison(tuple(r if output else r.brief() for r in _through_fmu(measured, chair, values, say)))
     for note in _notes(measured):
         console(stderr=True).print(note)
     if as_json:

@@ -24,6 +24,10 @@ class RunErrors:
     predicted: np.ndarray
     regime: Mapping[str, np.ndarray]  # by name, (n,)
 
+    def brief(self) -> RunErrors:
+        """The same without predictions, which only figures ask for."""
+        return replace(self, predicted=np.empty((0, len(self.channels))))
+
     @property
     def rms(self) -> dict[str, float]:
         return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2, dtype=float))) for i, c in enumerate(self.channels)}
