@@ -13,9 +13,12 @@ from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
+from wheelchair_fmu.loop.diagnose import Search, begin
 from wheelchair_fmu.loop.statistics import sandwich
 from wheelchair_fmu.loop.verdict import Diagnosis, as_json, diagnose
+from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.generic import library, terms
+from wheelchair_fmu.model.variant import Variant
 
 DRAG = "effect.rolling_resistance_asymmetry.D"
 KEYS = {"campaign", "verdict", "effects", "ties", "ranking", "ladder", "leftover", "next_experiment", "seconds"}
@@ -107,3 +110,12 @@ def test_resamples_name_the_hidden_effect_or_its_double(sampled):
     assert found.first[found.effect] > 0.8
     assert sum(found.first.values()) == pytest.approx(1.0)
     assert found.tied["gyro_bias"] == 0.0
+
+
+def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
+    """Calibrated values as the campaign has them are only tried; effects with states are scored without them, too."""
+    search = Search(Workshop(sample, Variant()))
+    base = begin(search, lambda words: None)[0]
+    monkeypatch.setattr(Search, "_straightened", lambda *given: [dict.fromkeys(base.values, float("nan"))])
+    monkeypatch.setattr(Search, "_unbent", lambda *given: [])
+    assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}

@@ -12,7 +12,7 @@ from scipy import stats
 
 from ..errors import SimulationError
 from .evidence import Bench, Evidence
-from .fit import Fit, Prior, fit, prior_of, start_value
+from .fit import Fit, fit, prior_of, start_value
 from .noise import QUIETER, colour_of
 from .screen import Score, projector, score
 from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
@@ -183,8 +183,8 @@ class Search:
         """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect
         is in that was missing when the noise was estimated."""
         before = self.workshop.colour
-        lowest = {"lowest": QUIETER} if again else {}
-        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, **lowest)
+        lowest = QUIETER if again else 0.0
+        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, lowest)
         return self.workshop.colour.differs(before)
 
     # -- screen ---------------------------------------------------------------------------------------------
@@ -222,15 +222,16 @@ class Search:
     def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
         """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
         and the filters of the model without them serve: at zero they change nothing."""
-        values = [base.values, *self._straightened(bench, base, SLIGHTLY)]
-        try:
-            at = [bench.again(here, v) for v in values]
-        except SimulationError:
-            return []
+        at = []
+        for values in (base.values, *self._straightened(bench, base, SLIGHTLY)):
+            try:
+                at.append((values, bench.again(here, values)))
+            except SimulationError:
+                if not at:
+                    return []
         off, found = self._off(bench, base, here), []
         for effect in effects:
-            by = [[self._score(at[0], off, effect, S) for S in self._secants(bench, e, v, effect)]
-                  for e, v in zip(at, values, strict=True)]  # fmt: skip
+            by = [[self._score(at[0][1], off, effect, S) for S in self._secants(bench, e, values, effect)] for values, e in at]
             scores = [score for group in by for score in group]
             if scores:
                 best = self._screened(scores, here)
@@ -259,8 +260,10 @@ class Search:
     @staticmethod
     def _straightened(bench: Bench, base: Fit, least: float) -> list[dict[str, float]]:
         """Calibrated values as the campaign has them, if a fit has bent them by `least` standard deviations."""
-        straight, off = _straight(prior_of(bench, base.names), np.array([base.values[n] for n in base.names]))
-        return [dict(zip(base.names, map(float, straight), strict=True))] if off > least else []
+        prior, values = prior_of(bench, base.names), np.array([base.values[n] for n in base.names])
+        off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
+        straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
+        return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
 
     def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
         """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
@@ -338,9 +341,8 @@ class Search:
         several sizes: the expected change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
-        calibrated = np.array([base.values[n] for n in base.names])
-        straight, off = _straight(prior_of(bench, base.names), calibrated)
-        calibrations = [calibrated, straight] if off > BENT or s.straight else [calibrated]
+        straightened = self._straightened(bench, base, SLIGHTLY if s.straight else BENT)
+        calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
         linear = self._linear(s.score.effect)
         if linear and len(calibrations) == 1:
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
@@ -430,12 +432,6 @@ class Search:
         held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
-
-
-def _straight(prior: Prior, calibrated: np.ndarray) -> tuple[np.ndarray, float]:
-    """Calibrated values (k,) as the campaign has them, and by how many standard deviations they differ from that at most."""
-    off = np.where(np.isfinite(prior.sd), np.abs(calibrated - prior.mean) / prior.sd, 0.0)
-    return np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, calibrated), float(off.max(initial=0))
 
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
