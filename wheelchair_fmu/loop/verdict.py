@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -114,7 +115,8 @@ def diagnose(
     ties = tuple(group for group in groups if len(group) > 1)
     effects = tuple(e for e in effects if e not in already)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
-    named = _with_ties(effects, ties) if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
+    found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
+    named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
     intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
@@ -160,9 +162,9 @@ def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: S
     return None
 
 
-def _with_ties(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """The effects in the order found, each with those it is tied with."""
-    return tuple(dict.fromkeys(e for found in effects for e in next((group for group in ties if found in group), (found,))))
+def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
+    """The effects in the order found, each with those it is tied with: groups of one, or of several."""
+    return tuple(dict.fromkeys(tuple(next((group for group in ties if e in group), (e,))) for e in effects))
 
 
 def _tied(r: Round) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..loop.verdict import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
 
@@ -27,8 +28,9 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
     """What is missing where this campaign cannot tell some effects apart."""
-    sure = [_title(e, titles) for e in effects if not any(e in group for group in ties)]
-    groups = [_listed([_title(e, titles) for e in group], "or") for group in ties]
+    together = grouped(effects, ties)
+    sure = [_title(group[0], titles) for group in together if len(group) == 1]
+    groups = [_listed([_title(e, titles) for e in group], "or") for group in together if len(group) > 1]
     first, *more = [f"one of these is missing, and this campaign cannot tell which: {group}" for group in groups]
     said = "; ".join([first, *(f"and {words}" for words in more)])
     said = f"missing: {_listed(sure, 'and')}; and {said}" if sure else said
@@ -37,8 +39,7 @@ def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[
 
 def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
     """Effects that help, each with those this campaign cannot tell it from."""
-    groups = [next((group for group in ties if e in group), (e,)) for e in effects]
-    return _listed([_listed([_title(e, titles) for e in group], "or") for group in dict.fromkeys(map(tuple, groups))], "and")
+    return _listed([_listed([_title(e, titles) for e in group], "or") for group in grouped(effects, ties)], "and")
 
 
 def _title(effect: str, titles: Mapping[str, str]) -> str:
