@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader, report_of
-from tests.kit import with_settings
+from tests.kit import tracked, with_settings
 from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.loop.evidence import Bench
@@ -68,8 +68,8 @@ def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
 
 
 def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
-    """Starts and parameters of single runs: the same starts and errors as `Bench`."""
-    folder = with_settings(SAMPLE, tmp_path / "campaign")
+    """Starts and parameters of single runs, of which position was tracked too: the same starts and errors as `Bench`."""
+    folder = tracked(with_settings(SAMPLE, tmp_path / "campaign"))
     reader, measured = Reader(browser, report_of(folder, tmp_path / "report.html")), read(folder)
     for step in MODELS:
         reader.set(MODELS[step])

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from tests.kit import with_settings
+from tests.kit import tracked, with_settings
 from wheelchair_fmu.cli.main import app
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
@@ -48,7 +48,7 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
 
 @pytest.mark.parametrize("engine", ["kernel", "fmu"])
 def test_the_rms_is_that_of_compare(tmp_path, engine):
-    folder = with_settings(SAMPLE, tmp_path / "campaign")
+    folder = tracked(with_settings(SAMPLE, tmp_path / "campaign"))
     (tmp_path / "plan.toml").write_text('[sweep]\ncampaign = "campaign"\n')
     words = ("-o", tmp_path / "o.parquet", "--workers", 1, "--engine", engine)
     assert wheelchair("sweep", tmp_path / "plan.toml", *words).exit_code == 0

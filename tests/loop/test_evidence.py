@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from wheelchair_fmu.loop.fit import fit, prior_of
 from wheelchair_fmu.loop.screen import _long_run_variance
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.studies.measured import PREDICTS
 
 NAMES = ("tyre.C_lambda", "resistance.f_r")
 BIAS = 0.02  # rad/s
@@ -38,6 +40,28 @@ def test_again_is_the_evidence_itself_where_nothing_moved(short):
     again = bench.again(here, {})
     np.testing.assert_allclose(again.r, here.r, atol=1e-9)
     assert again.rms == pytest.approx(here.rms, rel=1e-9)
+
+
+def test_position_is_judged_by_what_each_reading_adds(short):
+    """A chair as modelled, whose pushes were recorded with noise: wherever it drifts to, its whitened error is one."""
+    rng, runs = np.random.default_rng(1), []
+    bench, noise = Bench(short, Variant()), {**short.noise, "x": 0.003, "y": 0.003, "yaw": 0.004}
+    for run in short.runs * 4:
+        results = bench.evidence([run], {}).runs[0].results
+        names = [o.name for o in bench.variant.model().outputs]
+        true = {c: results[:, names.index(PREDICTS[c])] for c in noise if c in PREDICTS}
+        read = {c: v + rng.normal(0, noise[c], len(v)) for c, v in true.items()}
+        pushed = {n: v + rng.normal(0, 0.4, len(v)) for n, v in run.inputs.items()}
+        runs.append(replace(run, name=f"{run.name} {len(runs)}", channels=read, inputs=pushed))
+    there = Bench(replace(short, runs=tuple(runs), noise=noise), Variant()).evidence(runs, {})
+    for c in ("x", "y", "yaw"):
+        assert np.sqrt(np.mean([e.rms[c] ** 2 for e in there.runs])) == pytest.approx(1, abs=0.02)
+    one = there.runs[0]
+    i = one.channels.index("x")
+    far = [np.sqrt(np.mean((e.measured[:, i] - e.predicted[:, i]) ** 2)) / noise["x"] for e in there.runs]
+    assert max(far) > 2  # so it would be many, by the tracker's noise alone
+    np.testing.assert_allclose(one.errors(one.predicted.copy()), one.e, rtol=1e-12)
+    np.testing.assert_allclose(pickle.loads(pickle.dumps(one)).errors(one.predicted + 0.001), one.errors(one.predicted + 0.001))
 
 
 def test_a_start_that_a_run_sets_stands(short):

@@ -35,7 +35,7 @@ def test_white_noise_as_stated_is_left_alone():
 @pytest.mark.parametrize("seed", range(3))
 def test_colour_is_seen(seed):
     colour, notes = coloured(0.006, 0.9, 0.006, seed)
-    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.06)
+    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.01)
     assert not notes, "its size is as stated"
 
 

@@ -9,11 +9,11 @@
 
 from ..faults import Fault
 from .axes import to_sae
-from .channels import CHANNELS, INPUTS, Channel
+from .channels import BY_NAME, CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
 from .reading import check, fingerprint, read
 from .records import Campaign, Run
 from .windows import pieces, windows
 
-__all__ = ["CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "pieces", "read",
+__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "pieces", "read",
            "read_smartwheel", "to_sae", "windows"]  # fmt: skip

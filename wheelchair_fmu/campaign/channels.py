@@ -13,7 +13,8 @@ class Channel:
 
     `fmu` is the FMU output that predicts it, or the FMU input that it feeds. `iso_sign` is its factor from
     ISO 8855 to SAE J670. `low` and `high` bound what is plausible. A wheel turns `rotary` units into this
-    channel's unit: value = rotary value · radius ** rotary_power.
+    channel's unit: value = rotary value · radius ** rotary_power. In one that `drifts`, whatever pushed the chair a little
+    stays for good.
     """
 
     name: str
@@ -26,6 +27,7 @@ class Channel:
     rotary: Unit | None = None
     rotary_power: int = 0
     wrong_unit: str = ""  # the unit that is most often meant when the size is implausible
+    drifts: bool = False
 
 
 def _wheel_speed(side: str, word: str) -> Channel:
@@ -56,9 +58,11 @@ CHANNELS: tuple[Channel, ...] = (
             -20.0, 20.0, -1, wrong_unit="deg/s"),
     Channel("a_x", M_S2, "sensor.a_x", "specific force forward", -100.0, 100.0, wrong_unit="g"),
     Channel("a_y", M_S2, "sensor.a_y", "specific force to the right", -100.0, 100.0, -1, wrong_unit="g"),
-    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm"),
-    Channel("y", M, "sensor.y", "position along the room's y, to the right of x", -1e4, 1e4, -1, wrong_unit="mm"),
-    Channel("yaw", RAD, "sensor.yaw", "heading, positive clockwise from above", -200.0, 200.0, -1, wrong_unit="deg"),
+    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm", drifts=True),
+    Channel("y", M, "sensor.y", "position along the room's y, to the right of x", -1e4, 1e4, -1, wrong_unit="mm",
+            drifts=True),
+    Channel("yaw", RAD, "sensor.yaw", "heading, positive clockwise from above", -200.0, 200.0, -1, wrong_unit="deg",
+            drifts=True),
     Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h"),
     Channel("v", M_S, "chair.v", "speed of the centre of mass, to the right", -15.0, 15.0, -1, wrong_unit="km/h"),
 )  # fmt: skip

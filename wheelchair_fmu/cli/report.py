@@ -57,7 +57,7 @@ def report(
 def _html(measured: Campaign, chair: Variant, told: Mapping[str, Any], fixed: Sequence[str]) -> str:
     titles = {e.id: e.title for e in chair.catalogue.values()}
     records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
-    colour = Colour(told["noise"]["sd"], told["noise"]["ar"])
+    colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
     return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records))
 
 

@@ -61,10 +61,14 @@ class Whitener:
                   "sd": noise.readings, "phi": noise.colour, "start_cov": noise.start}  # fmt: skip
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self._arrays["present"] = np.ascontiguousarray(present, np.int8)
-        self._filter = _Filter(nx, nq, nz, *(a.ctypes.data for a in self._arrays.values()))
+        self._size = (nx, nq, nz)
         self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
         self.logdet: float = _library().wc_design(ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain),
                                                   _of(self._scale))  # fmt: skip
+
+    @property
+    def _filter(self) -> _Filter:
+        return _Filter(*self._size, *(a.ctypes.data for a in self._arrays.values()))
 
     def __call__(self, signals: np.ndarray, start_mean: np.ndarray) -> np.ndarray:
         """Innovations (n, nz, m) of signals (n, nz, m).
@@ -86,7 +90,7 @@ class Whitener:
         """(n, nz) one over the standard deviation of each reading round a simulation from the right start: sensor noise,
         and push noise as it adds up."""
         certain, scale = np.zeros_like(self.noise.start), np.empty(self.present.shape)
-        from_there = _Filter.from_buffer_copy(self._filter)
+        from_there = self._filter
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale

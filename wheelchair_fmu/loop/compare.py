@@ -65,13 +65,12 @@ class Comparison:
 def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str],
               results: Sequence[str]) -> RunErrors:  # fmt: skip
     """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
-    own = evidence.predicted
-    there = np.stack([predicted[c] for c in evidence.channels], axis=1) if predicted is not None else own
+    there = np.stack([predicted[c] for c in evidence.channels], axis=1) if predicted is not None else evidence.predicted
     where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
     pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
     if pushes:
         where["push"] = np.sum(pushes, axis=0)
-    e = (evidence.measured - there) * evidence.scale
+    e = evidence.errors(there)
     return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where)
 
 

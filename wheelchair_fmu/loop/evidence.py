@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..campaign import CHANNELS, Campaign, Run
+from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -81,15 +81,28 @@ class RunEvidence:
         return replace(self, S=none, start_S=none, results=np.empty((0, 0)),
                        whitener=Weighed(self.whitener.logdet, self.whitener.spread))  # fmt: skip
 
-    @property
-    def scale(self) -> np.ndarray:
-        """(n, nz) one over the standard deviation of each reading: sensor noise, and push noise added up."""
-        return self.whitener.spread
-
     @cached_property
     def e(self) -> np.ndarray:
-        """(n, nz) measured less simulated, in those standard deviations; NaN in gaps."""
-        return (self.measured - self.predicted) * self.scale
+        """(n, nz) the simulation's own `errors`."""
+        return self.errors(self.predicted)
+
+    def errors(self, predicted: np.ndarray) -> np.ndarray:
+        """(n, nz) whitened: measured less `predicted`, in standard deviations; NaN in gaps.
+
+        A reading varies with its sensor's noise and with that of the pushes, added up. Where that adds up without end, in
+        position and heading, a run has one error rather than as many as samples; these are judged by what each reading says
+        that was not known from those before it.
+        """
+        errors = (self.measured - predicted) * self.whitener.spread
+        drift = [i for i, c in enumerate(self.channels) if BY_NAME[c].drifts]
+        if drift:
+            errors[:, drift] = self._innovations(predicted)[:, drift]
+        return errors
+
+    def _innovations(self, predicted: np.ndarray) -> np.ndarray:
+        if predicted is self.predicted:
+            return self.r
+        return self.whitener((self.measured - predicted)[:, :, None], self.offset)[:, :, 0]
 
     @cached_property
     def rms(self) -> dict[str, float]:

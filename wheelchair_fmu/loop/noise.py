@@ -32,10 +32,12 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
             sigma, phi = taken.sd[channel], taken.ar.get(channel, 0.0)
         else:
             sigma, phi = _fit_structure(_structure(evidence, channel))
-        if phi > WHITE:
-            ar[channel] = phi
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
-        if not 1 / TRUSTED < ratio < TRUSTED:
+        trusted = 1 / TRUSTED < ratio < TRUSTED
+        if phi > WHITE:
+            # data tell σ² (1 − φ), the change from one sample to the next, far better than they tell either of the two
+            ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
+        if not trusted:
             sd[channel] = sigma
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
                          "the data's own is used")  # fmt: skip

@@ -39,6 +39,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
         "runs": [_run(r, campaign) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},
+        "drifting": [c.name for c in CHANNELS if c.drifts],
         "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
         "known": {**workshop.variant.values, **campaign.known},
         "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],

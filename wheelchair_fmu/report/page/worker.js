@@ -259,15 +259,20 @@ function residual(f, predicted) {
   return f.measured.map((v, i) => (f.present[i] ? v - predicted[i] : 0));
 }
 
+/** What each reading says that was not known from those before it, where the chair reads `predicted` from the start of `s`. */
+function innovations(f, s, predicted) {
+  return s.whitener.whiten(residual(f, predicted), 1, s.offset);
+}
+
 /** How each innovation goes with the start (n, nz, k). */
 function startSlopes(f, s) {
   const k = campaign.start.length;
   return s.whitener.whiten(s.byStart.map((v, i) => (f.present[Math.floor(i / k)] ? v : 0)), k, new Float64Array(f.kernel.states));
 }
 
-/** The start given all readings, to first order: prior mean + P0 S0' r. */
-function betterStart(f, s, predicted, slopes) {
-  const { run } = f, k = campaign.start.length, r = s.whitener.whiten(residual(f, predicted), 1, s.offset), found = {};
+/** The start given all readings, to first order: prior mean + P0 S0' r, of innovations r and how they go with the start. */
+function betterStart({ run }, r, slopes) {
+  const k = campaign.start.length, found = {};
   campaign.start.forEach((name, c) => {
     let sum = 0;
     for (let i = 0; i < r.length; i++) sum += r[i] * slopes[i * k + c];
@@ -279,26 +284,32 @@ function betterStart(f, s, predicted, slopes) {
 
 /** As `wheelchair compare` does it: the start is moved to where the readings want it, until it is there. */
 function exactly(f, values) {
-  let start = f.run.start, s = linearised(f, values, start), slopes = startSlopes(f, s);
+  let start = f.run.start, s = whitened(f, values, start);
   for (let round = 0; round < campaign.tuning; round++) {
-    const better = betterStart(f, s, s.predicted, slopes);
+    const better = betterStart(f, s.innovations, s.slopes);
     if (campaign.start.every((name) => Math.abs(better[name] - start[name]) <= campaign.settled * f.run.start_sd[name])) break;
     start = better;
-    s = linearised(f, values, start);
-    slopes = startSlopes(f, s);
+    s = whitened(f, values, start);
   }
-  return { ...s, slopes, spread: s.whitener.spread() };
+  return { ...s, spread: s.whitener.spread() };
+}
+
+/** The same as `linearised`, with innovations and how they go with the start. */
+function whitened(f, values, start) {
+  const s = linearised(f, values, start);
+  return { ...s, innovations: innovations(f, s, s.predicted), slopes: startSlopes(f, s) };
 }
 
 /** Simulated anew, with the filter of the last exact evaluation; a better start moves the readings to first order. */
 function nearby(f, values, last) {
   const { y } = f.kernel.run(...given(f, values, last.start), campaign.tolerance), predicted = readings(f, y);
-  const start = betterStart(f, last, predicted, last.slopes), k = campaign.start.length;
+  const r = innovations(f, last, predicted); // to first order the same wherever the simulation starts
+  const start = betterStart(f, r, last.slopes), k = campaign.start.length;
   campaign.start.forEach((name, c) => {
     const step = start[name] - last.start[name];
     for (let i = 0; i < predicted.length; i++) predicted[i] += step * last.byStart[i * k + c];
   });
-  return { start, y, predicted, spread: last.spread };
+  return { start, y, predicted, spread: last.spread, innovations: r };
 }
 
 function evaluate(index, values, exact) {
@@ -308,14 +319,15 @@ function evaluate(index, values, exact) {
   return summary(f, remembered[index]);
 }
 
-/** Errors by channel, and the series that the page draws. */
-function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread }) {
+/** Errors by channel, as loop/evidence.py's `errors`, and the series that the page draws. */
+function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread, innovations }) {
   const errors = {}, simulated = {}, squares = {}, counts = {};
   names.forEach((name, z) => {
-    const e = new Float64Array(n), p = new Float64Array(n), offset = offsets[z];
+    const e = new Float64Array(n), p = new Float64Array(n), offset = offsets[z], drifts = campaign.drifting.includes(name);
     let sum = 0, count = 0;
     for (let i = 0; i < n; i++) {
-      e[i] = (measured[i * nz + z] - predicted[i * nz + z]) * spread[i * nz + z];
+      const d = measured[i * nz + z] - predicted[i * nz + z]; // NaN in gaps
+      e[i] = !drifts || Number.isNaN(d) ? d * spread[i * nz + z] : innovations[i * nz + z];
       p[i] = predicted[i * nz + z] + offset; // as the sensor reads it
       if (!Number.isNaN(e[i])) { sum += e[i] * e[i]; count++; }
     }

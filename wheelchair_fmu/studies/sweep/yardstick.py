@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 
@@ -17,14 +17,13 @@ from .engines import Engine, encoded
 
 @dataclass(frozen=True, eq=False)
 class Yardstick:
-    """One recorded run, its pushes when the chair felt them: `channels` measured (n, nz), NaN in gaps, and `scale` (n, nz),
-    one over the standard deviation of each reading. `known` is what the campaign says of the chair, over which a variant's
-    values and the plan's go; `fixed`, what the run itself sets and where it starts, goes over everything."""
+    """One recorded run, its pushes when the chair felt them: `errors` makes whitened errors (n, nz), NaN in gaps, of what
+    was predicted (n, nz) for its `channels`. `known` is what the campaign says of the chair, over which a variant's values
+    and the plan's go; `fixed`, what the run itself sets and where it starts, goes over everything."""
 
     run: Run
     channels: tuple[str, ...]
-    measured: np.ndarray
-    scale: np.ndarray
+    errors: Callable[[np.ndarray], np.ndarray]
     known: Mapping[str, float]
     fixed: Mapping[str, float]
 
@@ -41,7 +40,7 @@ def whitened(engine: Engine, variant: Variant, runs: Sequence[Yardstick], values
             results = engine.run(y.run.time, y.run.inputs, given)
         except SimulationError as error:
             raise SimulationError(f"run {y.run.name}: {error}") from error
-        e = (y.measured - np.stack([results[PREDICTS[c]] for c in y.channels], axis=1)) * y.scale
+        e = y.errors(np.stack([results[PREDICTS[c]] for c in y.channels], axis=1))
         errors[y.run.role].append(e[np.isfinite(e)])
     fit, holdout = errors["fit"], errors["holdout"]
     return {"rms": _rms([*fit, *holdout]), "rms_fit": _rms(fit), "rms_holdout": _rms(holdout)}
