@@ -119,3 +119,16 @@ def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
     monkeypatch.setattr(Search, "_straightened", lambda *given: [dict.fromkeys(base.values, float("nan"))])
     monkeypatch.setattr(Search, "_unbent", lambda *given: [])
     assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}
+
+
+def test_effects_that_explain_anything_only_together_are_found_together(tmp_path):
+    """Casters that are heavy to turn, in runs where they swing round. That chair has a trail and some friction too, and without
+    these a model with the inertia is as far off as one without."""
+    campaign = read(make(tmp_path / "campaign", {"caster_inertia": usual("caster_inertia", 3.0)}, manoeuvres="slow"))
+    found = diagnose(campaign, generic=library())
+    assert found.verdict in ("missing", "tie") and {"caster_trail", "caster_inertia"} <= set(found.effects)
+    assert found.ladder[1].left > 2 > 1.3 > found.ladder[-1].left
+    steps = [s.name[1:] for s in found.ladder[2:]]
+    assert set(found.effects) <= set(steps) and tuple(steps) == found.included
+    rows = {row["effect"]: row["verdict"] for row in as_json(found)["ranking"]}
+    assert rows["caster_inertia"] == "missing" and all(rows[e] == "small" for e in set(steps) - set(found.effects))

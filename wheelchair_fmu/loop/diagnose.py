@@ -24,10 +24,10 @@ TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
 PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long as they do not contradict
 SHORTLIST = 5
-HOPELESS = 0.2  # of the leader's fall: a linear effect expected to reach less is not refitted
+HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 SLIGHTLY = 0.1  # the same, where it costs little to look at both
-PROMISING = 6.0  # expected fall below which no refit could pass the corrected test
+PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
 SAME = 1.002  # ratio of two RMS errors that do not differ
 HARDLY = 0.3  # of the fall that is asked for
@@ -50,6 +50,11 @@ class Step:
     name: str
     fit: float
     heldout: float
+
+    @property
+    def left(self) -> float:
+        """What is left on fitted and on held-out runs alike."""
+        return min(self.fit, self.heldout) if np.isfinite(self.heldout) else self.fit
 
     def as_json(self) -> dict[str, str | float | None]:
         """The keys that are fixed for a step of the `ladder`."""
@@ -318,13 +323,17 @@ class Search:
     # -- refits ---------------------------------------------------------------------------------------------
 
     def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
-                  tests: int, rival: float = math.inf) -> Candidate | None:  # fmt: skip
-        """Refit with one more effect, from the expected change and from sizes of interest; `rival` is the best misfit yet."""
+                  tests: int, rival: float = math.inf, least: float = -math.inf) -> Candidate | None:  # fmt: skip
+        """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
+        `least`; `rival` is the best misfit yet."""
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self._base(effect, effects, base, base_held)
+        starts = self._starts(bench, base, s, least)
+        if starts:
+            self.say(f"refitting {effect}")
         begun = []
-        for start, here in self._starts(bench, base, s):
+        for start, here in starts:
             try:
                 begun.append(self.refit((*effects, effect), start, here, rival=rival, most=1))
             except SimulationError:
@@ -334,16 +343,18 @@ class Search:
         ahead = min(begun, key=lambda f: f.misfit)
         found = self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival)
         held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
-        return self._judge(base, base_held, found, held, effect, w.parameters(effect), tests)
+        return self.judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
-    def _starts(self, bench: Bench, base: Fit, s: Screened) -> list[tuple[dict[str, float], Evidence | None]]:
-        """Where to start refits, and what is known there: a linear effect from zero, others from the most promising of
-        several sizes: the expected change, both signs of δ, and larger ones."""
+    def _starts(self, bench: Bench, base: Fit, s: Screened, least: float) -> list[tuple[dict[str, float], Evidence | None]]:
+        """Where to start refits, and what is known there, where −2 log likelihood may fall by `least`: a linear effect from
+        zero, others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         straightened = self._straightened(bench, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
         linear = self._linear(s.score.effect)
+        if linear and s.score.drop < least:
+            return []
         if linear and len(calibrations) == 1:
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
             return [({n: base.values.get(n, 0.0) for n in names}, known)]
@@ -354,29 +365,29 @@ class Search:
         sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
         tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
-        best = sorted(tries, key=lambda theta: (self._promise(bench, known, names, np.array(theta)), theta))
-        return [(dict(zip(names, map(float, theta), strict=True)), None) for theta in best[: 1 if linear else STARTS]]
+        off = self.promise(bench, known, names, [base.values.get(n, 0.0) for n in names])
+        best = sorted((self.promise(bench, known, names, theta), theta) for theta in tries)[: 1 if linear else STARTS]
+        return [(dict(zip(names, map(float, theta), strict=True)), None) for promise, theta in best
+                if linear or off - promise >= least]  # fmt: skip
 
-    def _promise(self, bench: Bench, known: Evidence, names: list[str], theta: np.ndarray) -> float:
-        """The misfit that one linear step of all but the effect would reach from here."""
+    def promise(self, bench: Bench, known: Evidence, names: Sequence[str], theta: Sequence[float]) -> float:
+        """The misfit that one linear step from `theta` would reach, of those of `names` that `known` has slopes by."""
         try:
             r = bench.again(known, dict(zip(names, theta, strict=True))).r
         except SimulationError:
             return float("inf")
         prior = prior_of(bench, names)
-        rows = prior.rows(theta)
+        rows = prior.rows(np.array(theta))
         Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
         g = Z.T @ r + (prior.slopes @ rows)[:k]
         return float(r @ r + rows @ rows - g @ np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g)
 
-    def _judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
+    def judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
                names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
-        at = [found.names.index(n) for n in names]
         delta = np.array([self.records[n].smallest_interesting for n in names])
         one_sided = np.array([self.records[n].lower == 0 for n in names])
         estimate = np.array([found.values[n] for n in names])
-        covariance = sandwich(found)[np.ix_(at, at)]
-        along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
+        along, spread, covariance = self._sizes(found, names)
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
         p = max(float(stats.chi2.sf(np.sum(along**2 / spread), len(spread))),
@@ -395,9 +406,21 @@ class Search:
             visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
             gain=held_out_gain(base_held, held) if held is not None else None,
             heldout=held.brief() if held is not None else None,
-            small=bool(np.all(np.abs(along) + 1.96 * np.sqrt(spread) < 1)),
+            small=_small(along, spread),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )
+
+    def small(self, found: Fit, effect: str) -> bool:
+        """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
+        return _small(*self._sizes(found, self.workshop.parameters(effect))[:2])
+
+    def _sizes(self, found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Sizes of an effect in δ with their variances, along the directions that the data see; the estimates' covariance."""
+        at = [found.names.index(n) for n in names]
+        delta = np.array([self.records[n].smallest_interesting for n in names])
+        estimate = np.array([found.values[n] for n in names])
+        covariance = sandwich(found)[np.ix_(at, at)]
+        return *seen_directions(estimate / delta, covariance / np.outer(delta, delta)), covariance
 
     # -- search ---------------------------------------------------------------------------------------------
 
@@ -409,10 +432,8 @@ class Search:
         candidates: list[Candidate] = []
         for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most, twin):
             rival = min((c.fit.misfit for c in candidates), default=math.inf)
-            if self._linear(s.score.effect) and s.score.drop < HOPELESS * (base.misfit - rival):
-                continue
-            self.say(f"refitting {s.score.effect}")
-            c = self.candidate(base, base_held, effects, s, len(screened), rival)
+            least = max(PROMISING, HOPELESS * (base.misfit - rival))
+            c = self.candidate(base, base_held, effects, s, len(screened), rival, least)
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)
@@ -432,6 +453,11 @@ class Search:
         held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
+
+
+def _small(along: np.ndarray, variance: np.ndarray) -> bool:
+    """Are all these sizes, in δ, surely below 1?"""
+    return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < 1))
 
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .evidence import Evidence, block_length
@@ -20,6 +22,13 @@ def alike(one: Score, other: Score) -> float:
     """Cosine between two effects' signatures; 0 where either has none."""
     comparable = len(one.signature) == len(other.signature) > 0
     return abs(float(one.signature @ other.signature)) if comparable else 0.0
+
+
+def cosines(scores: Sequence[Score]) -> np.ndarray:
+    """`alike` of every effect (m,) with every other, (m, m)."""
+    most = max((len(s.signature) for s in scores), default=0)
+    signatures = [s.signature if len(s.signature) == most else np.zeros(most) for s in scores]
+    return abs(np.stack(signatures) @ np.stack(signatures).T) if signatures else np.zeros((0, 0))
 
 
 def sandwich(found: Fit) -> np.ndarray:

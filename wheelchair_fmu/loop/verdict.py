@@ -20,7 +20,9 @@ from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
-from .statistics import alike, difference_blocks, finite, resampled_totals, sandwich
+from .joint import together
+from .screen import Score
+from .statistics import cosines, difference_blocks, finite, resampled_totals, sandwich
 from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
@@ -30,6 +32,9 @@ SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
+RIVALS = 4  # that are listed of an effect, if their
+ALIKE_AT_ALL = 0.5  # cosine is larger
+MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
 
 
@@ -102,9 +107,15 @@ def diagnose(
         now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
         rounds.append(now)
         best = now.winner
+        if best is None and ladder[-1].left > MUCH:
+            progress("trying effects of one law together")
+            joined = together(search, effects, base, now.scores)
+            ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
+            rounds[-1:] = joined or [now]
+            best = joined[-1].candidates[0] if joined else None
         if best is None:
             break
-        effects = (*effects, best.effect)
+        effects = (*rounds[-1].effects, best.effect)
         base, held, ladder = _by_its_noise(search, effects, *search.settled(effects, best.fit), ladder)
         climb(best.effect)
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
@@ -113,16 +124,23 @@ def diagnose(
         climbed(tuple(ladder))
     groups = (_still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
     ties = tuple(group for group in groups if len(group) > 1)
-    effects = tuple(e for e in effects if e not in already)
+    every, helping = effects, _helping(rounds, effects)
+    effects = tuple(e for e in effects if e not in already and e not in helping)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
-    intervals = _intervals(search, (*already, *effects), effects, base) if proposal is None else {}
+    intervals = _intervals(search, every, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
     notes = (*thinned, *search.notes, *search.noise_notes)
     return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
                      base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
+
+
+def _helping(rounds: Sequence[Round], effects: Sequence[str]) -> set[str]:
+    """Of the effects in the model, those that went in together with others and are too small to be missed by themselves."""
+    put_in = dict(enumerate(effects))
+    return {c.effect for r in rounds for c in r.candidates if c.small and c.effect == put_in.get(len(r.effects))}
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
@@ -253,7 +271,7 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
 
 def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,
              last: Step) -> str:  # fmt: skip
-    if proposal is not None or min(last.fit, last.heldout if np.isfinite(last.heldout) else np.inf) > UNEXPLAINED:
+    if proposal is not None or last.left > UNEXPLAINED:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
@@ -294,15 +312,16 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     candidates: dict[str, tuple[Candidate, Round]] = {}
     for r in d.rounds:
         for c in r.candidates:
-            found_here = (*d.already, *d.effects)[len(r.effects) : len(r.effects) + 1]
+            found_here = d.included[len(r.effects) : len(r.effects) + 1]
             if c.effect not in candidates or c.effect in found_here:
                 candidates[c.effect] = (c, r)
     order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
                                           else scores[e].drop)))  # fmt: skip
-    return [_row(d, scores[e], *candidates.get(e, (None, first))) for e in order]
+    rivals = _rivals(first.scores)
+    return [_row(d, scores[e], *candidates.get(e, (None, first)), rivals.get(e, [])) for e in order]
 
 
-def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
+def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
     records = d.search.records
     estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
     parameters = {
@@ -321,23 +340,26 @@ def _row(d: Diagnosis, s: Any, c: Candidate | None, r: Round) -> dict[str, Any]:
         "hidden_in_fit": s.hidden,
         "heldout_before": finite(before),
         "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
-        "rivals": _rivals(s, d.rounds[0].scores),
+        "rivals": rivals,
         "verdict": _row_verdict(d, s, c),
     }
 
 
-def _rivals(s: Any, scores: Sequence[Any]) -> list[dict[str, Any]]:
-    """The effects whose signature is most like this one's."""
-    rivals = sorted(((alike(o, s), o.effect) for o in scores if o.effect != s.effect), reverse=True)
-    return [{"effect": effect, "cosine": round(cosine, 4)} for cosine, effect in rivals[:4] if cosine > 0.5]
+def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
+    """By effect, those whose signature is most like its own."""
+    found = {}
+    for i, row in enumerate(cosines(scores)):
+        most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
+        found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
+    return found
 
 
-def _row_verdict(d: Diagnosis, s: Any, c: Candidate | None) -> str:
+def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
     if any(s.effect in t for t in d.ties):
         return "tie"
     if s.effect in d.effects:
         return "small" if d.verdict == "small" else "missing"
-    if c and c.small and c.p < 0.05:
+    if s.effect in d.included or (c and c.small and c.p < 0.05):
         return "small"
     return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"
 

@@ -1,0 +1,104 @@
+"""Effects that ask for one law, put in together.
+
+Where a law has several effects of its own, one alone may leave the model as far off as none: simulations go another way
+altogether until all are about right. So where much is left and no single effect is found, their sizes are tried together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from ..errors import SimulationError
+from .diagnose import Round, Search, decisive
+from .fit import Fit
+from .screen import Score
+
+SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
+TRIES = 125  # combinations of them, at most
+BEGUN = 6  # of these, refits that make one step
+ENDED = 2  # of those, refits that go on to their end
+
+
+@dataclass(frozen=True)
+class Stage:
+    """An effect, the model before it is put in, and the model with it."""
+
+    effect: str
+    without: Fit
+    fit: Fit
+
+
+def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequence[Score]) -> list[Round]:
+    """Rounds that put in what a group of effects explains together, one effect each, the most needed first; none if it
+    explains nothing. Each is as small as it is in the last."""
+    for group in kin(search):
+        new = tuple(e for e in group if e not in effects)
+        found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
+        if found is not None and found.misfit < base.misfit - decisive(base.evidence):
+            return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
+    return []
+
+
+def kin(search: Search) -> list[tuple[str, ...]]:
+    """Effects with parameters to estimate, by the laws that they ask for."""
+    w = search.workshop
+    groups: dict[tuple[tuple[str, str], ...], list[str]] = {}
+    for e in w.demanding:
+        if w.parameters(e):
+            groups.setdefault(tuple(sorted(w.catalogue[e].needs.items())), []).append(e)
+    return [tuple(group) for group in groups.values()]
+
+
+def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], group: Sequence[str], base: Fit) -> Fit | None:
+    """The most likely model with all of a group that starts from several sizes of each lead to."""
+    every = (*effects, *new)
+    bench, names = search.workshop.bench(every), search.names(every)
+    own = [n for e in group for n in search.workshop.parameters(e)]
+    sizes = [[f * search.records[n].smallest_interesting for f in SIZES] for n in own]
+    tries = list(product(*sizes))
+    if len(tries) > TRIES:
+        tries = [tries[i] for i in np.random.default_rng(0).choice(len(tries), TRIES, replace=False)]
+    starts = [{**dict.fromkeys(names, 0.0), **base.values, **dict(zip(own, one, strict=True))} for one in tries]
+    starts.sort(key=lambda start: search.promise(bench, base.evidence, names, [start[n] for n in names]))
+    begun = []
+    for start in starts[:BEGUN]:
+        try:
+            begun.append(search.refit(every, start, most=1))
+        except SimulationError:
+            continue
+    begun.sort(key=lambda fit: fit.misfit)
+    ended = [search.refit(every, fit.values, fit.evidence) for fit in begun[:ENDED]]
+    return min(ended, key=lambda fit: fit.misfit, default=None)
+
+
+def _stages(search: Search, effects: tuple[str, ...], new: tuple[str, ...], found: Fit, base: Fit) -> list[Stage]:
+    """The way back from a model with all of `new` to one without, by what is needed least; what is not needed is left out."""
+    stages: list[Stage] = []
+    while new:
+        without = {e: base if len(new) == 1 else _refitted(search, (*effects, *(o for o in new if o != e)), found) for e in new}
+        least = min(without, key=lambda e: without[e].misfit)
+        needed = without[least].misfit - found.misfit > decisive(found.evidence) * float(np.mean(found.evidence.r**2))
+        if needed or stages:
+            stages.insert(0, Stage(least, without[least], found))
+        new, found = tuple(e for e in new if e != least), without[least]
+    return stages
+
+
+def _refitted(search: Search, effects: tuple[str, ...], found: Fit) -> Fit:
+    return search.refit(effects, found.values, rival=found.misfit)
+
+
+def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], scores: Sequence[Score]) -> list[Round]:
+    w, rounds = search.workshop, []
+    for s in stages:
+        more = (*effects, s.effect)
+        before, after = (search.heldout(w.bench(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
+        judged = search.judge(s.without, before, s.fit, after, s.effect, w.parameters(s.effect), len(scores))
+        judged = replace(judged, small=search.small(stages[-1].fit, s.effect))
+        rounds.append(Round(effects, s.without, before, tuple(scores), (judged,)))
+        effects = more
+    return rounds
