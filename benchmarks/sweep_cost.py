@@ -43,7 +43,7 @@ AXES = (Axis("tyre.C_lambda", lower=2500, upper=10_000), Axis("chair.m", lower=6
 
 
 def job() -> Job:
-    return Job(Plan(Design("random", AXES, CHAIRS, 1), (Course("steady-turn", "steady-turn", ()),), (Chair("default"),)))
+    return Job(Plan(Design("random", AXES, CHAIRS, 1), (Course("steady-turn", "steady-turn", ()),), (Chair(),)))
 
 
 class _Loop:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -16,6 +18,9 @@ from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.errors import Failure
 from wheelchair_fmu.fleet import Fleet, folders
 from wheelchair_fmu.fleet.rows import SE
+from wheelchair_fmu.model.effects import bundled, defined, sources
+from wheelchair_fmu.model.recipe import Recipe
+from wheelchair_fmu.model.variant import Variant
 
 K = "effect.aerodynamic_drag.k"
 RIVALS = {"aerodynamic_drag", "rolling_resistance_speed"}
@@ -89,6 +94,19 @@ def test_a_dask_cluster_gives_the_same_rows(garage, diagnosed, tmp_path):
         complete(job, out, dask(cluster.scheduler_address))
     one, other = (pd.read_parquet(path).drop(columns="seconds") for path in (out, diagnosed[1].with_suffix(".parquet")))
     pd.testing.assert_frame_equal(one, other)
+
+
+def test_ones_own_effects_and_variant_go_with_the_work(tmp_path):
+    """Whoever diagnoses need not see their files, but the row's key knows them."""
+    assert wheelchair("effects", "new", "my_drag", "-o", tmp_path).exit_code == 0
+    own = sources(tmp_path)
+    heavy = Variant(catalogue={**bundled(), **defined(own)}).with_effects(["my_drag"]).with_values({"chair.m": "95"})
+    job = Fleet((tmp_path,), (("effect.my_drag.q", "2"),), Recipe.of(heavy, own))
+    shutil.rmtree(tmp_path)
+    there = pickle.loads(pickle.dumps(job)).chair()
+    assert there.effects == ("my_drag",) and there.values == {"chair.m": 95.0, "effect.my_drag.q": 2.0}
+    other = Recipe.of(heavy, tuple((file, content + b"# another") for file, content in own))
+    assert replace(job, recipe=other).keys != job.keys
 
 
 def test_folders_are_campaigns_or_hold_them(garage, tmp_path):

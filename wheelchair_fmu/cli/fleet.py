@@ -14,6 +14,9 @@ from rich.table import Table
 from ..chunks import bad, is_done
 from ..errors import UsageError
 from ..fleet import Fleet, folders, long, summary
+from ..loop.subject import chair
+from ..model.effects import sources
+from ..model.recipe import Recipe
 from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .group import console
@@ -39,8 +42,8 @@ def fleet(
     if output.suffix not in ENDINGS:
         raise UsageError(f"-o {output}: give a name that ends in {' or '.join(ENDINGS)}")
     pool = pool_of(address, workers)
-    job = Fleet(folders(campaigns), tuple(parse(settings or ()).items()), variant and variant.resolve(),
-                effects and effects.resolve())  # fmt: skip
+    recipe = Recipe.of(chair(variant, effects), sources(effects) if effects else ())
+    job = Fleet(folders(campaigns), tuple(parse(settings or ()).items()), recipe)
     job.chair()  # a wrong question is told before anything is done
     whole = output.with_suffix(".parquet")
     if is_done(job, whole):

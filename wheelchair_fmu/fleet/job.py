@@ -16,9 +16,10 @@ from .. import __version__, loop
 from ..campaign import fingerprint, read, windows
 from ..engine.cache import sources
 from ..errors import Failure, FileError, WheelchairError
-from ..loop.subject import applied, chair, known_parameters
+from ..loop.subject import applied, known_parameters
 from ..loop.verdict import diagnose
 from ..model.generic import library
+from ..model.recipe import Recipe
 from ..model.variant import Variant
 from .rows import KEY, of_diagnosis, schema
 
@@ -28,20 +29,18 @@ LOOP = Path(loop.__file__).parent
 
 @dataclass(frozen=True)
 class Fleet:
-    """Campaigns and what is asked of all alike: `settings` (names and values as written), a variant's file, a folder of
-    effects. All paths are absolute; whoever does the work reads them there."""
+    """Campaigns and what is asked of all alike: `settings` (names and values as written) of a chair, the default one if
+    none is given. The campaigns' paths are absolute; whoever does the work reads them there."""
 
     places: tuple[Path, ...]
     settings: tuple[tuple[str, str], ...] = ()
-    variant: Path | None = None
-    effects: Path | None = None
+    recipe: Recipe = Recipe()
     what: ClassVar[str] = "campaigns, question or version"
 
     @cached_property
     def keys(self) -> tuple[str, ...]:
         """For each campaign what decides its row: the files' content, the question, and this program."""
-        files = [*([self.variant] if self.variant else []), *(sorted(self.effects.glob("*.py")) if self.effects else [])]
-        asked = (__version__, sources(), _loop(), repr(self.settings), *(f.read_text(encoding="utf-8") for f in files))
+        asked = (__version__, sources(), _loop(), repr(self.settings), repr(self.recipe))
         return tuple(_hash(*asked, str(place), fingerprint(place)) for place in self.places)
 
     @cached_property
@@ -71,9 +70,9 @@ class Fleet:
     def chair(self) -> Variant:
         """The variant that every campaign is held against.
 
-        Raises UsageError, Failure or ModelError where the question is wrong.
+        Raises UsageError where a setting is wrong.
         """
-        return chair(self.variant, self.effects).with_values(dict(self.settings))
+        return self.recipe.variant().with_values(dict(self.settings))
 
     def schema(self) -> pa.Schema:
         return schema(self.chair(), {"wheelchair-fmu": __version__, "fingerprint": self.fingerprint})
@@ -89,7 +88,7 @@ class Fleet:
         try:
             measured = windows(read(place, known_parameters()))
             about["campaign"] = measured.name
-            variant, measured, fixed = applied(dict(self.settings), chair(self.variant, self.effects), measured)
+            variant, measured, fixed = applied(dict(self.settings), self.recipe.variant(), measured)
             return {**about, **of_diagnosis(diagnose(measured, variant, library(), fixed=fixed))}
         except FileError as error:
             return {**about, "error": _first(error, place)}

@@ -425,15 +425,16 @@ class Search:
     # -- search ---------------------------------------------------------------------------------------------
 
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
-              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE) -> Round:  # fmt: skip
+              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE, rival: float = math.inf) -> Round:  # fmt: skip
         """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, as far as slopes tell,
-        is not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are."""
+        is not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are. `rival` is the
+        misfit of another model to be compared with."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
         for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most, twin):
-            rival = min((c.fit.misfit for c in candidates), default=math.inf)
-            least = max(PROMISING, HOPELESS * (base.misfit - rival))
-            c = self.candidate(base, base_held, effects, s, len(screened), rival, least)
+            leader = min((c.fit.misfit for c in candidates), default=math.inf)
+            least = max(PROMISING, HOPELESS * (base.misfit - leader))
+            c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), least)
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)

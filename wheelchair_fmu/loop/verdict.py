@@ -237,7 +237,8 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0)
+        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
+                                     rival=base.misfit)  # fmt: skip
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - decisive(base.evidence):
             return alone, lone

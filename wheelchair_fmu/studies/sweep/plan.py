@@ -36,10 +36,10 @@ from typing import Any
 from ...errors import FileError, WheelchairError
 from ...faults import Fault, not_utf8, suggestion
 from ...handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
-from ...model.effects import Sources, bundled, defined, sources
+from ...model.effects import sources
+from ...model.recipe import Recipe
 from ...model.stage import Effect
-from ...model.variant import Variant, number, read_variant
-from ...model.wheelchair import Choice
+from ...model.variant import number, read_variant
 from ...quantities import Parameter
 from .design import INDICES, METHODS, Axis, Design
 
@@ -66,21 +66,10 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Chair:
-    """A variant by what it is made of, so that it can go to other processes; `own` are the files of a user's effects."""
+class Chair(Recipe):
+    """A variant that the plan names by a `label`."""
 
-    label: str
-    choice: Choice = Choice()
-    effects: tuple[str, ...] = ()
-    values: tuple[tuple[str, float], ...] = ()
-    own: Sources = ()
-
-    def variant(self) -> Variant:
-        return Variant(self.choice, self.effects, dict(self.values), catalogue={**bundled(), **defined(self.own)})
-
-    def with_effects(self, ids: Iterable[str]) -> Chair:
-        grown = self.variant().with_effects(ids)
-        return replace(self, choice=grown.choice, effects=grown.effects)
+    label: str = "default"
 
 
 @dataclass(frozen=True)
@@ -107,7 +96,7 @@ def read_plan(path: Path, effects: Path | None = None) -> Plan:
 
     Raises PlanError with every fault, and ModelError for a folder that is not there or a file in it that is no effect.
     """
-    reader = _Reader(path, Chair("default", own=sources(effects) if effects else ()))
+    reader = _Reader(path, Chair(own=sources(effects) if effects else ()))
     plan = reader.plan()
     if reader.faults or plan is None:
         raise PlanError(sorted(reader.faults, key=lambda fault: (fault.line is None, fault.line or 0)))
@@ -352,8 +341,7 @@ class _Reader:
             except WheelchairError as error:
                 self.refused(f"{key}.file", error)
             else:
-                yield replace(self.bare, label=label, choice=variant.choice, effects=variant.effects,
-                              values=tuple(variant.values.items()))  # fmt: skip
+                yield replace(Chair.of(variant, self.bare.own), label=label)
 
     def _campaign(self, sweep: Mapping[str, Any]) -> Path | None:
         if "campaign" not in sweep:
