@@ -37,9 +37,9 @@ def report_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return report_of(SAMPLE, tmp_path_factory.mktemp("report") / "report.html")
 
 
-def report_of(campaign: Path, file: Path) -> Path:
+def report_of(campaign: Path, file: Path, diagnosis: Path = DIAGNOSIS) -> Path:
     """The report of the sample campaign, or of one like it."""
-    done = CliRunner().invoke(app, ["report", str(campaign), "--diagnosis", str(DIAGNOSIS), "-o", str(file)])
+    done = CliRunner().invoke(app, ["report", str(campaign), "--diagnosis", str(diagnosis), "-o", str(file)])
     assert done.exit_code == 0, done.output
     return file
 

@@ -19,7 +19,8 @@ def test_innovations_are_generalised_least_squares(colour):
         transition=0.3 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
         push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, 3, nx)),
         by_push=rng.normal(size=(n, 3, 4)))  # fmt: skip
-    noise = Noise(np.array([0.3, 0.5]), np.array([0.2, 0.4]), np.full(nz, colour), np.diag([0.1, 0.0, 0.2]) ** 2)
+    noise = Noise(np.array([0.3, 0.5]), np.full(nq, colour), np.array([0.2, 0.4]), np.full(nz, colour),
+                  np.diag([0.1, 0.0, 0.2]) ** 2)  # fmt: skip
     which = [0, 2]
     signals = rng.normal(size=(n, nz, 4))
     signals[4, 1, 0] = np.nan
@@ -40,13 +41,14 @@ def test_innovations_are_generalised_least_squares(colour):
 def dense(run, which, noise, n, nx, nq, nz, mean):
     """Covariance of all readings, and their mean from the start's, by superposition."""
     H, D = run.by_state[:, which], run.by_push[:, which, :nq]
-    sources = [(("start", k), np.sqrt(noise.start[k, k])) for k in range(nx)]
-    sources += [(("push", i, q), noise.pushes[q]) for i in range(n) for q in range(nq)]
     V = np.zeros((n * nz, n * nz))
-    for source, sd in sources:
-        response = respond(run, source, H, D, n, nx, nq)
-        V += sd**2 * np.outer(response, response)
+    for k in range(nx):
+        response = respond(run, ("start", k), H, D, n, nx, nq)
+        V += noise.start[k, k] * np.outer(response, response)
     lag = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    for q in range(nq):
+        responses = np.array([respond(run, ("push", i, q), H, D, n, nx, nq) for i in range(n)])
+        V += noise.pushes[q] ** 2 * responses.T @ noise.push_colour[q] ** lag @ responses
     for z in range(nz):
         V[z::nz, z::nz] += noise.readings[z] ** 2 * noise.colour[z] ** lag
     offset = sum(mean[k] * respond(run, ("start", k), H, D, n, nx, nq) for k in range(nx))
@@ -76,7 +78,7 @@ def test_spread_is_each_readings_own_standard_deviation():
         transition=0.5 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
         push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
         by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
-    noise = Noise(np.array([0.3]), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.2]) ** 2)
+    noise = Noise(np.array([0.3]), np.zeros(1), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.2]) ** 2)
     V, _ = dense(run, [0, 1], replace(noise, start=0 * noise.start), n, nx, nq, nz, np.zeros(nx))
     spread = Whitener(run, [0, 1], noise, np.ones((n, nz), bool)).spread
     np.testing.assert_allclose(spread.ravel(), 1 / np.sqrt(np.diag(V)), rtol=1e-10)

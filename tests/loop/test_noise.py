@@ -11,16 +11,21 @@ from wheelchair_fmu.loop.evidence import Colour
 from wheelchair_fmu.loop.noise import colour_of
 
 
-def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000):
-    """`colour_of` one run whose only channel has AR(1) noise on a smooth error as large as the noise, by a filter for white
-    noise of the `stated` size."""
+def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
     rng = np.random.default_rng(seed)
     noise = np.empty(n)
     noise[0] = rng.normal(0, sigma)
     for i in range(1, n):
         noise[i] = phi * noise[i - 1] + rng.normal(0, sigma * np.sqrt(1 - phi**2))
+    return noise
+
+
+def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000):
+    """`colour_of` one run whose only channel has AR(1) noise on a smooth error as large as the noise, by a filter for white
+    noise of the `stated` size."""
+    noise = ar1(sigma, phi, seed, n)
     smooth = sigma * np.sin(2 * np.pi * 0.3 * np.arange(n) * 0.01)
-    run = SimpleNamespace(channels={"yaw_rate": noise + smooth})
+    run = SimpleNamespace(channels={"yaw_rate": noise + smooth}, inputs={})
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=predicted, r=r, e=r)])
@@ -43,3 +48,15 @@ def test_a_wrong_size_is_said():
     colour, notes = coloured(0.006, 0.0, 0.6)
     assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
     assert notes == ["yaw_rate: its noise is about 0.006 (SI), not the 0.6 stated; the data's own is used"]
+
+
+@pytest.mark.parametrize(("phi", "stated", "expected"), [(0.9, 0.4, 0.9), (0.0, 0.4, None), (0.0, 0.6, None)])
+def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
+    """Strokes of 40 N with kinks, and noise of 0.4 N; white noise that was stated half as large again is none."""
+    t = np.arange(4000) * 0.01
+    strokes = 40 * np.maximum(0, np.sin(2 * np.pi * t))
+    run = SimpleNamespace(channels={}, inputs={"push.F_rl": strokes + ar1(0.4, phi, 1, len(t)), "push.F_rr": 0 * t})
+    evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=())])
+    colour, notes = colour_of(evidence, {"F_rl": stated, "F_rr": 0.0}, Colour({"F_rl": stated, "F_rr": 0.0}))
+    assert not notes and set(colour.ar) == ({"F_rl"} if expected else set())
+    assert colour.ar.get("F_rl") == (expected and pytest.approx(expected, abs=0.02))

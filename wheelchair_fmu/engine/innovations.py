@@ -24,16 +24,17 @@ class _Filter(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_int) for name in ("nx", "nq", "nz")),
         *((name, ctypes.c_void_p)
-          for name in ("A", "B", "C", "H", "D", "input_sd", "sd", "phi", "start_cov", "present")),
+          for name in ("A", "B", "C", "H", "D", "input_sd", "input_phi", "sd", "phi", "start_cov", "present")),
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Noise:
-    """What is known of the noise: standard deviations of pushes (nq,), readings (nz,) with the AR(1) coefficient
-    of each (nz,), and the covariance of the start (nx, nx)."""
+    """What is known of the noise: standard deviations of pushes (nq,) and readings (nz,), the AR(1) coefficients of each
+    (nq,) and (nz,), and the covariance of the start (nx, nx)."""
 
     pushes: np.ndarray
+    push_colour: np.ndarray
     readings: np.ndarray
     colour: np.ndarray
     start: np.ndarray
@@ -57,8 +58,9 @@ class Whitener:
         if nx + nq + nz > MOST:
             raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
         arrays = {"A": run.transition, "B": run.push_before[:, :, :nq], "C": run.push_after[:, :, :nq],
-                  "H": run.by_state[:, which], "D": run.by_push[:, which, :nq], "input_sd": noise.pushes,
-                  "sd": noise.readings, "phi": noise.colour, "start_cov": noise.start}  # fmt: skip
+                  "H": run.by_state[:, which], "D": run.by_push[:, which, :nq],
+                  "input_sd": noise.pushes, "input_phi": noise.push_colour, "sd": noise.readings, "phi": noise.colour,
+                  "start_cov": noise.start}  # fmt: skip
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self._arrays["present"] = np.ascontiguousarray(present, np.int8)
         self._size = (nx, nq, nz)
@@ -68,7 +70,7 @@ class Whitener:
 
     @property
     def _filter(self) -> _Filter:
-        return _Filter(*self._size, *(a.ctypes.data for a in self._arrays.values()))
+        return _Filter(*self._size, **{name: a.ctypes.data for name, a in self._arrays.items()})
 
     def __call__(self, signals: np.ndarray, start_mean: np.ndarray) -> np.ndarray:
         """Innovations (n, nz, m) of signals (n, nz, m).

@@ -367,9 +367,10 @@ class Search:
         known = s.evidence.only(base.names)
         off = self.promise(bench, known, names, [base.values.get(n, 0.0) for n in names])
         best = sorted((self.promise(bench, known, names, theta), theta) for theta in tries)[: 1 if linear else STARTS]
-        another = bool(self.workshop.catalogue[s.score.effect].needs)  # law, by which runs may go another way altogether
+        record = self.workshop.catalogue[s.score.effect]
+        sudden = record.needs or record.rows  # gain: with another law or more states runs may go another way altogether
         return [(dict(zip(names, map(float, theta), strict=True)), None) for promise, theta in best
-                if linear or another or off - promise >= least]  # fmt: skip
+                if linear or sudden or off - promise >= least]  # fmt: skip
 
     def promise(self, bench: Bench, known: Evidence, names: Sequence[str], theta: Sequence[float]) -> float:
         """The misfit that one linear step from `theta` would reach, of those of `names` that `known` has slopes by."""

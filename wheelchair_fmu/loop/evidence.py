@@ -27,6 +27,7 @@ from ..quantities import Parameter
 TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
+PUSHED = ("F_rl", "F_rr")  # records of pushes that carry noise
 TELLS = {"start.x": "x", "start.y": "y", "start.psi": "yaw", "start.u": "u", "start.psi_dot": "yaw_rate"}  # by channel
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
@@ -38,7 +39,7 @@ FIRST = 0.2  # s of samples that say where a run starts
 
 @dataclass(frozen=True)
 class Colour:
-    """Noise of each channel: standard deviation (SI) and AR(1) coefficient from sample to sample."""
+    """Noise of each channel, and of the recorded pushes: standard deviation (SI) and AR(1) coefficient."""
 
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
@@ -303,9 +304,9 @@ class Bench:
         return out
 
     def _noise(self, channels: tuple[str, ...], start: np.ndarray) -> Noise:
-        pushes = [self.colour.sd.get(side, 0.0) for side in ("F_rl", "F_rr")]
-        return Noise(np.array(pushes), np.array([self.colour.sd[c] for c in channels]),
-                     np.array([self.colour.ar.get(c, 0.0) for c in channels]), start)  # fmt: skip
+        sd, ar = self.colour.sd, self.colour.ar
+        pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in names] for names in (PUSHED, channels))
+        return Noise(*np.array(pushes).T, *np.array(readings).T, start)
 
     def with_colour(self, colour: Colour) -> Bench:
         """The same bench with other noise; starts found so far are kept."""

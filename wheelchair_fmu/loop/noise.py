@@ -1,4 +1,4 @@
-"""Size and colour of each channel's noise, from how quickly its residual changes from sample to sample.
+"""Size and colour of each channel's noise, from how quickly its residual changes from sample to sample; colour of the pushes'.
 
 Noise shows at lags of a few samples, where a missing effect hardly moves. The mean square of
 d(i + k) − d(i) is 2σ²(1 − φ^k) for AR(1) noise, plus about c k² of whatever is smooth.
@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import brentq, least_squares
 
-from .evidence import Colour, Evidence
+from ..campaign.noise import estimate
+from .evidence import PUSHED, Colour, Evidence
 
 LAGS = 15
 WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
 QUIETER = 0.75  # mean square error below which noise was taken for too large, once what was missing is in the model
+STEADY = 0.6  # an AR(1) coefficient of pushes below this may as well be noise that was stated too large
 TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept
 
 
@@ -41,7 +43,17 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
             sd[channel] = sigma
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
                          "the data's own is used")  # fmt: skip
-    return Colour(sd, ar), notes
+    pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in PUSHED}
+    return Colour(sd, ar | {side: phi for side, phi in pushes.items() if phi > STEADY}), notes
+
+
+def _push_colour(evidence: Evidence, side: str, sd: float) -> float:
+    """AR(1) coefficient of the noise in a record of pushes, by its stated size and its third differences, which no hand's
+    push moves: for AR(1) noise these have a variance of σ² (20 − 30 φ + 12 φ² − 2 φ³)."""
+    found = estimate([e.run.inputs[f"push.{side}"] for e in evidence.runs if f"push.{side}" in e.run.inputs])
+    if found is None or not 0 < found < sd:
+        return 0.0
+    return float(brentq(lambda phi: 20 - 30 * phi + 12 * phi**2 - 2 * phi**3 - 20 * (found / sd) ** 2, 0.0, 1.0))
 
 
 def _white(evidence: Evidence, channel: str, lowest: float) -> bool:

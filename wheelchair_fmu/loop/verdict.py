@@ -27,7 +27,7 @@ from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
-NEARLY = 0.95  # of the leader's fall that a rival must reach to be tied by what is held out
+NEARLY = 0.95  # of a fall: a rival that reaches it may be tied by what is held out, and no generic term replaces it
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
@@ -240,11 +240,12 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
                                      rival=base.misfit)  # fmt: skip
         lone = next((c for c in alone.candidates if _clear(c)), None)
-        if lone is not None and lone.fit.misfit < base.misfit - decisive(base.evidence):
+        plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
+        if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
     left = generic_search.round(effects, base, held, list(generic), most=TERMS, twin=1.0)
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
-    better = catalogued + decisive(base.evidence)  # than an effect that was too small, or not proven
+    better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
     return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)
 
 

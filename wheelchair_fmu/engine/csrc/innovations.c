@@ -2,8 +2,7 @@
  *
  * Deviations from a simulated run obey
  *     e(i+1) = A(i) e(i) + B(i) q(i) + C(i) q(i+1),    z(i) = H(i) e(i) + D(i) q(i) + a(i),
- * with q the noise of the recorded inputs, white over samples, and a the noise of the readings, one
- * AR(1) process each. The filter turns z into independent innovations of variance 1; being linear it
+ * with q the noise of the recorded inputs and a that of the readings, an AR(1) process each. The filter turns z into independent innovations of variance 1; being linear it
  * does the same to any signal that may hide in z, so residuals and sensitivities go through alike.
  * Its gains depend on the variances only: they are designed once and applied to as many signals as come.
  *
@@ -18,7 +17,7 @@ typedef struct {
     int nx, nq, nz;
     const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
     const double *H, *D;      /* n x nz x nx, n x nz x nq */
-    const double *input_sd;   /* nq */
+    const double *input_sd, *input_phi; /* nq: standard deviation and AR(1) coefficient of each input */
     const double *sd, *phi;   /* nz: standard deviation and AR(1) coefficient of each reading */
     const double *start_cov;  /* nx x nx */
     const char *present;      /* n x nz: 0 in a gap */
@@ -35,8 +34,12 @@ static void carry(const filter *f, long i, int m, const double *restrict from, d
     memset(to, 0, sizeof(double) * (size_t)((nx + nq + f->nz) * m));
     for (int r = 0; r < nx; r++) {
         for (int k = 0; k < nx; k++) add_row(m, f->A[(i * nx + r) * nx + k], from + k * m, to + r * m);
-        for (int q = 0; q < nq; q++) add_row(m, f->B[(i * nx + r) * nq + q], from + (nx + q) * m, to + r * m);
+        for (int q = 0; q < nq; q++) {
+            long at = (i * nx + r) * nq + q;
+            add_row(m, f->B[at] + f->C[at] * f->input_phi[q], from + (nx + q) * m, to + r * m);
+        }
     }
+    for (int q = 0; q < nq; q++) add_row(m, f->input_phi[q], from + (nx + q) * m, to + (nx + q) * m);
     for (int z = nx + nq; z < nx + nq + f->nz; z++) add_row(m, f->phi[z - nx - nq], from + z * m, to + z * m);
 }
 
@@ -54,7 +57,7 @@ static void predict(const filter *f, long i, double *P) {
     transpose(n, T, U);
     carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
     for (int q = 0; q < nq; q++) { /* fresh noise of the inputs at i+1 */
-        double G[MOST] = {0}, variance = f->input_sd[q] * f->input_sd[q];
+        double G[MOST] = {0}, variance = (1 - f->input_phi[q] * f->input_phi[q]) * f->input_sd[q] * f->input_sd[q];
         for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + q];
         G[nx + q] = 1;
         for (int r = 0; r < nx + nq; r++) add_row(nx + nq, variance * G[r], G, P + r * n);

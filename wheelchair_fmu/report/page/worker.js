@@ -12,7 +12,8 @@ const WHY = {
   2: "no step was short enough for the tolerance",
   3: "the algebraic equations have no solution nearby",
 };
-const PUSHES = 2; // the first inputs, whose records may carry noise
+const PUSHED = ["F_rl", "F_rr"]; // records of pushes that carry noise
+const PUSHES = PUSHED.length; // the first inputs
 const MOST = 64; // states, pushes and readings together, as in innovations.c
 const REACH = 3; // standard deviations that a start may be moved
 
@@ -116,7 +117,7 @@ class Kernel {
     this.reset();
     const { system, noise, present, nz } = filter, nx = this.states, nq = noise.pushes.length;
     if (nx + nq + nz > MOST) throw new Error(`${nx} states, ${nq} pushes and ${nz} readings are more than ${MOST}`);
-    const arrays = [system.A, system.B, system.C, system.H, system.D, noise.pushes, noise.sd, noise.ar, startCov];
+    const arrays = [system.A, system.B, system.C, system.H, system.D, noise.pushes, noise.push_ar, noise.sd, noise.ar, startCov];
     const flags = this.doubles(Math.ceil(present.length / 8));
     new Uint8Array(this.wasm.memory.buffer, flags, present.length).set(present);
     return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]));
@@ -205,7 +206,8 @@ function frame(kernel, index, values) {
   const measured = new Float64Array(n * nz), offsets = names.map((name) => values[`offset.${name}`] ?? 0);
   names.forEach((name, z) => { for (let i = 0; i < n; i++) measured[i * nz + z] = run.channels[name][i] - offsets[z]; });
   const noise = {
-    pushes: Float64Array.from(["F_rl", "F_rr"], (c) => campaign.noise.sd[c] ?? 0),
+    pushes: Float64Array.from(PUSHED, (c) => campaign.noise.sd[c] ?? 0),
+    push_ar: Float64Array.from(PUSHED, (c) => campaign.noise.ar[c] ?? 0),
     sd: Float64Array.from(names, (c) => campaign.noise.sd[c]),
     ar: Float64Array.from(names, (c) => campaign.noise.ar[c] ?? 0),
   };
