@@ -1,7 +1,8 @@
 """Effects that ask for one law, put in together.
 
 Where a law has several effects of its own, one alone may leave the model as far off as none: simulations go another way
-altogether until all are about right. So where much is left and no single effect is found, their sizes are tried together.
+altogether until all are about right. So where much is left and no single effect is found, their sizes are tried together, and
+stay if they explain most of it.
 """
 
 from __future__ import annotations
@@ -38,9 +39,14 @@ def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequen
     for group in kin(search):
         new = tuple(e for e in group if e not in effects)
         found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
-        if found is not None and found.misfit < base.misfit - decisive(base.evidence):
+        if found is not None and found.misfit < base.misfit - decisive(base.evidence) and _explains(base, found):
             return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
     return []
+
+
+def _explains(base: Fit, found: Fit) -> bool:
+    """Does a model leave less than half of what was left above the noise?"""
+    return found.evidence.rms - 1 < (base.evidence.rms - 1) / 2
 
 
 def kin(search: Search) -> list[tuple[str, ...]]:
