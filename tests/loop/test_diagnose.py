@@ -14,8 +14,9 @@ from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.diagnose import Search, begin
+from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.statistics import sandwich
-from wheelchair_fmu.loop.verdict import Diagnosis, as_json, diagnose
+from wheelchair_fmu.loop.verdict import Diagnosis, diagnose
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.generic import library, terms
 from wheelchair_fmu.model.variant import Variant

@@ -16,7 +16,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from ..handling.experiments import experiments
 from ..loop.diagnose import Step
 from ..loop.improve import after, with_proposal
-from ..loop.verdict import as_json, diagnose
+from ..loop.ranking import as_json
+from ..loop.verdict import diagnose
 from ..model.effects import load
 from ..model.generic import library
 from .diagnose import show, write_proposal

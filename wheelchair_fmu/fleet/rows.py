@@ -9,8 +9,9 @@ import pandas as pd
 import pyarrow as pa
 
 from ..chunks import ERROR
+from ..loop.ranking import ranking
 from ..loop.statistics import finite
-from ..loop.verdict import Diagnosis, ranking
+from ..loop.verdict import Diagnosis
 from ..model.variant import Variant
 
 WORDS = {

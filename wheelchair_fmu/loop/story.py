@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .verdict import Diagnosis, as_json
+from .ranking import as_json
+from .verdict import Diagnosis
 
 
 def story(d: Diagnosis) -> dict[str, Any]:

@@ -12,7 +12,6 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..campaign import Campaign, windows
-from ..errors import SimulationError
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .diagnose import MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, decisive, first_steps
@@ -21,19 +20,16 @@ from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import together
-from .screen import Score
-from .statistics import cosines, difference_blocks, finite, resampled_totals, sandwich
+from .statistics import sandwich
+from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
-NEARLY = 0.95  # of a fall: a rival that reaches it may be tied by what is held out, and no generic term replaces it
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
-RIVALS = 4  # that are listed of an effect, if their
-ALIKE_AT_ALL = 0.5  # cosine is larger
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
 
@@ -122,7 +118,7 @@ def diagnose(
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
         climbed(tuple(ladder))
-    groups = (_still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
+    groups = (still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
     ties = tuple(group for group in groups if len(group) > 1)
     every, helping = effects, _helping(rounds, effects)
     effects = tuple(e for e in effects if e not in already and e not in helping)
@@ -178,52 +174,6 @@ def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: S
         weak = [s.effect for s in rounds[0].scores if s.power < ENOUGH_POWER]
         return reveal(search, rounds[0].fit, weak, experiments)
     return None
-
-
-def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
-    """The effects in the order found, each with those it is tied with: groups of one, or of several."""
-    return tuple(dict.fromkeys(tuple(next((group for group in ties if e in group), (e,))) for e in effects))
-
-
-def _tied(r: Round) -> tuple[str, ...]:
-    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be."""
-    leader = r.winner
-    if leader is None:
-        return ()
-    group, margin = [leader.effect], decisive(leader.fit.evidence)
-    for c in r.candidates:
-        near = leader.drop - c.drop <= margin
-        same = c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
-        if c is not leader and c.lawful and (near or same):
-            group.append(c.effect)
-    return tuple(group)
-
-
-def _still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
-    """What a round tied, less those that fall behind in the place of its effect once all that was found later is in too."""
-    group = _tied(r)
-    if len(group) < 2 or len(effects) <= len(r.effects) + 1:
-        return group
-    candidates, margin = {c.effect: c.fit.values for c in r.candidates}, decisive(final.evidence)
-
-    def keeps_up(rival: str) -> bool:
-        own = {n: candidates[rival][n] for n in search.workshop.parameters(rival)}
-        swapped = [rival if e == group[0] else e for e in effects]
-        try:
-            found = search.refit(swapped, {**final.values, **own}, rival=final.misfit)
-        except SimulationError:
-            return False
-        return found.misfit - final.misfit < margin
-
-    return (group[0], *(rival for rival in group[1:] if rival not in effects and keeps_up(rival)))
-
-
-def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
-    """Do both predict the held-out runs equally well, but for the bootstrap's standard error?"""
-    if one.heldout is None or other.heldout is None or not one.heldout.runs:
-        return False
-    blocks = difference_blocks(one.heldout, other.heldout)
-    return abs(float(blocks.sum())) < float(resampled_totals(blocks).std())
 
 
 def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidence, rounds: Sequence[Round],
@@ -289,92 +239,3 @@ def _small(rounds: Sequence[Round], verdict: str) -> tuple[str, ...]:
         return ()
     return tuple(c.effect for c in rounds[0].candidates if c.small and c.lawful and c.p < 0.05 and c.visible > SMALL_VISIBLE
                  and (c.gain is None or c.gain[1] > 0))  # fmt: skip
-
-
-def as_json(d: Diagnosis) -> dict[str, Any]:
-    """The diagnosis with the keys that are fixed for `diagnose --json`."""
-    return {
-        "campaign": d.campaign,
-        "verdict": d.verdict,
-        "effects": list(d.effects),
-        "ties": [list(t) for t in d.ties],
-        "ranking": ranking(d),
-        "ladder": [step.as_json() for step in d.ladder],
-        "leftover": leftover_json(d),
-        "next_experiment": d.next_experiment,
-        "notes": list(d.notes),
-        "seconds": d.seconds,
-    }
-
-
-def ranking(d: Diagnosis) -> list[dict[str, Any]]:
-    """Every effect, the refitted first, as the round in which it did best saw it."""
-    first = d.rounds[0]
-    scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
-    candidates: dict[str, tuple[Candidate, Round]] = {}
-    for r in d.rounds:
-        for c in r.candidates:
-            found_here = d.included[len(r.effects) : len(r.effects) + 1]
-            if c.effect not in candidates or c.effect in found_here:
-                candidates[c.effect] = (c, r)
-    order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
-                                          else scores[e].drop)))  # fmt: skip
-    rivals = _rivals(first.scores)
-    return [_row(d, scores[e], *candidates.get(e, (None, first)), rivals.get(e, [])) for e in order]
-
-
-def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
-    records = d.search.records
-    estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
-    parameters = {
-        name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
-                                  "smallest_interesting": records[name].smallest_interesting,
-                                  **({"interval": list(d.intervals[name])} if name in d.intervals else {})}
-        for name, v, e in zip(s.names, estimate, se, strict=True)
-    }  # fmt: skip
-    before = r.heldout.rms if r.heldout.runs else float("nan")
-    return {
-        "effect": s.effect,
-        "parameters": parameters,
-        "p": c.p if c else min(1.0, s.p * len(r.scores)),
-        "power": s.power,
-        "lr": c.drop if c else s.drop,
-        "hidden_in_fit": s.hidden,
-        "heldout_before": finite(before),
-        "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
-        "rivals": rivals,
-        "verdict": _row_verdict(d, s, c),
-    }
-
-
-def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
-    """By effect, those whose signature is most like its own."""
-    found = {}
-    for i, row in enumerate(cosines(scores)):
-        most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
-        found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
-    return found
-
-
-def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
-    if any(s.effect in t for t in d.ties):
-        return "tie"
-    if s.effect in d.effects:
-        return "small" if d.verdict == "small" else "missing"
-    if s.effect in d.included or (c and c.small and c.p < 0.05):
-        return "small"
-    return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"
-
-
-def leftover_json(d: Diagnosis) -> dict[str, Any]:
-    """Is anything structured left, and where."""
-    if d.leftover is None:
-        return {"p": None, "where": None}
-    best = d.proposal or (d.leftover.candidates[0] if d.leftover.candidates else None)
-    if best is None:
-        return {"p": 1.0, "where": None}
-    worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
-    out = {"p": best.p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
-    if d.proposal:
-        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
-    return out

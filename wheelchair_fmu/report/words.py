@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..loop.verdict import grouped
+from ..loop.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
 

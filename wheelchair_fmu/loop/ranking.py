@@ -1,0 +1,105 @@
+"""A diagnosis as records: for JSON, with the keys that are fixed, and for tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .diagnose import Candidate, Round
+from .screen import Score
+from .statistics import cosines, finite
+from .verdict import ENOUGH_POWER, Diagnosis
+
+RIVALS = 4  # that are listed of an effect, if their
+ALIKE_AT_ALL = 0.5  # cosine is larger
+
+
+def as_json(d: Diagnosis) -> dict[str, Any]:
+    """The diagnosis with the keys that are fixed for `diagnose --json`."""
+    return {
+        "campaign": d.campaign,
+        "verdict": d.verdict,
+        "effects": list(d.effects),
+        "ties": [list(t) for t in d.ties],
+        "ranking": ranking(d),
+        "ladder": [step.as_json() for step in d.ladder],
+        "leftover": leftover_json(d),
+        "next_experiment": d.next_experiment,
+        "notes": list(d.notes),
+        "seconds": d.seconds,
+    }
+
+
+def ranking(d: Diagnosis) -> list[dict[str, Any]]:
+    """Every effect, the refitted first, as the round in which it did best saw it."""
+    first = d.rounds[0]
+    scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
+    candidates: dict[str, tuple[Candidate, Round]] = {}
+    for r in d.rounds:
+        for c in r.candidates:
+            found_here = d.included[len(r.effects) : len(r.effects) + 1]
+            if c.effect not in candidates or c.effect in found_here:
+                candidates[c.effect] = (c, r)
+    order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
+                                          else scores[e].drop)))  # fmt: skip
+    rivals = _rivals(first.scores)
+    return [_row(d, scores[e], *candidates.get(e, (None, first)), rivals.get(e, [])) for e in order]
+
+
+def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
+    records = d.search.records
+    estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
+    parameters = {
+        name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
+                                  "smallest_interesting": records[name].smallest_interesting,
+                                  **({"interval": list(d.intervals[name])} if name in d.intervals else {})}
+        for name, v, e in zip(s.names, estimate, se, strict=True)
+    }  # fmt: skip
+    before = r.heldout.rms if r.heldout.runs else float("nan")
+    return {
+        "effect": s.effect,
+        "parameters": parameters,
+        "p": c.p if c else min(1.0, s.p * len(r.scores)),
+        "power": s.power,
+        "lr": c.drop if c else s.drop,
+        "hidden_in_fit": s.hidden,
+        "heldout_before": finite(before),
+        "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
+        "rivals": rivals,
+        "verdict": _row_verdict(d, s, c),
+    }
+
+
+def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
+    """By effect, those whose signature is most like its own."""
+    found = {}
+    for i, row in enumerate(cosines(scores)):
+        most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
+        found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
+    return found
+
+
+def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
+    if any(s.effect in t for t in d.ties):
+        return "tie"
+    if s.effect in d.effects:
+        return "small" if d.verdict == "small" else "missing"
+    if s.effect in d.included or (c and c.small and c.p < 0.05):
+        return "small"
+    return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"
+
+
+def leftover_json(d: Diagnosis) -> dict[str, Any]:
+    """Is anything structured left, and where."""
+    if d.leftover is None:
+        return {"p": None, "where": None}
+    best = d.proposal or (d.leftover.candidates[0] if d.leftover.candidates else None)
+    if best is None:
+        return {"p": 1.0, "where": None}
+    worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
+    out = {"p": best.p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
+    if d.proposal:
+        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
+    return out
