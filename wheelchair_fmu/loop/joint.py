@@ -40,7 +40,10 @@ def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequen
         new = tuple(e for e in group if e not in effects)
         found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
         if found is not None and found.misfit < base.misfit - decisive(base.evidence) and _explains(base, found):
-            return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
+            try:
+                return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
+            except SimulationError:
+                continue  # with some of these and not the others the model cannot run: nobody can say which are needed
     return []
 
 

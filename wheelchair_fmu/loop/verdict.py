@@ -97,14 +97,15 @@ def diagnose(
             effects = (*effects, effect)
             base, held, ladder = _by_its_noise(search, effects, *search.with_given(effects, base), ladder)
             climb(effect)
-    already = effects
+    already, tried = effects, False
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
         now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
         rounds.append(now)
         best = now.winner
-        if best is None and ladder[-1].left > MUCH:
+        if best is None and ladder[-1].left > MUCH and not tried:
             progress("trying effects of one law together")
+            tried = True
             joined = together(search, effects, base, now.scores)
             ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
             rounds[-1:] = joined or [now]
