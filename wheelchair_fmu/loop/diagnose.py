@@ -15,7 +15,7 @@ from .evidence import Bench, Evidence
 from .fit import Fit, fit, prior_of, start_value
 from .noise import QUIETER, colour_of
 from .screen import Score, projector, score
-from .statistics import alike, correlation_time, finite, held_out_gain, sandwich, seen_directions
+from .statistics import correlation_time, cosines, estimates, finite, held_out_gain, seen_directions
 from .timing import late
 from .workshop import Workshop
 
@@ -250,8 +250,7 @@ class Search:
     def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
         """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
         best = max(scores, key=lambda s: s.drop)
-        delta = np.array([self.records[n].smallest_interesting for n in best.names])
-        return Screened(replace(best, p=scores[0].p), here, delta)
+        return Screened(replace(best, p=scores[0].p), here, self._deltas(best.names))
 
     def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
         """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
@@ -365,12 +364,11 @@ class Search:
         sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
         tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
         known = s.evidence.only(base.names)
-        off = self.promise(bench, known, names, [base.values.get(n, 0.0) for n in names])
         best = sorted((self.promise(bench, known, names, theta), theta) for theta in tries)[: 1 if linear else STARTS]
-        record = self.workshop.catalogue[s.score.effect]
-        sudden = record.needs or record.rows  # gain: with another law or more states runs may go another way altogether
-        return [(dict(zip(names, map(float, theta), strict=True)), None) for promise, theta in best
-                if linear or sudden or off - promise >= least]  # fmt: skip
+        record, most = self.workshop.catalogue[s.score.effect], np.inf
+        if not (linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
+            most = self.promise(bench, known, names, [base.values.get(n, 0.0) for n in names]) - least
+        return [(dict(zip(names, map(float, theta), strict=True)), None) for promise, theta in best if promise <= most]
 
     def promise(self, bench: Bench, known: Evidence, names: Sequence[str], theta: Sequence[float]) -> float:
         """The misfit that one linear step from `theta` would reach, of those of `names` that `known` has slopes by."""
@@ -385,11 +383,11 @@ class Search:
         return float(r @ r + rows @ rows - g @ np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g)
 
     def judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
-               names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
-        delta = np.array([self.records[n].smallest_interesting for n in names])
+              names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
+        """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
+        delta, (estimate, covariance) = self._deltas(names), estimates(found, names)
         one_sided = np.array([self.records[n].lower == 0 for n in names])
-        estimate = np.array([found.values[n] for n in names])
-        along, spread, covariance = self._sizes(found, names)
+        along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
         p = max(float(stats.chi2.sf(np.sum(along**2 / spread), len(spread))),
@@ -414,15 +412,13 @@ class Search:
 
     def small(self, found: Fit, effect: str) -> bool:
         """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
-        return _small(*self._sizes(found, self.workshop.parameters(effect))[:2])
+        names = self.workshop.parameters(effect)
+        delta, (estimate, covariance) = self._deltas(names), estimates(found, names)
+        return _small(*seen_directions(estimate / delta, covariance / np.outer(delta, delta)))
 
-    def _sizes(self, found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sizes of an effect in δ with their variances, along the directions that the data see; the estimates' covariance."""
-        at = [found.names.index(n) for n in names]
-        delta = np.array([self.records[n].smallest_interesting for n in names])
-        estimate = np.array([found.values[n] for n in names])
-        covariance = sandwich(found)[np.ix_(at, at)]
-        return *seen_directions(estimate / delta, covariance / np.outer(delta, delta)), covariance
+    def _deltas(self, names: Sequence[str]) -> np.ndarray:
+        """Smallest interesting sizes (k,)."""
+        return np.array([self.records[n].smallest_interesting for n in names])
 
     # -- search ---------------------------------------------------------------------------------------------
 
@@ -496,4 +492,5 @@ def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Scre
     """The best by expected drop, and whatever looks like the leader; not what is surely far too small to matter."""
     promising = [s for s in screened if s.score.drop > PROMISING and not s.negligible]
     first, rest = promising[:most], promising[most:]
-    return [*first, *(s for s in rest if alike(s.score, first[0].score) > twin)]
+    near = cosines([s.score for s in first[:1]], [s.score for s in rest])[0] if rest else ()
+    return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > twin)]

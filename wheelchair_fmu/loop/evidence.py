@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
+from ..campaign.channels import PUSHES
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -27,7 +28,7 @@ from ..quantities import Parameter
 TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
-PUSHED = ("F_rl", "F_rr")  # records of pushes that carry noise
+PUSHED = tuple(PUSHES)  # records of pushes that carry noise
 TELLS = {"start.x": "x", "start.y": "y", "start.psi": "yaw", "start.u": "u", "start.psi_dot": "yaw_rate"}  # by channel
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
@@ -78,9 +79,15 @@ class RunEvidence:
 
     def brief(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
+        return replace(self._bare(), whitener=Weighed(self.whitener.logdet, self.whitener.spread))
+
+    def ruler(self) -> RunEvidence:
+        """What `errors` of another model's predictions needs, and no more: the filter only where a channel drifts."""
+        return self._bare() if self._drift else self.brief()
+
+    def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
-        return replace(self, S=none, start_S=none, results=np.empty((0, 0)),
-                       whitener=Weighed(self.whitener.logdet, self.whitener.spread))  # fmt: skip
+        return replace(self, S=none, start_S=none, results=np.empty((0, 0)))
 
     @cached_property
     def e(self) -> np.ndarray:
@@ -95,10 +102,13 @@ class RunEvidence:
         that was not known from those before it.
         """
         errors = (self.measured - predicted) * self.whitener.spread
-        drift = [i for i, c in enumerate(self.channels) if BY_NAME[c].drifts]
-        if drift:
-            errors[:, drift] = self._innovations(predicted)[:, drift]
+        if self._drift:
+            errors[:, self._drift] = self._innovations(predicted)[:, self._drift]
         return errors
+
+    @property
+    def _drift(self) -> list[int]:
+        return [i for i, c in enumerate(self.channels) if BY_NAME[c].drifts]
 
     def _innovations(self, predicted: np.ndarray) -> np.ndarray:
         if predicted is self.predicted:

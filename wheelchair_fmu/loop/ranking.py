@@ -75,7 +75,7 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
 def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
     """By effect, those whose signature is most like its own."""
     found = {}
-    for i, row in enumerate(cosines(scores)):
+    for i, row in enumerate(cosines(scores, scores)):
         most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
         found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
     return found

@@ -18,17 +18,17 @@ def finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def alike(one: Score, other: Score) -> float:
-    """Cosine between two effects' signatures; 0 where either has none."""
-    comparable = len(one.signature) == len(other.signature) > 0
-    return abs(float(one.signature @ other.signature)) if comparable else 0.0
+def cosines(ones: Sequence[Score], others: Sequence[Score]) -> np.ndarray:
+    """Cosines (m, n) between the signatures of effects, of one model on the same runs; 0 where an effect has none."""
+    length = max((len(s.signature) for s in (*ones, *others)), default=0)
 
+    def signatures(scores: Sequence[Score]) -> np.ndarray:
+        found = np.zeros((len(scores), length))
+        for row, s in zip(found, scores, strict=True):
+            row[: len(s.signature)] = s.signature
+        return found
 
-def cosines(scores: Sequence[Score]) -> np.ndarray:
-    """`alike` of every effect (m,) with every other, (m, m)."""
-    most = max((len(s.signature) for s in scores), default=0)
-    signatures = [s.signature if len(s.signature) == most else np.zeros(most) for s in scores]
-    return abs(np.stack(signatures) @ np.stack(signatures).T) if signatures else np.zeros((0, 0))
+    return abs(signatures(ones) @ signatures(others).T)
 
 
 def sandwich(found: Fit) -> np.ndarray:
@@ -37,6 +37,12 @@ def sandwich(found: Fit) -> np.ndarray:
     prior = found.prior_slopes**2
     inverse = np.linalg.pinv(S.T @ S + prior, hermitian=True)
     return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
+
+
+def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Values (k,) of some of a fit's parameters, and their `sandwich` (k, k)."""
+    at = [found.names.index(n) for n in names]
+    return np.array([found.values[n] for n in names]), sandwich(found)[np.ix_(at, at)]
 
 
 def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -20,7 +20,7 @@ from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import together
-from .statistics import sandwich
+from .statistics import estimates
 from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
 
@@ -98,6 +98,7 @@ def diagnose(
             base, held, ladder = _by_its_noise(search, effects, *search.with_given(effects, base), ladder)
             climb(effect)
     already, tried = effects, False
+    helping: set[str] = set()  # effects that went in together with others and are too small to be missed by themselves
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
         now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
@@ -108,6 +109,7 @@ def diagnose(
             tried = True
             joined = together(search, effects, base, now.scores)
             ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
+            helping = {c.effect for r in joined for c in r.candidates if c.small}
             rounds[-1:] = joined or [now]
             best = joined[-1].candidates[0] if joined else None
         if best is None:
@@ -121,7 +123,7 @@ def diagnose(
         climbed(tuple(ladder))
     groups = (still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
     ties = tuple(group for group in groups if len(group) > 1)
-    every, helping = effects, _helping(rounds, effects)
+    every = effects
     effects = tuple(e for e in effects if e not in already and e not in helping)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
@@ -132,12 +134,6 @@ def diagnose(
     notes = (*thinned, *search.notes, *search.noise_notes)
     return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
                      base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
-
-
-def _helping(rounds: Sequence[Round], effects: Sequence[str]) -> set[str]:
-    """Of the effects in the model, those that went in together with others and are too small to be missed by themselves."""
-    put_in = dict(enumerate(effects))
-    return {c.effect for r in rounds for c in r.candidates if c.small and c.effect == put_in.get(len(r.effects))}
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
@@ -213,13 +209,12 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
     every, found = wider.pruned((*beside, proposal.effect), proposal.fit)
     found, held = wider.settled(every, found)
-    at = [found.names.index(n) for n in wider.workshop.parameters(proposal.effect)]
-    estimate = np.array([found.values[found.names[i]] for i in at])
-    se = np.sqrt(np.diag(sandwich(found))[at])
+    estimate, covariance = estimates(found, wider.workshop.parameters(proposal.effect))
     kept = every[:-1]
     steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
     steps.append(Step(f"+{proposal.effect}", found.evidence.rms, held.rms))
-    return kept, replace(proposal, fit=found, heldout=held, estimate=estimate, se=se), steps
+    settled = replace(proposal, fit=found, heldout=held, estimate=estimate, se=np.sqrt(np.diag(covariance)))
+    return kept, settled, steps
 
 
 def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,

@@ -2,8 +2,9 @@
  *
  * Deviations from a simulated run obey
  *     e(i+1) = A(i) e(i) + B(i) q(i) + C(i) q(i+1),    z(i) = H(i) e(i) + D(i) q(i) + a(i),
- * with q the noise of the recorded inputs and a that of the readings, an AR(1) process each. The filter turns z into independent innovations of variance 1; being linear it
- * does the same to any signal that may hide in z, so residuals and sensitivities go through alike.
+ * with q the noise of the recorded inputs and a that of the readings, an AR(1) process each. The filter
+ * turns z into independent innovations of variance 1; being linear it does the same to any signal that
+ * may hide in z, so residuals and sensitivities go through alike.
  * Its gains depend on the variances only: they are designed once and applied to as many signals as come.
  *
  * The filter's own state is s = (e, q, a), of size nx + nq + nz.
@@ -18,7 +19,7 @@ typedef struct {
     const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
     const double *H, *D;      /* n x nz x nx, n x nz x nq */
     const double *input_sd, *input_phi; /* nq: standard deviation and AR(1) coefficient of each input */
-    const double *sd, *phi;   /* nz: standard deviation and AR(1) coefficient of each reading */
+    const double *sd, *phi;             /* nz: the same of each reading */
     const double *start_cov;  /* nx x nx */
     const char *present;      /* n x nz: 0 in a gap */
 } filter;
