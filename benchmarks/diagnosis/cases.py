@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, usual
@@ -40,13 +40,13 @@ class Case:
 
 @dataclass
 class Plan:
-    """All cases of a benchmark with so many seeds."""
+    """All cases of a benchmark with these seeds."""
 
-    seeds: int = 1
+    seeds: Sequence[int]
     cases: list[Case] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        for seed in range(self.seeds):
+        for seed in self.seeds:
             for noise in ("white", "ar1"):
                 self._add("null", (), (0.0,), noise, seed)
                 for effect in CATALOGUE:
