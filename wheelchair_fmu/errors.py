@@ -66,9 +66,9 @@ class BuildError(Failure):
     """Something could not be compiled or packed."""
 
 
-def unknown(kind: str, name: str, known: Iterable[str]) -> UsageError:
-    """The error for a misspelt name, with the nearest known names as the cure."""
-    known = list(known)
-    close = [k for k in known if name and name in k][:3] or get_close_matches(name, known, n=3, cutoff=0.5)
+def unknown(kind: str, name: object, known: Iterable[str]) -> UsageError:
+    """The error for a misspelt name (or what stands in its place), with the nearest known names as the cure."""
+    known, word = list(known), str(name)
+    close = [k for k in known if word and word in k][:3] or get_close_matches(word, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(repr(c) for c in close)}?" if close else f"known: {', '.join(known)}"
     return UsageError(f"no {kind} {name!r}; {hint}")

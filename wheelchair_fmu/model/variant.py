@@ -38,6 +38,7 @@ LAWS = {
     "caster": tuple(name for name in caster.LAWS if name != "paper"),
     "equations": ("extended", "paper"),
 }
+NOTES = ("title", "for", "standard_errors", "origin", "tied")  # what else a file may say: whose values these are, and whence
 
 
 @dataclass(frozen=True)
@@ -131,14 +132,31 @@ def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None) -> V
         raise Failure(f"{path}: no such file; give a variant that `wheelchair add` wrote") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
-    laws = dict(table.get("laws", {}))
-    effects = tuple(laws.pop("effects", ()))
+    try:
+        return _variant(table, catalogue if catalogue is not None else bundled())
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Variant:
+    for key in file:
+        if key not in ("laws", "values", *NOTES):
+            raise unknown("table", key, ("laws", "values", *NOTES))
+    laws, values = _table(file, "laws"), _table(file, "values")
+    effects = laws.pop("effects", [])
+    if not isinstance(effects, list) or not all(isinstance(e, str) for e in effects):
+        raise UsageError(f'effects = {effects!r} in [laws] is no list of ids; write effects = ["relaxation_length"]')
     for kind in laws:
         if kind not in LAWS:
-            raise unknown(f"law in {path} [laws]", kind, (*LAWS, "effects"))
-    base = Variant(Choice(**laws), catalogue=catalogue if catalogue is not None else bundled())
-    notes = {key: value for key, value in table.items() if key not in ("laws", "values")}
-    return replace(base.with_effects(effects).with_values(table.get("values", {})), notes=notes)
+            raise unknown("law in [laws]", kind, (*LAWS, "effects"))
+    base = Variant(Choice(**laws), catalogue=catalogue, notes={key: file[key] for key in NOTES if key in file})
+    return base.with_effects(effects).with_values(values)
+
+
+def _table(file: Mapping[str, Any], key: str) -> dict[str, Any]:
+    if not isinstance(file.get(key, {}), dict):
+        raise UsageError(f"{key} = {file[key]!r} is no table; write [{key}] and one line each below it")
+    return dict(file.get(key, {}))
 
 
 def variant_text(variant: Variant) -> str:
