@@ -28,9 +28,9 @@ const wc_kernel {prefix}_kernel = {{
 TANGENT_RECORD = """
 #include "tangent.h"
 
-static const int {prefix}_rows[] = {{{rows}}}, {prefix}_places[] = {{{places}}};
+static const int {prefix}_rows[] = {{{rows}}}, {prefix}_places[] = {{{places}}}, {prefix}_touched[] = {{{touched}}};
 const wc_tangent {prefix}_tangent = {{
-    {columns}, {sensors}, {curvatures}, {prefix}_rows, {prefix}_places,
+    {columns}, {sensors}, {curvatures}, {touches}, {prefix}_touched, {prefix}_rows, {prefix}_places,
     {functions}}};
 """
 
@@ -66,6 +66,8 @@ def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | N
         columns=len(tangent.columns),
         sensors=len(tangent.rows),
         curvatures=tangent.length("curvature_all"),
+        touches=len(tangent.touched),
+        touched=", ".join(map(str, tangent.touched)) or "0",
         functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in TANGENT_NAMES),
     )
 

@@ -2,11 +2,15 @@
 
 With U_i as in `rodas`, differentiating  W U_i = f(x_i, w_i, p) + M Σ (c_ij/h) U_j + γ_i ∂f/∂w Δw  gives
 
-    W dU_i = F_x(i) (dx + Σ a_ij dU_j) + F_w(i) dw_i + F_p(i) dp + M Σ (c_ij/h) dU_j + γ_i F_w d(Δw)
-             + d[J U_i + γ_i F_w Δw] + dM (Σ (c_ij/h) U_j − U_i/(hγ))
+    W dU_i = F_x(i) (dx + Σ a_ij dU_j) + M Σ (c_ij/h) dU_j + R_i
+    R_i = F_w(i) dw_i + F_p(i) dp + γ_i F_w d(Δw) + d[J U_i + γ_i F_w Δw] + dM (Σ (c_ij/h) U_j − U_i/(hγ))
 
-for every direction at once. These are the functions it needs; `csrc/tangent.c` does the sums, of the U_i too. A
-model with no special structure in mind: any states, pushes as the noisy inputs, any parameters.
+There are more directions than states, so a step's end x₁ = x + Σ b_i U_i is derived from its last stage back to the first:
+
+    G_i = ∂x₁/∂R_i = (b_i + Σ_{j>i} G_j (a_ji F_x(j) + M c_ji/h)) W⁻¹,    dx₁ = dx + Σ G_i (F_x(i) dx + R_i)
+
+These are the functions it needs; `csrc/tangent.c` does the sums, of the U_i too. A model with no special structure in mind: any
+states, pushes as the noisy inputs, any parameters.
 
 d[J U_i + γ_i F_w Δw] is linear in U_i and Δw, and J's own derivatives are at the step's start whatever the stage,
 so these are evaluated once a step.
@@ -48,6 +52,7 @@ class Tangent:
     columns: tuple[Parameter, ...]
     rows: tuple[int, ...]
     places: tuple[int, ...]  # of the columns among the model's parameters
+    touched: tuple[int, ...]  # row * columns + column of every equation that moves with a parameter
     functions: dict[str, cs.Function]
 
     def length(self, name: str) -> int:
@@ -92,7 +97,15 @@ def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent
         "masses": cs.Function("masses", [p], [cs.densify(model.mass), _rows(by_columns(model.mass))]),
         "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
     }  # fmt: skip
-    return Tangent(columns, rows, tuple(places), functions)
+    return Tangent(columns, rows, tuple(places), _touched(model, p[places]), functions)
+
+
+def _touched(model: Model, columns: cs.SX) -> tuple[int, ...]:
+    """Places, in a matrix by rows, where M x' = f moves with a column: f and M themselves, or a slope of f."""
+    slopes = cs.jacobian(model.f, cs.vertcat(model.x, model.w))
+    of = [(model.f, range(model.x.numel())), (model.mass, range(model.x.numel())), (slopes.nz[:], slopes.sparsity().row())]
+    found = {(rows[i], j) for e, rows in of for i, j in zip(*cs.jacobian_sparsity(e, columns).get_triplet(), strict=True)}
+    return tuple(sorted(row * columns.numel() + column for row, column in found))
 
 
 def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:

@@ -25,10 +25,17 @@ static void factorise(int n, double *W, int *exchange) {
     }
 }
 
-void wc_rodas_solve(const wc_rodas *s, int m, double *right) {
+void wc_rodas_solve_transposed(const wc_rodas *s, int m, double *right) {
     int n = s->of.k->states;
     const double *W = s->W;
-    for (int c = 0; c < n; c++) { /* L was exchanged whole, so all exchanges come first */
+    for (int c = 0; c < n; c++) {
+        for (int j = 0; j < m; j++) right[c * m + j] *= W[c * n + c];
+        for (int r = c + 1; r < n; r++) wc_add_row(m, -W[c * n + r], right + c * m, right + r * m);
+    }
+    for (int c = n - 1; c >= 0; c--) {
+        for (int r = 0; r < c; r++) wc_add_row(m, -W[c * n + r], right + c * m, right + r * m);
+    }
+    for (int c = n - 1; c >= 0; c--) { /* L was exchanged whole, so all exchanges come last */
         int from = s->exchange[c];
         for (int j = 0; from != c && j < m; j++) {
             double kept = right[c * m + j];
@@ -36,16 +43,9 @@ void wc_rodas_solve(const wc_rodas *s, int m, double *right) {
             right[from * m + j] = kept;
         }
     }
-    for (int c = 0; c < n; c++) {
-        for (int r = c + 1; r < n; r++) wc_add_row(m, -W[r * n + c], right + c * m, right + r * m);
-    }
-    for (int c = n - 1; c >= 0; c--) {
-        for (int j = 0; j < m; j++) right[c * m + j] *= W[c * n + c];
-        for (int r = 0; r < c; r++) wc_add_row(m, -W[r * n + c], right + c * m, right + r * m);
-    }
 }
 
-/* The same for one right side, which every step asks for six times. */
+/* W k = right, which every step asks for six times. */
 static void solve_one(const wc_rodas *s, double *k) {
     int n = s->of.k->states;
     for (int c = 0; c < n; c++) {

@@ -28,8 +28,8 @@ void wc_rodas_begin(wc_rodas *s, wc_rodas_given of);
 
 void wc_rodas_stage(wc_rodas *s, int i);
 
-/* W k = right for m right sides at once, in place; rows of `right` are contiguous. */
-void wc_rodas_solve(const wc_rodas *s, int m, double *right);
+/* Wᵀ k = right for m right sides at once, in place; rows of `right` are contiguous. */
+void wc_rodas_solve_transposed(const wc_rodas *s, int m, double *right);
 
 /* The whole step: what a kernel's `step` gives, x1, error, d2, d3. */
 void wc_rodas_step(wc_rodas_given of, double **result);

@@ -2,21 +2,33 @@
 #include "rodas.h"
 
 #define STEPWISE 1e-6 /* of a stage: how far a derivative is taken by difference */
+#define LANE 4        /* rows of numbers by states now are padded to whole lanes, which compilers make vectors of */
 
+/* Where the equations move with a parameter: in this row, by this column, the so-manieth of those asked for. */
+typedef struct {
+    int row, column, place;
+} touch;
+
+/* What is by states now stands in rows of `stride`, one row for each that it is derived by. */
 typedef struct {
     const wc_kernel *k;
     const wc_tangent *g;
     const wc_derivatives *out;
     const double *p;
-    int nx, m, span; /* states, directions carried through an interval, columns of `slopes` */
+    int nx, stride, m, span; /* states, padded; rows of D; columns of `slopes` */
     double length;   /* of the interval between samples */
-    double *D;       /* nx x m: [x(i) | pushes at i | pushes at i+1 | parameters, where forced] -> x now */
+    double *D;       /* m rows: x now by [x(i) | pushes at i | pushes at i+1 | parameters, where forced] */
+    double *step;    /* m rows: the step's end by its start, by the pushes at its start and its end, by parameters */
+    double *spare;   /* m rows */
+    double *G, *P;   /* WC_STAGES x nx rows: the step's end by a stage's right side, and by where the stage is taken */
     double *through; /* nx x active: x(i) by the parameters */
     double *next;
-    double *dU;      /* WC_STAGES x nx x m */
-    double *at, *dM, *moved; /* nx x m, nx x columns, parameters */
-    double *slopes, *bend; /* nx x span: states, pushes and, where any is asked for, all columns */
-    double *curvature;     /* of the step, where the model brings it */
+    double *dM, *moved; /* nx x columns, parameters */
+    double *slopes;     /* WC_STAGES x nx x span: states, pushes and, where any is asked for, all columns */
+    double *bend;       /* nx x span */
+    double *curvature;  /* of the step, where the model brings it */
+    touch *touched;
+    int touches;
     wc_function sloped, curved, bent;
     double mass[WC_MAX_STATES];
 } carrier;
@@ -27,32 +39,49 @@ static void call(wc_function f, const double *a, const double *b, const double *
     f(arg, res, 0, 0, 0);
 }
 
-/* Right side of stage i in all directions. */
-static void stage_right(carrier *c, int i, double h, const double *V, const double *part,
-                        const double *slopes, const double *first, double *right) {
-    int nx = c->nx, m = c->m, span = c->span, motion = nx + WC_PUSHES;
-    const double *bend = c->bend;
-    const double *D = c->D;
+/* to += factor from, whole lanes. */
+static inline void add(int n, double factor, const double *restrict from, double *restrict to) {
+    if (factor == 0) return;
+    for (int c = 0; c < n; c += LANE)
+        for (int e = 0; e < LANE; e++) to[c + e] += factor * from[c + e];
+}
+
+/* G of stage i from those of the stages after it: what its U moves in them and in the end, through W. */
+static void backward(carrier *c, const wc_rodas *s, int i, double h) {
+    int nx = c->nx, stride = c->stride, size = nx * stride;
+    double *G = c->G + i * size, *P = c->P + i * size;
+    const double *slopes = c->slopes + i * nx * c->span;
+    memset(G, 0, sizeof(double) * (size_t)size);
+    for (int r = 0; r < nx; r++) G[r * stride + r] = i + 1 == WC_STAGES ? 1 : wc_A[WC_STAGES - 1][i];
+    for (int j = i + 1; j < WC_STAGES; j++) {
+        add(size, wc_A[j][i], c->P + j * size, G);
+        for (int r = 0; r < nx; r++) add(stride, c->mass[r] * wc_C[j][i] / h, c->G + j * size + r * stride, G + r * stride);
+    }
+    wc_rodas_solve_transposed(s, stride, G);
+    memset(P, 0, sizeof(double) * (size_t)size);
+    for (int r = 0; r < nx; r++)
+        for (int k = 0; k < nx; k++) add(stride, slopes[r * c->span + k], G + r * stride, P + k * stride);
+}
+
+/* What stage i adds to the derivatives of the step. V is what stands beside dM. */
+static void gather(carrier *c, int i, const double *V, const double *first) {
+    int nx = c->nx, stride = c->stride, span = c->span, motion = nx + WC_PUSHES;
+    double *by_push = c->step + nx * stride, *by_parameter = by_push + 2 * WC_PUSHES * stride;
+    const double *G = c->G + i * nx * stride, *F = c->slopes + i * nx * span, *B = c->bend;
+    add(nx * stride, 1, c->P + i * nx * stride, c->step);
     for (int r = 0; r < nx; r++) {
-        double *row = right + r * m;
-        memset(row, 0, sizeof(double) * (size_t)m);
-        for (int j = 0; j < i; j++) wc_add_row(m, c->mass[r] * wc_C[i][j] / h, c->dU + ((long)j * nx + r) * m, row);
-        for (int k = 0; k < nx; k++) {
-            wc_add_row(m, slopes[r * span + k], c->at + k * m, row);
-            wc_add_row(m, bend[r * span + k], D + k * m, row);
-        }
+        for (int k = 0; k < nx; k++) add(stride, B[r * span + k], G + r * stride, c->step + k * stride);
         for (int q = 0; q < WC_PUSHES; q++) {
-            double F = slopes[r * span + nx + q], B = bend[r * span + nx + q], F0 = first[r * motion + nx + q];
-            for (int side = 0; side < 2; side++) { /* the push at the sample before, at the sample after */
-                double wa = side ? part[0] : 1 - part[0], wb = side ? part[1] : 1 - part[1];
-                row[nx + side * WC_PUSHES + q] +=
-                    F * (wa + wc_ALPHA[i] * (wb - wa)) + B * wa + wc_GAMMA_I[i] * F0 * (wb - wa);
-            }
+            int at = r * span + nx + q;
+            double later = F[at] * wc_ALPHA[i] + wc_GAMMA_I[i] * first[r * motion + nx + q];
+            add(stride, F[at] + B[at] - later, G + r * stride, by_push + q * stride);
+            add(stride, later, G + r * stride, by_push + (WC_PUSHES + q) * stride);
         }
-        for (int a = 0; c->out->forced && a < c->out->active; a++) {
-            int column = c->out->which[a], at = r * span + motion + column;
-            row[nx + 2 * WC_PUSHES + a] += slopes[at] + bend[at] + c->dM[r * c->g->columns + column] * V[r];
-        }
+    }
+    for (const touch *e = c->touched; e < c->touched + c->touches; e++) {
+        int at = e->row * span + motion + e->column;
+        double moved = F[at] + B[at] + c->dM[e->row * c->g->columns + e->column] * V[e->row];
+        add(stride, moved, G + e->row * stride, by_parameter + e->place * stride);
     }
 }
 
@@ -66,59 +95,78 @@ static void bend_by_difference(carrier *c, const wc_rodas *s, const double *U, c
     for (int e = 0; e < size; e++) c->bend[e] = (c->bend[e] - s->first[e]) / STEPWISE;
 }
 
-/* The derivatives of stage i's right side: slopes where it is taken, and how J U + F_w dw moves. */
-static const double *stage_slopes(carrier *c, const wc_rodas *s, int i) {
+/* How J U + F_w dw of stage i moves. */
+static void find_bend(carrier *c, const wc_rodas *s, int i) {
     const double *U = s->U + i * c->nx;
     double dw[WC_MAX_INPUTS];
     for (int q = 0; q < c->k->inputs; q++) dw[q] = wc_GAMMA_I[i] * (s->of.w1[q] - s->of.w0[q]);
     if (c->bent) call(c->bent, c->curvature, U, dw, c->bend);
     else bend_by_difference(c, s, U, dw);
-    if (i == 0 && !c->out->forced) return s->first;
-    call(c->sloped, s->xs, s->ws, c->p, c->slopes);
-    return c->slopes;
+}
+
+/* D goes on over a step from and to these parts of the interval. */
+static void compose(carrier *c, double from, double to) {
+    int nx = c->nx, stride = c->stride;
+    const double *push[] = {c->step + nx * stride, c->step + (nx + WC_PUSHES) * stride};
+    double *D = c->spare;
+    for (int r = 0; r < nx; r++) c->step[r * stride + r] += 1;
+    memset(D, 0, sizeof(double) * (size_t)(c->m * stride));
+    for (int row = 0; row < c->m; row++)
+        for (int k = 0; k < nx; k++) add(stride, c->D[row * stride + k], c->step + k * stride, D + row * stride);
+    for (int end = 0; end < 2; end++) { /* the step's pushes, of the sample before and the sample after */
+        double part = end ? to : from;
+        add(WC_PUSHES * stride, 1 - part, push[end], D + nx * stride);
+        add(WC_PUSHES * stride, part, push[end], D + (nx + WC_PUSHES) * stride);
+    }
+    int others = nx + 2 * WC_PUSHES;
+    add((c->m - others) * stride, 1, c->step + others * stride, D + others * stride);
+    c->spare = c->D;
+    c->D = D;
 }
 
 static void carry(void *context, const double *x, const double *wa, const double *wb, double done, double h) {
     carrier *c = context;
-    int nx = c->nx, m = c->m;
+    int nx = c->nx, size = nx * c->span;
     wc_rodas s;
-    double V[WC_MAX_STATES], part[2] = {done / c->length, (done + h) / c->length};
+    double V[WC_MAX_STATES];
     wc_rodas_begin(&s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
     if (c->curved) call(c->curved, x, wa, c->p, c->curvature);
     for (int i = 0; i < WC_STAGES; i++) {
-        double *dU = c->dU + (long)i * nx * m;
         wc_rodas_stage(&s, i);
+        if (i == 0 && !c->out->forced) memcpy(c->slopes, s.first, sizeof(double) * (size_t)size);
+        else call(c->sloped, s.xs, s.ws, c->p, c->slopes + i * size);
+    }
+    memset(c->step, 0, sizeof(double) * (size_t)(c->m * c->stride));
+    for (int i = WC_STAGES - 1; i >= 0; i--) {
         memset(V, 0, sizeof V);
         wc_add_stages(nx, wc_C[i], i, s.U, V);
         for (int r = 0; r < nx; r++) V[r] = (V[r] - s.U[i * nx + r] / wc_GAMMA) / h;
-        const double *slopes = stage_slopes(c, &s, i);
-        memcpy(c->at, c->D, sizeof(double) * (size_t)(nx * m));
-        wc_add_stages(nx * m, wc_A[i], i, c->dU, c->at);
-        stage_right(c, i, h, V, part, slopes, s.first, dU);
-        wc_rodas_solve(&s, m, dU);
+        backward(c, &s, i, h);
+        find_bend(c, &s, i);
+        gather(c, i, V, s.first);
     }
-    wc_add_stages(nx * m, wc_A[WC_STAGES - 1], WC_STAGES - 1, c->dU, c->D);
-    wc_add_row(nx * m, 1, c->dU + (long)(WC_STAGES - 1) * nx * m, c->D);
+    compose(c, done / c->length, (done + h) / c->length);
 }
 
 static void fresh(carrier *c) {
-    memset(c->D, 0, sizeof(double) * (size_t)(c->nx * c->m));
-    for (int r = 0; r < c->nx; r++) c->D[r * c->m + r] = 1;
+    memset(c->D, 0, sizeof(double) * (size_t)(c->m * c->stride));
+    for (int r = 0; r < c->nx; r++) c->D[r * c->stride + r] = 1;
 }
 
 /* Takes what was carried over one interval, and makes ready for the next. */
 static void hand_over(carrier *c, long i) {
-    int nx = c->nx, m = c->m, active = c->out->active;
+    int nx = c->nx, stride = c->stride, active = c->out->active;
     const wc_derivatives *out = c->out;
+    const double *before = c->D + nx * stride, *after = before + WC_PUSHES * stride, *own = after + WC_PUSHES * stride;
     for (int r = 0; r < nx; r++) {
-        double *row = c->D + r * m;
-        memcpy(out->transition + (i * nx + r) * nx, row, sizeof(double) * (size_t)nx);
-        memcpy(out->push_before + (i * nx + r) * WC_PUSHES, row + nx, sizeof(double) * WC_PUSHES);
-        memcpy(out->push_after + (i * nx + r) * WC_PUSHES, row + nx + WC_PUSHES, sizeof(double) * WC_PUSHES);
         double *next = c->next + r * active;
-        memset(next, 0, sizeof(double) * (size_t)active);
-        if (out->forced) memcpy(next, row + nx + 2 * WC_PUSHES, sizeof(double) * (size_t)active);
-        for (int k = 0; k < nx; k++) wc_add_row(active, row[k], c->through + k * active, next);
+        for (int k = 0; k < nx; k++) out->transition[(i * nx + r) * nx + k] = c->D[k * stride + r];
+        for (int q = 0; q < WC_PUSHES; q++) {
+            out->push_before[(i * nx + r) * WC_PUSHES + q] = before[q * stride + r];
+            out->push_after[(i * nx + r) * WC_PUSHES + q] = after[q * stride + r];
+        }
+        for (int a = 0; a < active; a++) next[a] = out->forced ? own[a * stride + r] : 0;
+        for (int k = 0; k < nx; k++) wc_add_row(active, c->D[k * stride + r], c->through + k * active, next);
     }
     double *kept = c->through;
     c->through = c->next;
@@ -157,32 +205,48 @@ static wc_status begin_by_difference(const wc_kernel *k, const wc_tangent *g, co
     return WC_OK;
 }
 
+/* Which places of the equations move with what is asked for. */
+static int find_touched(const wc_tangent *g, const wc_derivatives *out, touch *to) {
+    int n = 0;
+    for (int a = 0; out->forced && a < out->active; a++)
+        for (int e = 0; e < g->touches; e++)
+            if (g->touched[e] % g->columns == out->which[a]) to[n++] = (touch){g->touched[e] / g->columns, out->which[a], a};
+    return n;
+}
+
+static int padded(int n) { return (n + LANE - 1) / LANE * LANE; }
+
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
-    long nx = k->states, m = nx + 2 * WC_PUSHES + active /* at most */, nc = g->columns, span = nx + WC_PUSHES + nc;
-    return (WC_STAGES + 2) * nx * m + 2 * nx * span + nx * nc + g->curvatures + k->parameters + 2 * nx * active +
-           g->sensors * span;
+    long nx = k->states, stride = padded(k->states), m = nx + 2 * WC_PUSHES + active /* at most */, nc = g->columns;
+    long span = nx + WC_PUSHES + nc;
+    return 3 * m * stride + 2 * WC_STAGES * nx * stride + (WC_STAGES + 1) * nx * span + nx * nc + g->curvatures + k->parameters +
+           2 * nx * active + g->sensors * span + 2 * g->touches; /* a touch is smaller than two numbers */
 }
 
 wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
                          const double *t, const double *w, double *x, double *y, const wc_derivatives *out,
                          double *work, long *reached) {
-    int nx = k->states, nw = k->inputs, forced = out->forced, widest = nx + WC_PUSHES + g->columns;
+    int nx = k->states, nw = k->inputs, forced = out->forced, widest = nx + WC_PUSHES + g->columns, stride = padded(nx);
     int m = nx + 2 * WC_PUSHES + (forced ? out->active : 0), span = forced ? widest : nx + WC_PUSHES;
-    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .m = m, .span = span,
+    carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .stride = stride, .m = m, .span = span,
                  .sloped = forced ? g->slopes_all : g->slopes,
                  .curved = forced ? g->curvature_all : g->curvature,
                  .bent = forced ? g->bend_all : g->bend};
     c.D = work;
-    c.dU = c.D + nx * m;
-    c.at = c.dU + WC_STAGES * nx * m;
-    c.slopes = c.at + nx * m;
-    c.bend = c.slopes + nx * widest;
+    c.step = c.D + m * stride;
+    c.spare = c.step + m * stride;
+    c.G = c.spare + m * stride;
+    c.P = c.G + WC_STAGES * nx * stride;
+    c.slopes = c.P + WC_STAGES * nx * stride;
+    c.bend = c.slopes + WC_STAGES * nx * widest;
     c.dM = c.bend + nx * widest;
     c.curvature = c.dM + nx * g->columns;
     c.moved = c.curvature + g->curvatures;
     c.through = c.moved + k->parameters;
     c.next = c.through + nx * out->active;
-    double *readout = c.next + nx * out->active, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
+    c.touched = (touch *)(c.next + nx * out->active);
+    c.touches = find_touched(g, out, c.touched);
+    double *readout = c.next + nx * out->active + 2 * g->touches, now[WC_MAX_STATES], h = n > 1 ? t[1] - t[0] : 0;
     *reached = 0;
     wc_status status = wc_start(k, p, w, x);
     if (status != WC_OK) return status;

@@ -13,6 +13,8 @@
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
     int curvatures;       /* numbers that `curvature_all` gives; `curvature` gives fewer */
+    int touches;          /* places, row * columns + column, where an equation moves with a parameter */
+    const int *touched;
     const int *rows;      /* places of those results */
     const int *places;    /* of those parameters */
     wc_function motion, ramp, slopes, curvature, bend, slopes_all, curvature_all, bend_all, readout, masses, begin;
