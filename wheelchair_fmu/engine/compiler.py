@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from ..errors import BuildError
 
 # Contracting a·b + c to one rounding would give other digits on other machines. Nobody asks errno after a square root.
-FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-shared", "-fvisibility=hidden",
+FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden",
          "-fno-sanitize=all")  # fmt: skip
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
@@ -46,13 +46,18 @@ def version() -> str:
 def compile_shared(
     sources: Sequence[Path], target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None
 ) -> Path:
-    """Compile `sources` into the shared library `target`, which appears whole or not at all.
+    """Compile `sources`, C files or objects, into the shared library `target`, which appears whole or not at all.
 
     `cross` is the compiler for another system than this.
 
     Raises BuildError with the compiler's own words.
     """
-    return _compiled([*(cross or command()), *FLAGS], sources, target, [*extra, "-lm"])
+    return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, "-lm"])
+
+
+def compile_object(source: Path, target: Path, extra: Sequence[str] = ()) -> Path:
+    """Compile one C file into an object that `compile_shared` takes. Raises BuildError with the compiler's own words."""
+    return _compiled([*command(), *FLAGS, "-c"], [source], target, extra)
 
 
 def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
