@@ -11,7 +11,7 @@ from wheelchair_fmu.campaign import Run, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.model.variant import Variant
-from wheelchair_fmu.studies import run_campaign_run
+from wheelchair_fmu.studies.measured import run_campaign_run
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
 TIME = np.arange(101) * 0.01

@@ -12,7 +12,6 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from .records import Campaign, Run
 
@@ -110,7 +109,7 @@ def _heading(run: Run, at: int) -> float | None:
     good = np.isfinite(rate)
     time, rate = run.time[good], rate[good]
     before = time <= run.time[at]
-    return run.set.get(HEADING, 0.0) + float(trapezoid(rate[before], time[before]))
+    return run.set.get(HEADING, 0.0) + float(np.trapezoid(rate[before], time[before]))
 
 
 def _speed(channels: dict[str, np.ndarray]) -> float | None:

@@ -25,7 +25,8 @@ from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..report.figures import overlay_figure, where_figure
 from ..report.saving import save
-from ..studies import Fmu, fmu_of, run_campaign_run
+from ..studies import Fmu, fmu_of
+from ..studies.measured import run_campaign_run
 from ..writing import written
 from .files import print_json
 from .group import console, working

@@ -17,7 +17,9 @@ from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
 from ..loop.evidence import START, Bench
 from ..loop.subject import known_parameters
-from ..studies.sweep import ENGINES, INDICES, Job, Plan, Yardstick, indices, prepare, read_plan
+from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
+from ..studies.sweep.indices import indices
+from ..studies.sweep.yardstick import Yardstick
 from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .compare import TUNING

@@ -9,9 +9,7 @@
 
 from .design import INDICES
 from .engines import ENGINES
-from .indices import indices
 from .plan import Plan, PlanError, read_plan
 from .running import Job, prepare
-from .yardstick import Yardstick
 
-__all__ = ["ENGINES", "INDICES", "Job", "Plan", "PlanError", "Yardstick", "indices", "prepare", "read_plan"]
+__all__ = ["ENGINES", "INDICES", "Job", "Plan", "PlanError", "prepare", "read_plan"]

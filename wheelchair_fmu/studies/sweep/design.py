@@ -12,7 +12,6 @@ from math import prod
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 METHODS = ("grid", "random", "sobol", "morris", "saltelli")
 INDICES = ("morris", "saltelli")  # those that sensitivity indices are computed from
@@ -78,6 +77,8 @@ class Design:
         if self.method == "random":
             return np.random.Generator(np.random.PCG64(self.seed).advance(start * k)).random((n, k))
         if self.method == "sobol":
+            from scipy.stats import qmc  # as long to import as a thousand chairs take
+
             sequence = qmc.Sobol(k, seed=self.seed)
             return (sequence.fast_forward(start) if start else sequence).random(n)
         return _salib(self.method, k, self.samples, self.seed)[start:stop]

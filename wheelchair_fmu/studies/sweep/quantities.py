@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from math import inf, nan
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from ...handling.key_numbers import STRAIGHT
 
@@ -52,4 +51,4 @@ def _work(time: np.ndarray, inputs: Columns, y: Columns, held: bool, tread: floa
     left, right = inputs.get("push.F_rl", 0.0), inputs.get("push.F_rr", 0.0)
     total = y["push.total_needed"] if held else np.add(left, right)
     couple = np.subtract(left, right) * tread / 2
-    return float(trapezoid(total * y["chair.u"] + couple * y["chair.psi_dot"], time))
+    return float(np.trapezoid(total * y["chair.u"] + couple * y["chair.psi_dot"], time))

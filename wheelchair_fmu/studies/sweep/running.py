@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import pyarrow as pa
 
@@ -19,7 +19,9 @@ from ...handling.manoeuvres import Manoeuvre
 from .engines import ENGINES, Engine, encoded
 from .plan import Chair, Plan
 from .quantities import NONE, QUANTITIES, of_run
-from .yardstick import Yardstick, whitened
+
+if TYPE_CHECKING:
+    from .yardstick import Yardstick
 
 CHUNK = 256  # runs, about: what is lost when a sweep is killed, and what a worker holds in memory
 
@@ -134,6 +136,8 @@ class _Bench:
         return of_run(m.time, m.inputs, results, held=held, tread=given.get("chair.t_r", self.own["chair.t_r"]))
 
     def campaign(self, values: Mapping[str, float]) -> dict[str, Any]:
+        from .yardstick import whitened  # brings what reads campaigns along, which most sweeps do without
+
         try:
             return {**NONE, **whitened(self.engine, self.variant, self.yardsticks, values)}
         except WheelchairError as error:
