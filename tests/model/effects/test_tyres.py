@@ -70,7 +70,7 @@ def test_stiffness_in_proportion_to_load_makes_the_mass_drop_out():
 def test_a_pressure_not_stated_is_as_good_as_one_stated():
     for slip in (0.01, -0.05):
         told = slipping(slip, {"tyre.pressure": 2.0, "effect.inflation_pressure.dp": 0.0})
-        found = slipping(slip, {"tyre.pressure": 3.0, "effect.inflation_pressure.dp": -1.0})
+        found = slipping(slip, {"tyre.pressure": 4.0, "effect.inflation_pressure.dp": -2.0})
         np.testing.assert_allclose(found["F_s"], told["F_s"], rtol=1e-12)
         np.testing.assert_allclose(found["M_t"], told["M_t"], rtol=1e-12)
 
@@ -85,7 +85,7 @@ def test_half_the_pressure_makes_of_force_and_torque_what_the_rig_measured():
         slip, force, torque = np.array([(r[5], r[7], r[8]) for r in rows]).T
         odd = np.column_stack([slip, slip**3])
         slopes.append([np.linalg.lstsq(odd, y, rcond=None)[0][0] for y in (force, torque)])
-    soft, stated = (slipping(0.001, {"tyre.pressure": 3.0, "effect.inflation_pressure.dp": dp}) for dp in (-1.0, 1.0))
+    soft, stated = (slipping(0.001, {"tyre.pressure": 4.0, "effect.inflation_pressure.dp": dp}) for dp in (-2.0, 0.0))
     assert soft["F_s"][0] / stated["F_s"][0] == pytest.approx(slopes[0][0] / slopes[1][0], rel=0.05)
     assert soft["M_t"][0] / stated["M_t"][0] == pytest.approx(slopes[0][1] / slopes[1][1], rel=0.05)
 
@@ -195,3 +195,14 @@ def test_wheels_turn_further_than_they_roll_by_compliance_times_work(u):
     work = F * abs(result["chair.x"][-1])  # of one wheel's push, whichever its sign
     turned = trapezoid(result["sensor.wheel_speed_l"], result.time)
     assert turned - result["chair.x"][-1] == pytest.approx(compliance * work, rel=1e-6)
+
+
+@pytest.mark.effect("longitudinal_slip")
+@pytest.mark.parametrize("u", [2.0, -2.0])
+def test_a_braked_wheel_turns_less_far_than_it_rolls(u):
+    """By compliance times the brake's force all the way: 0.1 of 100 N, both ways."""
+    compliance, brake = 1e-3, 0.1
+    result = run({**SMOOTH, "start.u": u, "brake.F_max": 100.0, "effect.longitudinal_slip.compliance": compliance},
+                 {"brake.rl": brake, "brake.rr": brake})  # fmt: skip
+    turned = trapezoid(result["sensor.wheel_speed_l"], result.time)
+    assert turned / result["chair.x"][-1] == pytest.approx(1 - compliance * brake * 100.0, rel=1e-4)
