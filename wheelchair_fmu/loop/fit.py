@@ -1,7 +1,9 @@
 """Fit parameters to the evidence: `scipy.optimize.least_squares` on innovations, with priors as further rows.
 
 Each descent keeps the sensitivities and filters of where it began, so that a trial costs no more than a
-simulation; where it ends everything is linearised anew, until a descent gains nothing that matters.
+simulation; where it ends everything is linearised anew, until a descent gains nothing that matters. Where that
+leads to nothing more likely, because filters change with the parameters as much as residuals do, a step goes by slopes of the
+likelihood itself.
 """
 
 from __future__ import annotations
@@ -21,6 +23,8 @@ from .evidence import Bench, Evidence
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 MOST = 8  # linearisations
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
+NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
+PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
 AT_BOUND = 1e-3  # of a parameter's scale
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
@@ -115,6 +119,17 @@ class Problem:
         """Sᵀ r (k,), and the prior's."""
         return S.T @ r + self.prior.slopes @ self.prior.rows(theta)
 
+    def whole_gradient(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
+        """−½ the slope of the misfit (k,), by differences of a standard error: `gradient`, and what the filters' own change
+        does."""
+        before, found = self.misfit(here, theta), np.zeros(len(theta))
+        for j, curvature in enumerate(np.diag(self.information(here))):
+            by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
+            trial = theta + by * (np.arange(len(theta)) == j)
+            there = self.bench.evidence(self.bench.campaign.fit, self.values(trial))
+            found[j] = (curvature * by - (self.misfit(there, trial) - before) / by) / 2
+        return found
+
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
         """How much the squares would fall at most, if slopes held all the way: of what no bound holds."""
         g = self.gradient(here.S, here.r, theta)
@@ -167,7 +182,7 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
         if fall < max(STRAIGHT, behind / MOST):
             theta, here = to, there
             break
-        further = _taken(problem, theta, here, to)
+        further = _taken(problem, theta, here, to) or _by_likelihood(problem, theta, here)
         if further is None:
             break
         theta, here = further
@@ -190,3 +205,16 @@ def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) 
         if problem.misfit(found, trial) < before:
             return trial, found
     return None
+
+
+def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence] | None:
+    """`_taken` in the direction that the likelihood itself falls in, where that is worth a simulation for each parameter."""
+    if problem.expected(here, theta) < PROMISED or float(np.mean(here.r**2)) > NEAR:
+        return None
+    try:
+        gradient = problem.whole_gradient(here, theta)
+    except SimulationError:
+        return None
+    step = np.linalg.pinv(problem.information(here), hermitian=True) @ gradient
+    found = _taken(problem, theta, here, np.clip(theta + step, problem.lower, problem.upper))
+    return found if found and problem.misfit(here, theta) - problem.misfit(found[1], found[0]) > STRAIGHT else None

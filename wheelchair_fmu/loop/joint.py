@@ -20,8 +20,8 @@ from .screen import Score
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
 TRIES = 125  # combinations of them, at most
-BEGUN = 6  # of these, refits that make one step
-ENDED = 2  # of those, refits that go on to their end
+BEGUN = 16  # of these, refits that make one step
+ENDED = 2  # of these, refits that go on to their end
 
 
 @dataclass(frozen=True)
