@@ -15,7 +15,7 @@ help:
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make importers   the FMUs in other people's importers, as a table; these go into $(VENV)-importers"
-	@echo "make nightly     what takes longer: every platform, importers, fuzzing, a minute in real time"
+	@echo "make nightly     what takes longer: every platform, importers, fuzzing, a minute in real time; then bench-diagnosis"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready
@@ -72,6 +72,7 @@ $(VENV)-importers/.ready: benchmarks/importers/requirements.txt
 nightly: setup $(VENV)-importers/.ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
 	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly
+	$(MAKE) bench-diagnosis
 
 clean:
 	rm -rf dist out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
