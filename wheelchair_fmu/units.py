@@ -1,10 +1,11 @@
 """Units as loggers write them, by pint.
 
-Pint is loaded only when a unit is not SI already: most files never need it.
+Pint takes a third of a second to load, so what most files have is known without; a test holds it against pint.
 """
 
 from __future__ import annotations
 
+import math
 import re
 import tokenize
 from functools import cache
@@ -16,11 +17,17 @@ _GRAVITY = {
     "mg": STANDARD_GRAVITY / 1e3,
 }  # pint: gram, gauss, milligram
 _ASIDE = {"Nm": "N.m", "N·m": "N.m", "N-m": "N.m", "-": "1", "": "1", "m/s²": "m/s2", "m/s^2": "m/s2"}
+USUAL = {
+    ("ms", "s"): 1e-3, ("mm", "m"): 1e-3, ("cm", "m"): 1e-2, ("km/h", "m/s"): 1 / 3.6, ("deg", "rad"): math.radians(1),
+    ("deg/s", "rad/s"): math.radians(1), ("rpm", "rad/s"): math.pi / 30, ("%", "1"): 1e-2,
+}  # fmt: skip
 _STUMBLES = (ValueError, TypeError, AttributeError, KeyError, SyntaxError, AssertionError, ArithmeticError, IndexError)
 _EXAMPLES = {
     "s": "s or ms", "m": "m or mm", "m/s": "m/s or km/h", "m/s2": "m/s2 or g", "rad": "rad or deg",
     "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %", "bar": "bar or kPa",
 }  # fmt: skip
+_PLAIN = {"rad": "1"}  # an angle is a plain number
+SI_OF = {**{si: si for si in _EXAMPLES}, **{text: si for text, si in USUAL}}
 
 
 class UnitError(ValueError):
@@ -61,6 +68,8 @@ def factor(text: str, si: str) -> float:
     text = text.strip()
     if text == si or _ASIDE.get(text) == si:
         return 1.0
+    if (text, si) in USUAL:
+        return USUAL[text, si]
     if si == "m/s2" and text in _GRAVITY:
         return _GRAVITY[text]
     unit = _parse(text)
@@ -94,6 +103,9 @@ def coherent(text: str) -> tuple[float, int, int, int]:
 
 def same_dimension(text: str, si: str) -> bool:
     """Whether `text` is a unit of the dimension of `si`."""
+    known = SI_OF.get(_ASIDE.get(text.strip(), text.strip()))
+    if known is not None:
+        return _PLAIN.get(known, known) == _PLAIN.get(si, si)
     try:
         factor(text, si)
     except UnitError:

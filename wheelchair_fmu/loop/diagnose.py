@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from ..errors import SimulationError
+from .chance import chance_beyond
 from .evidence import Bench, Evidence
 from .fit import Fit, fit, prior_of, start_value
 from .noise import QUIETER, colour_of
 from .screen import Score, projector, score
+from .starts import Outlook, most_promising, outlook, visible_fall
 from .statistics import correlation_time, cosines, estimates, finite, held_out_gain, seen_directions
 from .timing import late
 from .workshop import Workshop
@@ -30,8 +31,9 @@ SLIGHTLY = 0.1  # the same, where it costs little to look at both
 PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected test
 NEGLIGIBLE = 0.3  # of δ
 SAME = 1.002  # ratio of two RMS errors that do not differ
-HARDLY = 0.3  # of the fall that is asked for
+FAINTLY, NEARLY_ENOUGH = 0.1, 0.7  # of the fall that is asked for: as slopes have it, and simulated
 LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
+FAR = 1.1  # mean square innovation of a model that slopes are not to be trusted at
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
@@ -128,9 +130,14 @@ class Screened:
         far = np.abs(self.score.estimate) + 3 * self.score.se
         return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
+    @property
+    def far(self) -> bool:
+        """Is so much left, and hoped for, that an effect may do more than slopes say?"""
+        return float(np.mean(self.evidence.r**2)) > FAR and self.score.drop > LITTLE
+
     def shows(self, visible: float) -> bool:
         """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
-        return self.score.drop > LITTLE or self.score.visible > HARDLY * visible
+        return self.far or self.score.visible > FAINTLY * visible
 
 
 class Search:
@@ -322,13 +329,14 @@ class Search:
     # -- refits ---------------------------------------------------------------------------------------------
 
     def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
-                  tests: int, rival: float = math.inf, least: float = -math.inf) -> Candidate | None:  # fmt: skip
+                  tests: int, rival: float = math.inf, least: float = -math.inf,
+                  visible: float = 0.0) -> Candidate | None:  # fmt: skip
         """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
-        `least`; `rival` is the best misfit yet."""
+        `least`, and some channel's RMS in some run by `visible`; `rival` is the best misfit yet."""
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self._base(effect, effects, base, base_held)
-        starts = self._starts(bench, base, s, least)
+        starts = self._starts(bench, base, s, least, visible)
         if starts:
             self.say(f"refitting {effect}")
         begun = []
@@ -344,43 +352,41 @@ class Search:
         held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
         return self.judge(base, base_held, found, held, effect, w.parameters(effect), tests)
 
-    def _starts(self, bench: Bench, base: Fit, s: Screened, least: float) -> list[tuple[dict[str, float], Evidence | None]]:
-        """Where to start refits, and what is known there, where −2 log likelihood may fall by `least`: a linear effect from
-        zero, others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
+    def _starts(self, bench: Bench, base: Fit, s: Screened, least: float,
+                visible: float) -> list[tuple[dict[str, float], Evidence | None]]:  # fmt: skip
+        """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
+        in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
+        change, both signs of δ, and larger ones."""
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         straightened = self._straightened(bench, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
-        linear = self._linear(s.score.effect)
+        linear, off = self._linear(s.score.effect), [base.values.get(n, 0.0) for n in names]
         if linear and s.score.drop < least:
             return []
         if linear and len(calibrations) == 1:
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
-            return [({n: base.values.get(n, 0.0) for n in names}, known)]
+            if known and not self._shows(bench, known, names, s, outlook(bench, known, names, off), visible):
+                return []
+            return [(dict(zip(names, off, strict=True)), known)]
         delta = np.array([r.smallest_interesting for r in records])
         lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
         expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
         alone = [*np.diag(delta)] if len(delta) > 1 else []  # one parameter of several
         sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
-        tries = {tuple(np.concatenate([c, np.clip(size, lower, upper)])) for c in calibrations for size in sizes}
+        tries = [np.concatenate([c, np.clip(size, lower, upper)]) for c in calibrations for size in sizes]
         known = s.evidence.only(base.names)
-        best = sorted((self.promise(bench, known, names, theta), theta) for theta in tries)[: 1 if linear else STARTS]
+        best = most_promising(bench, known, names, tries, 1 if linear else STARTS, s.score.signature)
         record, most = self.workshop.catalogue[s.score.effect], np.inf
         if not (linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
-            most = self.promise(bench, known, names, [base.values.get(n, 0.0) for n in names]) - least
-        return [(dict(zip(names, map(float, theta), strict=True)), None) for promise, theta in best if promise <= most]
+            most = outlook(bench, known, names, off).misfit - least
+        best = [o for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
+        return [(dict(zip(names, o.theta, strict=True)), None) for o in best]
 
-    def promise(self, bench: Bench, known: Evidence, names: Sequence[str], theta: Sequence[float]) -> float:
-        """The misfit that one linear step from `theta` would reach, of those of `names` that `known` has slopes by."""
-        try:
-            r = bench.again(known, dict(zip(names, theta, strict=True))).r
-        except SimulationError:
-            return float("inf")
-        prior = prior_of(bench, names)
-        rows = prior.rows(np.array(theta))
-        Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
-        g = Z.T @ r + (prior.slopes @ rows)[:k]
-        return float(r @ r + rows @ rows - g @ np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g)
+    @staticmethod
+    def _shows(bench: Bench, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
+        """Does an effect lower some channel's RMS in some run by about so much, by a step that was simulated?"""
+        return visible == 0 or s.far or visible_fall(bench, known, names, to) > NEARLY_ENOUGH * visible
 
     def judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
               names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
@@ -390,8 +396,8 @@ class Search:
         along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
-        p = max(float(stats.chi2.sf(np.sum(along**2 / spread), len(spread))),
-                float(stats.chi2.sf(drop / correlation_time(found.evidence), len(spread))))  # fmt: skip
+        p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
+                chance_beyond(drop / correlation_time(found.evidence), len(spread)))  # fmt: skip
         if len(names) == 1 and one_sided[0]:
             p /= 2
         before, after = base.evidence.table(), found.evidence.table()
@@ -423,16 +429,17 @@ class Search:
     # -- search ---------------------------------------------------------------------------------------------
 
     def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
-              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE, rival: float = math.inf) -> Round:  # fmt: skip
-        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, as far as slopes tell,
-        is not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are. `rival` is the
-        misfit of another model to be compared with."""
+              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE, rival: float = math.inf,
+              least: float = PROMISING) -> Round:  # fmt: skip
+        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, or −2 log likelihood by
+        `least`, as far as slopes tell, is not refitted; what looks like the leader, by a cosine above `twin`, is, however many
+        there are. `rival` is the misfit of another model to be compared with."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
         for s in shortlist([s for s in screened if not self._linear(s.score.effect) or s.shows(visible)], most, twin):
             leader = min((c.fit.misfit for c in candidates), default=math.inf)
-            least = max(PROMISING, HOPELESS * (base.misfit - leader))
-            c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), least)
+            hope = max(least, HOPELESS * (base.misfit - leader))
+            c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), hope, visible)
             if c is not None:
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)

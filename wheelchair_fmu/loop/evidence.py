@@ -25,7 +25,7 @@ from ..errors import SimulationError
 from ..model.variant import Variant
 from ..quantities import Parameter
 
-TOLERANCE = 3e-5  # of the simulation; its error is some hundredths of the best sensor's noise
+TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
 PUSHED = tuple(PUSHES)  # records of pushes that carry noise

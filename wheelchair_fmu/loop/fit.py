@@ -21,6 +21,7 @@ from ..quantities import Parameter
 from .evidence import Bench, Evidence
 
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
+SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
 MOST = 8  # linearisations
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
@@ -174,12 +175,13 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
     for _ in range(most if names else 0):
-        if problem.expected(here, theta) < max(STRAIGHT, (problem.misfit(here, theta) - rival) / MOST):
+        enough = max(STRAIGHT, SLIGHT * (problem.squares(here, theta) - len(here.r)))
+        if problem.expected(here, theta) < max(enough, (problem.misfit(here, theta) - rival) / MOST):
             break
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
         behind = problem.misfit(there, to) - rival
-        if fall < max(STRAIGHT, behind / MOST):
+        if fall < max(enough, behind / MOST):
             theta, here = to, there
             break
         further = _taken(problem, theta, here, to) or _by_likelihood(problem, theta, here)

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy import stats
 from scipy.optimize import brentq
 
 from ..errors import SimulationError
+from .chance import value_beyond
 from .evidence import Bench
 from .fit import Fit, Problem
 from .statistics import sandwich
@@ -27,7 +27,7 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     """The interval (SI) of one fitted parameter at LEVEL; an end is its bound, or FARTHEST off, where the data set none."""
     at = found.names.index(name)
     se = float(np.sqrt(sandwich(found)[at, at]))
-    threshold = stats.chi2.ppf(LEVEL, 1) * se**2 / found.covariance[at, at]
+    threshold = value_beyond(1 - LEVEL, 1) * se**2 / found.covariance[at, at]
     record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
 
     def above(distance: float) -> float:

@@ -17,6 +17,7 @@ from ..errors import SimulationError
 from .diagnose import Round, Search, decisive
 from .fit import Fit
 from .screen import Score
+from .starts import most_promising
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
 TRIES = 125  # combinations of them, at most
@@ -72,11 +73,11 @@ def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], grou
     if len(tries) > TRIES:
         tries = [tries[i] for i in np.random.default_rng(0).choice(len(tries), TRIES, replace=False)]
     starts = [{**dict.fromkeys(names, 0.0), **base.values, **dict(zip(own, one, strict=True))} for one in tries]
-    starts.sort(key=lambda start: search.promise(bench, base.evidence, names, [start[n] for n in names]))
+    thetas = [[start[n] for n in names] for start in starts]
     begun = []
-    for start in starts[:BEGUN]:
+    for start in most_promising(bench, base.evidence, names, thetas, BEGUN, base.evidence.r):
         try:
-            begun.append(search.refit(every, start, most=1))
+            begun.append(search.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
         except SimulationError:
             continue
     begun.sort(key=lambda fit: fit.misfit)

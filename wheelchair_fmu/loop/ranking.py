@@ -95,11 +95,13 @@ def leftover_json(d: Diagnosis) -> dict[str, Any]:
     """Is anything structured left, and where."""
     if d.leftover is None:
         return {"p": None, "where": None}
-    best = d.proposal or (d.leftover.candidates[0] if d.leftover.candidates else None)
+    refitted = (d.proposal,) if d.proposal else d.leftover.candidates
+    best = next(iter((*refitted, *d.leftover.scores)), None)
     if best is None:
         return {"p": 1.0, "where": None}
+    p = best.p if refitted else min(1.0, best.p * len(d.leftover.scores))
     worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
-    out = {"p": best.p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
+    out = {"p": p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
     if d.proposal:
         out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
     return out

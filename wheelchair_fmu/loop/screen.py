@@ -12,11 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
+from .chance import chance_beyond, power
 from .evidence import Evidence
 
 LAG = 0.5  # s over which residuals may be correlated
+LEVEL = 0.05  # of the test whose power is told
 SEEN = 0.25  # a direction counts as seen when δ along it would be at least this many standard deviations, squared
 
 
@@ -94,16 +95,16 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
     estimate = V @ change * delta
     se = np.sqrt(np.maximum(np.diag(V @ spread @ V.T), 0)) * delta
     T = float(U @ np.linalg.pinv(Omega, hermitian=True) @ U)
-    p = float(stats.chi2.sf(T, int(seen.sum())))
+    p = chance_beyond(T, int(seen.sum()))
     if len(delta) == 1 and one_sided[0]:
         p = p / 2 if estimate[0] > 0 else 1 - p / 2
     noncentral = 1 / np.diag(spread).mean()
-    power = float(stats.ncx2.sf(stats.chi2.isf(0.05, int(seen.sum())), int(seen.sum()), min(noncentral, 1e6)))
+    seen_at_delta = power(min(noncentral, 1e6), int(seen.sum()), LEVEL)
     drop = float(U @ change)
     if one_sided.all() and (estimate <= 0).all():
         drop = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
     visible = largest_fall(evidence, r, r - direction)
-    return Score(effect, tuple(names), estimate, se, p, drop, power, visible, hidden,
+    return Score(effect, tuple(names), estimate, se, p, drop, seen_at_delta, visible, hidden,
                  direction / length if length > 0 else direction)  # fmt: skip

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, decisive, first_steps
+from .diagnose import HOPELESS, MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, decisive, first_steps
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
@@ -184,13 +184,14 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
+        promised = next((s.drop for s in first.scores if s.effect == found[0]), 0.0)  # by slopes, like the terms'
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
-                                     rival=base.misfit)  # fmt: skip
+                                     visible=PLAINLY_VISIBLE, rival=base.misfit, least=HOPELESS * promised)  # fmt: skip
         lone = next((c for c in alone.candidates if _clear(c)), None)
         plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
-    left = generic_search.round(effects, base, held, list(generic), most=TERMS, twin=1.0)
+    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0)
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
     return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)

@@ -1,0 +1,66 @@
+"""Which of many values to start a refit from: those from which one linear step would fall furthest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SimulationError
+from .evidence import Bench, Evidence
+from .fit import prior_of
+
+GLANCED = 2  # runs on which all are tried, and of them
+LOOKED_AT = 2  # times as many as are wanted on every run
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """Where one linear step from `theta` leads, and the squares there, with the prior's."""
+
+    misfit: float
+    theta: tuple[float, ...]
+    reached: tuple[float, ...]
+
+
+def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable[float]) -> Outlook:
+    """The step goes by those of `names`, the first, that `known` has slopes by; the misfit is infinite where the model cannot
+    run."""
+    at = tuple(theta)
+    try:
+        r = bench.again(known, dict(zip(names, at, strict=True))).r
+    except SimulationError:
+        return Outlook(float("inf"), at, at)
+    prior = prior_of(bench, names)
+    rows = prior.rows(np.array(at))
+    Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
+    g = Z.T @ r + (prior.slopes @ rows)[:k]
+    step = np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g
+    return Outlook(float(r @ r + rows @ rows - g @ step), at, (*(np.array(at[:k]) + step), *at[k:]))
+
+
+def most_promising(bench: Bench, known: Evidence, names: Sequence[str], tries: Iterable[Sequence[float]], wanted: int,
+                   weight: np.ndarray) -> list[Outlook]:  # fmt: skip
+    """The best of `tries`, best first. Where there are many, all are tried on the few runs only in which `weight` (N,), which
+    says where to look, has most of its length."""
+    thetas = sorted({tuple(map(float, theta)) for theta in tries})
+    shares = [float(weight[part] @ weight[part]) for _, _, part in known.parts()]
+    if len(thetas) > LOOKED_AT * wanted and len(shares) > GLANCED:
+        telling = sorted(np.argsort(shares, kind="stable")[-GLANCED:])
+        few = Evidence(tuple(known.runs[i] for i in telling), known.by)
+        thetas = [o.theta for o in _ranked(bench, few, names, thetas)[: LOOKED_AT * wanted]]
+    return _ranked(bench, known, names, thetas)[:wanted]
+
+
+def visible_fall(bench: Bench, known: Evidence, names: Sequence[str], to: Outlook) -> float:
+    """Of a channel's whitened RMS in the run where it falls most, by that step; infinite where nobody can say."""
+    try:
+        after = bench.again(known, dict(zip(names, to.reached, strict=True))).table()
+    except SimulationError:
+        return float("inf")
+    return max(rms - after[run][channel] for run, row in known.table().items() for channel, rms in row.items())
+
+
+def _ranked(bench: Bench, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
+    return sorted((outlook(bench, known, names, theta) for theta in thetas), key=lambda o: (o.misfit, o.theta))
