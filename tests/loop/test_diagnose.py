@@ -117,7 +117,7 @@ def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
     """Calibrated values as the campaign has them are only tried; effects with states are scored without them, too."""
     search = Search(Workshop(sample, Variant()))
     base = begin(search, lambda words: None)[0]
-    monkeypatch.setattr(Search, "_straightened", lambda *given: [dict.fromkeys(base.values, float("nan"))])
+    monkeypatch.setattr(Search, "straightened", lambda *given: [dict.fromkeys(base.values, float("nan"))])
     monkeypatch.setattr(Search, "_unbent", lambda *given: [])
     assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}
 

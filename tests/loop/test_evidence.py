@@ -11,7 +11,7 @@ import pytest
 from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.evidence import Bench
 from wheelchair_fmu.loop.fit import fit, prior_of
-from wheelchair_fmu.loop.screen import _long_run_variance
+from wheelchair_fmu.loop.score import _long_run_variance
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import PREDICTS

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .diagnose import Round, decisive
+from .diagnose import Round
 from .evidence import Evidence, block_length
 from .fit import Fit
-from .statistics import difference_blocks
+from .statistics import decisive, difference_blocks
 from .verdict import Diagnosis
 
 INTERVAL = (0.025, 0.975)

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..campaign import CHANNELS, Run
 from ..errors import SimulationError
-from .diagnose import TIED, Search, decisive
+from .diagnose import Search
 from .evidence import Bench, Colour
 from .fit import Fit, prior_of
+from .statistics import TIED, decisive
 
 MOST_REPEATS = 20
 

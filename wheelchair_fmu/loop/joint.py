@@ -14,10 +14,11 @@ from itertools import product
 import numpy as np
 
 from ..errors import SimulationError
-from .diagnose import Round, Search, decisive
+from .diagnose import Round, Search
 from .fit import Fit
-from .screen import Score
+from .score import Score
 from .starts import most_promising
+from .statistics import decisive
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
 TRIES = 125  # combinations of them, at most

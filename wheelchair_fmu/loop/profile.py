@@ -10,7 +10,7 @@ import numpy as np
 from ..model.stage import Effect
 from .diagnose import Search
 from .fit import Fit, prior_of
-from .screen import projector, robust_variance
+from .score import projector, robust_variance
 
 SUPPORTED = 0.9  # of a knot's prior variance that the data must take away, for the knot to be drawn
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .diagnose import Candidate, Round
-from .screen import Score
+from .score import Score
 from .statistics import cosines, finite
 from .verdict import ENOUGH_POWER, Diagnosis
 

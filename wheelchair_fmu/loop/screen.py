@@ -1,110 +1,169 @@
-"""Which effects would help, from one linearisation: score tests with a robust variance.
-
-For an effect with sensitivities S_j (N, k) the calibrated directions are projected off, s_j = P S_j; score
-U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected drop Uᵀ I⁻¹ U. The variance of U is
-estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run), so that
-coloured residuals are not taken for evidence.
-"""
+"""The screen: which effects of the catalogue would help, by score tests, before any is refitted."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .chance import chance_beyond, power
-from .evidence import Evidence
+from ..errors import SimulationError
+from .evidence import Bench, Evidence
+from .fit import Fit, prior_of
+from .models import Models
+from .score import Score, projector, score
+from .statistics import cosines
 
-LAG = 0.5  # s over which residuals may be correlated
-LEVEL = 0.05  # of the test whose power is told
-SEEN = 0.25  # a direction counts as seen when δ along it would be at least this many standard deviations, squared
+NEGLIGIBLE = 0.3  # of δ
+FAINTLY = 0.1  # of the fall that is asked for, as slopes have it
+LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
+FAR = 1.1  # mean square innovation of a model that slopes are not to be trusted at
+BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
+SLIGHTLY = 0.1  # the same, where it costs little to look at both
+PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected test
 
 
 @dataclass(frozen=True)
-class Score:
-    """One effect's score test. Arrays are by parameter (k,)."""
+class Screened:
+    """An effect's score, and the evidence it rests on, with sensitivities by what is fitted, by this effect and by others.
+    `straight`: it does most about calibrated values as the campaign has them, not as a fit without it left them."""
 
-    effect: str
-    names: tuple[str, ...]
-    estimate: np.ndarray
-    se: np.ndarray
-    p: float
-    drop: float  # expected fall of −2 log likelihood
-    power: float
-    visible: float  # expected fall of the RMS innovation, in the channel and run where it falls most
-    hidden: float  # share of its signature that calibration can imitate
-    signature: np.ndarray  # (N,) unit vector of the projected expected change
+    score: Score
+    evidence: Evidence
+    delta: np.ndarray
+    straight: bool = False
 
+    @property
+    def negligible(self) -> bool:
+        """Does it gain little, being surely a small part of its smallest interesting size?"""
+        far = np.abs(self.score.estimate) + 3 * self.score.se
+        return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
-def projector(Z: np.ndarray, prior_slopes: np.ndarray):
-    """A function that takes the calibrated directions (with their priors) off any columns (N, k)."""
-    A = Z.T @ Z + prior_slopes**2
-    inverse = np.linalg.pinv(A, hermitian=True)
-    return lambda X: X - Z @ (inverse @ (Z.T @ X))
+    @property
+    def far(self) -> bool:
+        """Is so much left, and hoped for, that an effect may do more than slopes say?"""
+        return float(np.mean(self.evidence.r**2)) > FAR and self.score.drop > LITTLE
 
-
-def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
-    total = np.zeros((s.shape[1], s.shape[1]))
-    for e, good, part in evidence.parts():
-        terms = np.zeros((*e.r.shape, s.shape[1]))
-        terms[good] = s[part] * r[part, None]
-        total += _long_run_variance(terms.sum(axis=1), max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
-    return total
+    def shows(self, visible: float) -> bool:
+        """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
+        return self.far or self.score.visible > FAINTLY * visible
 
 
-def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
-    """Σ over lags of the autocovariance (k, k) of q (n, k), by Bartlett's weights: that is the power of its moving sums."""
-    width = min(lags, len(q) // 4) + 1
-    sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), q, np.zeros((width - 1, q.shape[1]))]), axis=0)
-    moving = sums[width:] - sums[:-width]
-    return moving.T @ moving / width
+class Screen(Models):
+    """Scores of effects that a model lacks."""
+
+    def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
+        """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or
+        may mislead."""
+        w = self.workshop
+        free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
+        found, here = self._by_slopes(effects, base, [e for e in free if e in w.light])
+        for group in (w.heavy, w.demanding):
+            more = [e for e in free if e in group]
+            if more:
+                found += self._by_secants(w.bench((*effects, *more)), base, here, more)
+        return sorted(found, key=lambda s: -s.score.drop)
+
+    def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
+        """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
+        w = self.workshop
+        bench, names = w.bench(effects), [n for e in light for n in w.parameters(e)]
+        here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
+        off, unbent = self._off(bench, base, here), self._unbent(bench, base, names)
+        found = []
+        for effect in light:
+            if self._is_an_offset(effect, here):
+                found += self._by_slopes(effects, self.rival_of(effect, effects, base, None)[0], [effect])[0]
+                continue
+            own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
+            tangent = self._score(here, off, effect, here.S[:, own])
+            bent = [] if self.linear(effect) else self._secants(bench, here, base.values, effect)
+            secants = [self._score(here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
+            found.append(self._screened([tangent, *secants], here))
+        return found, here
+
+    def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
+        """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
+        and the filters of the model without them serve: at zero they change nothing."""
+        at = []
+        for values in (base.values, *self.straightened(bench, base, SLIGHTLY)):
+            try:
+                at.append((values, bench.again(here, values)))
+            except SimulationError:
+                if not at:
+                    return []
+        off, found = self._off(bench, base, here), []
+        for effect in effects:
+            by = [[self._score(at[0][1], off, effect, S) for S in self._secants(bench, e, values, effect)] for values, e in at]
+            scores = [score for group in by for score in group]
+            if scores:
+                best = self._screened(scores, here)
+                found.append(replace(best, straight=all(best.score.drop > score.drop for score in by[0])))
+        return found
+
+    def _off(self, bench: Bench, base: Fit, here: Evidence) -> Callable[[np.ndarray], np.ndarray]:
+        """Takes what calibration can imitate off any columns."""
+        return projector(here.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
+
+    def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
+        """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
+        best = max(scores, key=lambda s: s.drop)
+        return Screened(replace(best, p=scores[0].p), here, self.deltas(best.names))
+
+    def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
+        """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
+        them: what it bent to imitate an effect may be what the effect works through."""
+        straightened = self.straightened(bench, base, BENT) if names else []
+        try:
+            return [bench.evidence(self.workshop.campaign.fit, values, names).S for values in straightened]
+        except SimulationError:
+            return []
+
+    @staticmethod
+    def straightened(bench: Bench, base: Fit, least: float) -> list[dict[str, float]]:
+        """Calibrated values as the campaign has them, if a fit has bent them by `least` standard deviations."""
+        prior, values = prior_of(bench, base.names), np.array([base.values[n] for n in base.names])
+        off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
+        straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
+        return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
+
+    def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
+        """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
+        offsets = [n for n in self.offsets if n in evidence.by]
+        if not offsets:
+            return False
+        own = evidence.S[:, [evidence.by.index(n) for n in self.workshop.parameters(effect)]]
+        columns = evidence.S[:, [evidence.by.index(n) for n in offsets]]
+        rest = columns - own @ np.linalg.lstsq(own, columns, rcond=None)[0]
+        same = np.linalg.norm(rest, axis=0) < 1e-6 * np.linalg.norm(columns, axis=0)
+        if same.any():
+            self.twins[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
+        return bool(same.any())
+
+    def _score(self, evidence: Evidence, off: Callable[[np.ndarray], np.ndarray], effect: str, S: np.ndarray) -> Score:
+        records = [self.records[n] for n in self.workshop.parameters(effect)]
+        delta = np.array([r.smallest_interesting for r in records])
+        return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))
+
+    def _secants(self, bench: Bench, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
+        """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
+        (N, k) per unit, each. `known` is the evidence at `values`, where it is off."""
+        records = [self.records[n] for n in self.workshop.parameters(effect)]
+        found = []
+        for sign in (1.0,) if self.linear(effect) else (1.0, -1.0):
+            sizes = {r.name: sign * r.smallest_interesting for r in records if r.lower <= sign * r.smallest_interesting}
+            try:
+                columns = [(known.r - bench.again(known, {**values, n: size}).r) / size for n, size in sizes.items()]
+            except SimulationError:
+                continue
+            if len(columns) == len(records):
+                found.append(np.stack(columns, axis=1))
+        return found
 
 
-def largest_fall(evidence: Evidence, before: np.ndarray, after: np.ndarray) -> float:
-    """Of the RMS of residuals (N,), over the channels of every run."""
-    most = 0.0
-    for e, good, part in evidence.parts():
-        channel = np.nonzero(good)[1]
-        count = np.maximum(np.bincount(channel, minlength=e.r.shape[1]), 1)
-        sizes = [np.sqrt(np.bincount(channel, weights=r[part] ** 2, minlength=e.r.shape[1]) / count) for r in (before, after)]
-        most = max(most, float((sizes[0] - sizes[1]).max(initial=0)))
-    return most
-
-
-def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
-          one_sided: np.ndarray) -> Score:  # fmt: skip
-    """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
-    r, scaled = evidence.r, S * delta
-    s = off(scaled)
-    I = s.T @ s  # noqa: E741
-    size, axes = np.linalg.eigh(I)
-    seen = size > max(SEEN, 1e-9 * size.max(initial=0))
-    whole = float(np.einsum("ij,ij->", scaled, scaled))
-    hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
-    if not seen.any():
-        nothing = np.zeros(len(delta))
-        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0])
-    V = axes[:, seen]
-    s_V, I_V = s @ V, size[seen]
-    U = s_V.T @ r
-    Omega = robust_variance(evidence, s_V, r)
-    change = U / I_V
-    spread = np.diag(1 / I_V) @ Omega @ np.diag(1 / I_V)
-    estimate = V @ change * delta
-    se = np.sqrt(np.maximum(np.diag(V @ spread @ V.T), 0)) * delta
-    T = float(U @ np.linalg.pinv(Omega, hermitian=True) @ U)
-    p = chance_beyond(T, int(seen.sum()))
-    if len(delta) == 1 and one_sided[0]:
-        p = p / 2 if estimate[0] > 0 else 1 - p / 2
-    noncentral = 1 / np.diag(spread).mean()
-    seen_at_delta = power(min(noncentral, 1e6), int(seen.sum()), LEVEL)
-    drop = float(U @ change)
-    if one_sided.all() and (estimate <= 0).all():
-        drop = 0.0  # the data ask for the unlawful sign
-    direction = s_V @ change
-    length = np.linalg.norm(direction)
-    visible = largest_fall(evidence, r, r - direction)
-    return Score(effect, tuple(names), estimate, se, p, drop, seen_at_delta, visible, hidden,
-                 direction / length if length > 0 else direction)  # fmt: skip
+def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
+    """The best by expected drop, and whatever looks like the leader; not what is surely far too small to matter."""
+    promising = [s for s in screened if s.score.drop > PROMISING and not s.negligible]
+    first, rest = promising[:most], promising[most:]
+    near = cosines([s.score for s in first[:1]], [s.score for s in rest])[0] if rest else ()
+    return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > twin)]

@@ -8,9 +8,10 @@ import numpy as np
 
 from .evidence import Evidence, block_length
 from .fit import Fit
-from .screen import SEEN, Score, robust_variance
+from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
+TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 
 
 def finite(value: float) -> float | None:
@@ -67,6 +68,11 @@ def correlation_time(evidence: Evidence) -> float:
             stop = next((k for k, value in enumerate(rho) if value < 2 / np.sqrt(n)), len(rho))
             time, weight = time + n * (1 + 2 * sum(rho[:stop])), weight + n
     return max(1.0, time / max(weight, 1))
+
+
+def decisive(evidence: Evidence) -> float:
+    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for odds of a hundred to one."""
+    return TIED * correlation_time(evidence)
 
 
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:

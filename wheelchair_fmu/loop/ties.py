@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..errors import SimulationError
-from .diagnose import Candidate, Round, Search, decisive
+from .diagnose import Candidate, Round, Search
 from .fit import Fit
-from .statistics import difference_blocks, resampled_totals
+from .statistics import decisive, difference_blocks, resampled_totals
 
 NEARLY = 0.95  # of a fall: a rival that reaches it may be tied by what is held out, and no generic term replaces it
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import SimulationError
 from .evidence import Bench, Evidence, RunEvidence
-from .screen import projector
+from .score import projector
 
 SHIFTS = np.arange(0.2, 2.05, 0.1)  # s, each way; less is what a delay of the force record is for
 SUSPECT = 2.0  # RMS innovation below which nobody looks

@@ -14,13 +14,13 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import HOPELESS, MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, decisive, first_steps
+from .diagnose import HOPELESS, MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import together
-from .statistics import estimates
+from .statistics import decisive, estimates
 from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
 

@@ -1,0 +1,108 @@
+"""The models that a search fits: by which parameters, with which noise, and from where every run starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .evidence import Bench, Evidence
+from .fit import Fit, fit, start_value
+from .noise import QUIETER, colour_of
+from .statistics import decisive
+from .workshop import Workshop
+
+
+class Models:
+    """A workshop's models, with any of its effects."""
+
+    def __init__(self, workshop: Workshop, progress: Callable[[str], None] = lambda words: None):
+        self.workshop, self.say = workshop, progress
+        self.offsets = tuple(workshop.bench().offsets)
+        self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
+        self.twins: dict[str, frozenset[str]] = {}
+        self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
+        self.notes: list[str] = []  # on runs left out
+        self.noise_notes: list[str] = []
+
+    def calibrate(self) -> tuple[Fit, Evidence, Evidence, Evidence]:
+        """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
+        w = self.workshop
+        bench = w.bench()
+        names = self.names(())
+        start = {n: start_value(bench, bench.records[n]) for n in names}
+        nominal = bench.evidence(w.campaign.fit, start, (), tune_start=1)
+        nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
+        found = fit(bench, names, start)
+        bench.evidence(w.campaign.fit, found.values, (), tune_start=1)
+        found = fit(bench, names, found.values)
+        held = self.heldout(bench, found.values)
+        w.remember(bench)
+        return found, held, nominal, nominal_held
+
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
+        """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
+        return fit(self.workshop.bench(effects), self.names(effects), start, here, **how)
+
+    def names(self, effects: Sequence[str]) -> list[str]:
+        """What a model with these effects has to be fitted by."""
+        twins = frozenset().union(*(self.twins.get(e, ()) for e in effects))
+        offsets = (n for n in self.offsets if n not in twins)
+        return [*self.workshop.calibrated, *offsets, *(n for e in effects for n in self.workshop.parameters(e))]
+
+    def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
+        """The model with these effects, which the variant has already, estimated anew."""
+        return self.settled(effects, self.refit(effects, {**self.workshop.given, **base.values}))
+
+    def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
+        """A fit again from its own result, with every run started where this model wants it, and held out."""
+        bench = self.workshop.bench(effects)
+        bench.evidence(self.workshop.campaign.runs, found.values, (), tune_start=2)
+        self.workshop.remember(bench)
+        again = self.refit(effects, found.values)
+        held = self.heldout(bench, again.values)
+        self.workshop.remember(bench)
+        return again, held
+
+    def pruned(self, effects: tuple[str, ...], found: Fit) -> tuple[tuple[str, ...], Fit]:
+        """Backward: leave out every effect but the last that the others have made needless."""
+        for effect in effects[:-1]:
+            fewer = tuple(e for e in effects if e != effect)
+            without = self.refit(fewer, found.values)
+            if without.misfit - found.misfit < decisive(found.evidence) * float(np.mean(found.evidence.r**2)):
+                return self.pruned(fewer, without)
+        return effects, found
+
+    def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
+        """Evidence of the held-out runs; only where each starts is estimated on them."""
+        return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
+
+    def recolour(self, evidence: Evidence, *, again: bool = False) -> bool:
+        """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect
+        is in that was missing when the noise was estimated."""
+        before = self.workshop.colour
+        lowest = QUIETER if again else 0.0
+        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, lowest)
+        return self.workshop.colour.differs(before)
+
+    def rival_of(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
+        """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
+        if not self.twins.get(effect):
+            return base, held
+        key = (effect, *effects)
+        if key not in self._without:
+            names = [n for n in self.names(effects) if n not in self.twins[effect]]
+            bench = self.workshop.bench(effects)
+            fewer = fit(bench, names, base.values)
+            self._without[key] = fewer, self.heldout(bench, fewer.values)
+        return self._without[key]
+
+    def linear(self, effect: str) -> bool:
+        """Does the slope at zero tell what the effect does at the size it has?"""
+        record = self.workshop.catalogue[effect]
+        return not (record.even or record.rows or record.needs)
+
+    def deltas(self, names: Sequence[str]) -> np.ndarray:
+        """Smallest interesting sizes (k,)."""
+        return np.array([self.records[n].smallest_interesting for n in names])

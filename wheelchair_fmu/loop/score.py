@@ -1,0 +1,110 @@
+"""Which effects would help, from one linearisation: score tests with a robust variance.
+
+For an effect with sensitivities S_j (N, k) the calibrated directions are projected off, s_j = P S_j; score
+U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected drop Uᵀ I⁻¹ U. The variance of U is
+estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run), so that
+coloured residuals are not taken for evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .chance import chance_beyond, power
+from .evidence import Evidence
+
+LAG = 0.5  # s over which residuals may be correlated
+LEVEL = 0.05  # of the test whose power is told
+SEEN = 0.25  # a direction counts as seen when δ along it would be at least this many standard deviations, squared
+
+
+@dataclass(frozen=True)
+class Score:
+    """One effect's score test. Arrays are by parameter (k,)."""
+
+    effect: str
+    names: tuple[str, ...]
+    estimate: np.ndarray
+    se: np.ndarray
+    p: float
+    drop: float  # expected fall of −2 log likelihood
+    power: float
+    visible: float  # expected fall of the RMS innovation, in the channel and run where it falls most
+    hidden: float  # share of its signature that calibration can imitate
+    signature: np.ndarray  # (N,) unit vector of the projected expected change
+
+
+def projector(Z: np.ndarray, prior_slopes: np.ndarray):
+    """A function that takes the calibrated directions (with their priors) off any columns (N, k)."""
+    A = Z.T @ Z + prior_slopes**2
+    inverse = np.linalg.pinv(A, hermitian=True)
+    return lambda X: X - Z @ (inverse @ (Z.T @ X))
+
+
+def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
+    total = np.zeros((s.shape[1], s.shape[1]))
+    for e, good, part in evidence.parts():
+        terms = np.zeros((*e.r.shape, s.shape[1]))
+        terms[good] = s[part] * r[part, None]
+        total += _long_run_variance(terms.sum(axis=1), max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
+    return total
+
+
+def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
+    """Σ over lags of the autocovariance (k, k) of q (n, k), by Bartlett's weights: that is the power of its moving sums."""
+    width = min(lags, len(q) // 4) + 1
+    sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), q, np.zeros((width - 1, q.shape[1]))]), axis=0)
+    moving = sums[width:] - sums[:-width]
+    return moving.T @ moving / width
+
+
+def largest_fall(evidence: Evidence, before: np.ndarray, after: np.ndarray) -> float:
+    """Of the RMS of residuals (N,), over the channels of every run."""
+    most = 0.0
+    for e, good, part in evidence.parts():
+        channel = np.nonzero(good)[1]
+        count = np.maximum(np.bincount(channel, minlength=e.r.shape[1]), 1)
+        sizes = [np.sqrt(np.bincount(channel, weights=r[part] ** 2, minlength=e.r.shape[1]) / count) for r in (before, after)]
+        most = max(most, float((sizes[0] - sizes[1]).max(initial=0)))
+    return most
+
+
+def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
+          one_sided: np.ndarray) -> Score:  # fmt: skip
+    """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
+    r, scaled = evidence.r, S * delta
+    s = off(scaled)
+    I = s.T @ s  # noqa: E741
+    size, axes = np.linalg.eigh(I)
+    seen = size > max(SEEN, 1e-9 * size.max(initial=0))
+    whole = float(np.einsum("ij,ij->", scaled, scaled))
+    hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
+    if not seen.any():
+        nothing = np.zeros(len(delta))
+        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0])
+    V = axes[:, seen]
+    s_V, I_V = s @ V, size[seen]
+    U = s_V.T @ r
+    Omega = robust_variance(evidence, s_V, r)
+    change = U / I_V
+    spread = np.diag(1 / I_V) @ Omega @ np.diag(1 / I_V)
+    estimate = V @ change * delta
+    se = np.sqrt(np.maximum(np.diag(V @ spread @ V.T), 0)) * delta
+    T = float(U @ np.linalg.pinv(Omega, hermitian=True) @ U)
+    p = chance_beyond(T, int(seen.sum()))
+    if len(delta) == 1 and one_sided[0]:
+        p = p / 2 if estimate[0] > 0 else 1 - p / 2
+    noncentral = 1 / np.diag(spread).mean()
+    seen_at_delta = power(min(noncentral, 1e6), int(seen.sum()), LEVEL)
+    drop = float(U @ change)
+    if one_sided.all() and (estimate <= 0).all():
+        drop = 0.0  # the data ask for the unlawful sign
+    direction = s_V @ change
+    length = np.linalg.norm(direction)
+    visible = largest_fall(evidence, r, r - direction)
+    return Score(effect, tuple(names), estimate, se, p, drop, seen_at_delta, visible, hidden,
+                 direction / length if length > 0 else direction)  # fmt: skip
