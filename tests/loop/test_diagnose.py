@@ -13,7 +13,7 @@ from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
-from wheelchair_fmu.loop.diagnose import Search, begin
+from wheelchair_fmu.loop.diagnose import Round, Search, begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.statistics import sandwich
 from wheelchair_fmu.loop.verdict import Diagnosis, diagnose
@@ -133,3 +133,20 @@ def test_effects_that_explain_anything_only_together_are_found_together(tmp_path
     assert set(found.effects) <= set(steps) and tuple(steps) == found.included
     rows = {row["effect"]: row["verdict"] for row in as_json(found)["ranking"]}
     assert rows["caster_inertia"] == "missing" and all(rows[e] == "small" for e in set(steps) - set(found.effects))
+
+
+def test_what_a_later_effect_makes_needless_is_left_out(sample, sampled, monkeypatch):
+    """Camber put in first, for a wheel that drags: once the drag is in too, nothing asks for camber."""
+    likeliest = Round.winner.fget
+    doubles = ("camber_misalignment",)
+
+    def misled(r: Round):
+        return likeliest(r) if r.effects else next(c for c in r.candidates if c.effect in doubles)
+
+    monkeypatch.setattr(Round, "winner", property(misled))
+    found = diagnose(sample)
+
+    assert [r.effects for r in found.rounds] == [(), doubles, ("rolling_resistance_asymmetry",)]
+    assert found.effects == sampled.effects == ("rolling_resistance_asymmetry",) and found.verdict == "missing"
+    for step, other in zip(found.ladder, sampled.ladder, strict=True):
+        assert step.name == other.name and step.heldout == pytest.approx(other.heldout, rel=0.002)

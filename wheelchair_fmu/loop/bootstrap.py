@@ -49,7 +49,7 @@ def bootstrap(d: Diagnosis, resamples: int = 1000, seed: int = 0) -> Bootstrap:
     """Resample a diagnosis; the same `seed` draws the same blocks."""
     rng = np.random.default_rng(seed)
     final = d.proposal.fit if d.proposal else d.final
-    rounds = tuple(_stability(r, rng, resamples) for r in d.rounds if r.winner)
+    rounds = tuple(_stability(r, rng, resamples) for r in d.rounds if r.winner and r.winner.effect in d.included)
     return Bootstrap(resamples, rounds, _estimates(final, rng, resamples))
 
 

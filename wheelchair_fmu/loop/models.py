@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from .evidence import Bench, Evidence
 from .fit import Fit, fit, start_value
 from .noise import QUIETER, colour_of
-from .statistics import decisive
+from .statistics import TIED, decisive, estimates
 from .workshop import Workshop
+
+PLAINLY = 10.0  # times what would be decisive
 
 
 class Models:
@@ -65,14 +67,21 @@ class Models:
         self.workshop.remember(bench)
         return again, held
 
-    def pruned(self, effects: tuple[str, ...], found: Fit) -> tuple[tuple[str, ...], Fit]:
-        """Backward: leave out every effect but the last that the others have made needless."""
+    def pruned(self, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
+        """Backward: leave out every effect but the last, and those to `keep`, that the others have made needless."""
         for effect in effects[:-1]:
+            if effect in keep or self._plainly_needed(found, effect):
+                continue
             fewer = tuple(e for e in effects if e != effect)
             without = self.refit(fewer, found.values)
             if without.misfit - found.misfit < decisive(found.evidence) * float(np.mean(found.evidence.r**2)):
-                return self.pruned(fewer, without)
+                return self.pruned(fewer, without, keep)
         return effects, found
+
+    def _plainly_needed(self, found: Fit, effect: str) -> bool:
+        """Is an effect's estimate, by its standard errors, so far from zero that nobody needs to try without?"""
+        value, covariance = estimates(found, self.workshop.parameters(effect))
+        return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value) > PLAINLY * TIED
 
     def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them."""

@@ -39,8 +39,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     candidates: dict[str, tuple[Candidate, Round]] = {}
     for r in d.rounds:
         for c in r.candidates:
-            found_here = d.included[len(r.effects) : len(r.effects) + 1]
-            if c.effect not in candidates or c.effect in found_here:
+            if c.effect not in candidates or c.effect in d.included:
                 candidates[c.effect] = (c, r)
     order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
                                           else scores[e].drop)))  # fmt: skip

@@ -34,7 +34,9 @@ def tied(r: Round) -> tuple[str, ...]:
 def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
     """What a round tied, less those that fall behind in the place of its effect once all that was found later is in too."""
     group = tied(r)
-    if len(group) < 2 or len(effects) <= len(r.effects) + 1:
+    if not group or group[0] not in effects:  # or needed no more
+        return ()
+    if len(group) < 2 or set(effects) == {*r.effects, group[0]}:
         return group
     candidates, margin = {c.effect: c.fit.values for c in r.candidates}, decisive(final.evidence)
 

@@ -117,6 +117,12 @@ def diagnose(
         effects = (*rounds[-1].effects, best.effect)
         base, held, ladder = _by_its_noise(search, effects, *search.settled(effects, best.fit), ladder)
         climb(best.effect)
+        needed, fewer = search.pruned(effects, base, already)
+        if needed != effects:
+            progress("starting again without what is needed no more")
+            effects = needed
+            base, held, ladder = _anew(search, effects, fewer)
+            climb(effects[-1])
     leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
@@ -148,6 +154,11 @@ def _by_its_noise(search: Search, effects: Sequence[str], found: Fit, held: Evid
     if not search.recolour(found.evidence, again=True):
         return found, held, ladder
     search.say("calibrating with the noise that is left")
+    return _anew(search, effects, found)
+
+
+def _anew(search: Search, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence, list[Step]]:
+    """The model with these effects, fitted about so, and the staircase up to the last, from its first step."""
     base, held, ladder = first_steps(search)
     for i in range(1, len(effects)):
         base, held = search.with_given(effects[:i], replace(found, values={**found.values, **base.values}))
