@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SimulationError
+from ..quantities import Parameter
 from .chance import chance_beyond
 from .evidence import Bench, Evidence
 from .fit import Fit
@@ -22,13 +23,19 @@ SIGNIFICANT = 0.05
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
 PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long as they do not contradict
 SHORTLIST = 5
-HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted
+HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted,
+BEYOND = 10.0  # unless slopes say little of it, and it may do so many times what they say
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 MOST_EFFECTS = 4
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
-STARTS = 2  # of these, for an effect whose slope at zero says little
+STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
+DIRECTIONS = 4  # pairs of signs, and of these
+ENDED = 3  # refits go on to their end
+HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises: of directions that promise less no refit
+# starts, and if no size at all promises so much, refits start from
+GRID = (1.0, 2.0, 4.0)  # of δ as well
 
 
 @dataclass(frozen=True)
@@ -111,10 +118,11 @@ class Search(Screen):
         w, effect = self.workshop, s.score.effect
         bench = w.bench((*effects, effect))
         base, base_held = self.rival_of(effect, effects, base, base_held)
+        rival = min(rival, base.misfit)  # which it has as a special case
         starts = self._starts(bench, base, s, least, visible)
         if starts:
             self.say(f"refitting {effect}")
-        begun = []
+        begun, ended = [], []
         for start, here in starts:
             try:
                 begun.append(self.refit((*effects, effect), start, here, rival=rival, most=1))
@@ -122,10 +130,17 @@ class Search(Screen):
                 continue
         if not begun:
             return None
-        ahead = min(begun, key=lambda f: f.misfit)
-        found = self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival)
-        held = bench.evidence(w.campaign.holdout, found.values) if w.campaign.holdout else None
+        for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(w.parameters(effect)) > 1 else 1]:
+            if all(self._signs(ahead, effect) != self._signs(other, effect) for other in ended):
+                ended.append(self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival))
+                rival = min(rival, ended[-1].misfit)
+        found = min(ended, key=lambda f: f.misfit)
+        found = replace(found, evidence=bench.restarted(found.evidence, found.values))
+        held = bench.restarted(bench.evidence(w.campaign.holdout, found.values), found.values) if w.campaign.holdout else None
         return self.judge(base, base_held, found, held, effect, w.parameters(effect), tests)
+
+    def _signs(self, found: Fit, effect: str) -> tuple[float, ...]:
+        return _signs([found.values[n] for n in self.workshop.parameters(effect)])
 
     def _starts(self, bench: Bench, base: Fit, s: Screened, least: float,
                 visible: float) -> list[tuple[dict[str, float], Evidence | None]]:  # fmt: skip
@@ -136,27 +151,34 @@ class Search(Screen):
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         straightened = self.straightened(bench, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
-        linear, off = self.linear(s.score.effect), [base.values.get(n, 0.0) for n in names]
-        if linear and s.score.drop < least:
+        linear, off = s.linear, [base.values.get(n, 0.0) for n in names]
+        if s.score.drop < (least if linear else least / BEYOND):
             return []
         if linear and len(calibrations) == 1:
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
             if known and not self._shows(bench, known, names, s, outlook(bench, known, names, off), visible):
                 return []
             return [(dict(zip(names, off, strict=True)), known)]
-        delta = np.array([r.smallest_interesting for r in records])
-        lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
-        expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
-        alone = [*np.diag(delta)] if len(delta) > 1 else []  # one parameter of several
-        sizes = [expected, *(f * d for d in (delta, *alone) for f in SIZES if f > 0 or (lower < 0).all())]
-        tries = [np.concatenate([c, np.clip(size, lower, upper)]) for c in calibrations for size in sizes]
+        tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
         known = s.evidence.only(base.names)
-        best = most_promising(bench, known, names, tries, 1 if linear else STARTS, s.score.signature)
+        many = len(records) > 1 and not linear
+        wanted = 1 if linear else DIRECTIONS if many else STARTS
+        best = most_promising(bench, known, names, tries, wanted, s.score.signature, _signs if many else None)
+        without = outlook(bench, known, names, off).misfit
         record, most = self.workshop.catalogue[s.score.effect], np.inf
         if not (linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
-            most = outlook(bench, known, names, off).misfit - least
-        best = [o for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
-        return [(dict(zip(names, o.theta, strict=True)), None) for o in best]
+            most = without - least
+        if many and best:
+            most = min(most, without - HALFWAY * (without - best[0].misfit))
+        thetas = [o.theta for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
+        as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
+        if not linear and s.negligible and as_expected:
+            thetas, large = [], visible == 0
+        else:
+            large = bool(thetas) and not as_expected
+        if large and record.rows and s.surprising:  # the error may fall only close to the truth
+            thetas += [(*off[: len(base.names)], *(f * s.delta)) for f in GRID]
+        return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
 
     @staticmethod
     def _shows(bench: Bench, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
@@ -205,7 +227,7 @@ class Search(Screen):
         there are. `rival` is the misfit of another model to be compared with."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
-        for s in shortlist([s for s in screened if not self.linear(s.score.effect) or s.shows(visible)], most, twin):
+        for s in shortlist([s for s in screened if not s.linear or s.shows(visible)], most, twin):
             leader = min((c.fit.misfit for c in candidates), default=math.inf)
             hope = max(least, HOPELESS * (base.misfit - leader))
             c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), hope, visible)
@@ -213,6 +235,22 @@ class Search(Screen):
                 candidates.append(c)
         candidates.sort(key=lambda c: -c.drop)
         return Round(effects, base, base_held, tuple(s.score for s in screened), tuple(candidates))
+
+
+def _signs(sizes: Sequence[float]) -> tuple[float, ...]:
+    return tuple(np.sign(sizes))
+
+
+def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
+    """Sizes (k,) of an effect's parameters from which a refit may start: the expected change, and multiples of δ of all of
+    them, of one against the others, and of one alone, with both signs where that is lawful."""
+    lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
+    expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
+    several, both = len(records) > 1, bool((lower < 0).all())
+    alone = [*np.diag(s.delta)] if several else []
+    against = [s.delta - 2 * one for one in alone] if both else []
+    multiples = (f * d for d in (s.delta, *alone, *against) for f in SIZES if f > 0 or both)
+    return [np.clip(size, lower, upper) for size in (expected, *multiples)]
 
 
 def _small(along: np.ndarray, variance: np.ndarray) -> bool:

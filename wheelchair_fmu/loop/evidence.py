@@ -212,14 +212,32 @@ class Bench:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
 
         def one(e: RunEvidence) -> RunEvidence:
-            given, w = self._given(e.run, values, e.start)
-            results = self.sensitivities.simulator.run(e.run.time, w, given, tolerance=TOLERANCE).results
-            predicted = results[:, [self.sensitivities.rows[i] for i in self._which(e.run)]]
+            results, predicted = self._simulated(e.run, values, e.start)
             measured = self._measured(e.run, values)
             r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
             return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
         return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
+
+    def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
+        """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
+        for a start that is off; errors, of a simulation that knows no reading, do not."""
+
+        def one(e: RunEvidence) -> RunEvidence:
+            start = self._better_start(e)
+            try:
+                results, predicted = self._simulated(e.run, values, start)
+            except SimulationError:
+                return e  # where it cannot start there, it is judged from where it can
+            return replace(e, start=start, results=results, predicted=predicted)
+
+        return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
+
+    def _simulated(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives."""
+        given, w = self._given(run, values, start)
+        results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
+        return results, results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         e = self._one(run, values, by)

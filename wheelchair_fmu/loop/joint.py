@@ -108,7 +108,8 @@ def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], s
     for s in stages:
         more = (*effects, s.effect)
         before, after = (search.heldout(w.bench(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
-        judged = search.judge(s.without, before, s.fit, after, s.effect, w.parameters(s.effect), len(scores))
+        found = replace(s.fit, evidence=w.bench(more).restarted(s.fit.evidence, s.fit.values))
+        judged = search.judge(s.without, before, found, after, s.effect, w.parameters(s.effect), len(scores))
         judged = replace(judged, small=search.small(stages[-1].fit, s.effect))
         rounds.append(Round(effects, s.without, before, tuple(scores), (judged,)))
         effects = more

@@ -9,7 +9,7 @@ import numpy as np
 
 from .diagnose import Candidate, Round
 from .score import Score
-from .statistics import cosines, finite
+from .statistics import cosines, estimates, finite
 from .verdict import ENOUGH_POWER, Diagnosis
 
 RIVALS = 4  # that are listed of an effect, if their
@@ -49,7 +49,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
 
 def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
     records = d.search.records
-    estimate, se = (c.estimate, c.se) if c else (s.estimate, s.se)
+    estimate, se = _estimate(d, s, c)
     parameters = {
         name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
                                   "smallest_interesting": records[name].smallest_interesting,
@@ -69,6 +69,14 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "rivals": rivals,
         "verdict": _row_verdict(d, s, c),
     }
+
+
+def _estimate(d: Diagnosis, s: Score, c: Candidate | None) -> tuple[np.ndarray, np.ndarray]:
+    """Of an effect's parameters, with standard errors: in the last model where it is in that, else in its own."""
+    if s.effect in d.included:
+        value, covariance = estimates(d.proposal.fit if d.proposal else d.final, s.names)
+        return value, np.sqrt(np.maximum(np.diag(covariance), 0))
+    return (c.estimate, c.se) if c else (s.estimate, s.se)
 
 
 def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:

@@ -14,6 +14,9 @@ from .models import Models
 from .score import Score, projector, score
 from .statistics import cosines
 
+CURVED = 2  # effects that slopes say little of, beside the best
+HINT = 30.0  # expected fall, above which these are not judged by their expected size, where the mean square innovation is above
+ROOM = 1.01
 NEGLIGIBLE = 0.3  # of δ
 FAINTLY = 0.1  # of the fall that is asked for, as slopes have it
 LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
@@ -31,6 +34,7 @@ class Screened:
     score: Score
     evidence: Evidence
     delta: np.ndarray
+    linear: bool
     straight: bool = False
 
     @property
@@ -43,6 +47,11 @@ class Screened:
     def far(self) -> bool:
         """Is so much left, and hoped for, that an effect may do more than slopes say?"""
         return float(np.mean(self.evidence.r**2)) > FAR and self.score.drop > LITTLE
+
+    @property
+    def surprising(self) -> bool:
+        """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
+        return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
 
     def shows(self, visible: float) -> bool:
         """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
@@ -108,7 +117,7 @@ class Screen(Models):
     def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
         """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
         best = max(scores, key=lambda s: s.drop)
-        return Screened(replace(best, p=scores[0].p), here, self.deltas(best.names))
+        return Screened(replace(best, p=scores[0].p), here, self.deltas(best.names), self.linear(best.effect))
 
     def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
         """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
@@ -162,8 +171,12 @@ class Screen(Models):
 
 
 def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
-    """The best by expected drop, and whatever looks like the leader; not what is surely far too small to matter."""
-    promising = [s for s in screened if s.score.drop > PROMISING and not s.negligible]
-    first, rest = promising[:most], promising[most:]
+    """The best by expected drop, some more of those whose slopes say little, and whatever looks like the leader; not what is
+    surely far too small to matter."""
+    promising = [s for s in screened if s.score.drop > PROMISING and (s.surprising or not s.negligible)]
+    curved = [s for s in promising[most:] if s.surprising][:CURVED]
+    first = [*promising[:most], *curved]
+    taken = {s.score.effect for s in first}
+    rest = [s for s in promising if s.score.effect not in taken]
     near = cosines([s.score for s in first[:1]], [s.score for s in rest])[0] if rest else ()
     return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > twin)]

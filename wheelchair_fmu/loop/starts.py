@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ class Outlook:
 def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable[float]) -> Outlook:
     """The step goes by those of `names`, the first, that `known` has slopes by; the misfit is infinite where the model cannot
     run."""
-    at = tuple(theta)
+    at = tuple(map(float, theta))
     try:
         r = bench.again(known, dict(zip(names, at, strict=True))).r
     except SimulationError:
@@ -41,26 +42,50 @@ def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable
 
 
 def most_promising(bench: Bench, known: Evidence, names: Sequence[str], tries: Iterable[Sequence[float]], wanted: int,
-                   weight: np.ndarray) -> list[Outlook]:  # fmt: skip
-    """The best of `tries`, best first. Where there are many, all are tried on the few runs only in which `weight` (N,), which
-    says where to look, has most of its length."""
+                   weight: np.ndarray,
+                   kind: Callable[[tuple[float, ...]], object] | None = None) -> list[Outlook]:  # fmt: skip
+    """The best of `tries`, best first; with a `kind`, or of where a step from them leads, but no two that have values of one
+    kind beyond those that slopes are known by. Where there are many, all are tried on the few runs only in which `weight`
+    (N,), which says where to look, has most of its length."""
     thetas = sorted({tuple(map(float, theta)) for theta in tries})
     shares = [float(weight[part] @ weight[part]) for _, _, part in known.parts()]
     if len(thetas) > LOOKED_AT * wanted and len(shares) > GLANCED:
         telling = sorted(np.argsort(shares, kind="stable")[-GLANCED:])
         few = Evidence(tuple(known.runs[i] for i in telling), known.by)
-        thetas = [o.theta for o in _ranked(bench, few, names, thetas)[: LOOKED_AT * wanted]]
-    return _ranked(bench, known, names, thetas)[:wanted]
+        glanced = _ranked(bench, few, names, thetas)
+        of_each = _of_each(glanced, lambda o: kind(o.theta[len(known.by) :]), LOOKED_AT) if kind else glanced
+        thetas = [o.theta for o in of_each[: LOOKED_AT * wanted]]
+    near = _ranked(bench, known, names, thetas)[: LOOKED_AT * wanted]
+    if kind is None:
+        return near[:wanted]
+    further = _ranked(bench, known, names, (o.reached for o in near if np.isfinite(o.misfit)))
+    return _of_each(sorted([*near, *further], key=_misfit), lambda o: kind(o.theta[len(known.by) :]), 1)[:wanted]
+
+
+def _of_each(ranked: Iterable[Outlook], kind: Callable[[Outlook], object], most: int) -> list[Outlook]:
+    """The first so many of each kind."""
+    seen: Counter[object] = Counter()
+    found = []
+    for o in ranked:
+        seen[kind(o)] += 1
+        if seen[kind(o)] <= most:
+            found.append(o)
+    return found
 
 
 def visible_fall(bench: Bench, known: Evidence, names: Sequence[str], to: Outlook) -> float:
     """Of a channel's whitened RMS in the run where it falls most, by that step; infinite where nobody can say."""
+    values = dict(zip(names, to.reached, strict=True))
     try:
-        after = bench.again(known, dict(zip(names, to.reached, strict=True))).table()
+        after = bench.restarted(bench.again(known, values), values).table()
     except SimulationError:
         return float("inf")
     return max(rms - after[run][channel] for run, row in known.table().items() for channel, rms in row.items())
 
 
 def _ranked(bench: Bench, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
-    return sorted((outlook(bench, known, names, theta) for theta in thetas), key=lambda o: (o.misfit, o.theta))
+    return sorted((outlook(bench, known, names, theta) for theta in thetas), key=_misfit)
+
+
+def _misfit(o: Outlook) -> tuple[float, tuple[float, ...]]:
+    return o.misfit, o.theta

@@ -20,7 +20,7 @@ from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import together
-from .statistics import decisive, estimates
+from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
 
@@ -31,7 +31,9 @@ PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
-UNEXPLAINED = 1.5  # whitened RMS error, fitted and held out, that no adequate model leaves
+UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
+MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
+LASTING = 3.0  # that is no noise where so many samples are alike
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,7 @@ def diagnose(
     ties = tuple(group for group in groups if len(group) > 1)
     every = effects
     effects = tuple(e for e in effects if e not in already and e not in helping)
-    verdict = _verdict(effects, ties, rounds, proposal, ladder[-1])
+    verdict = _verdict(effects, ties, rounds, proposal, ladder[-1], base.evidence)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, ties, rounds, experiments)
@@ -219,7 +221,8 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
     """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
     wider = Search(search.workshop.widened(generic), search.say)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
-    every, found = wider.pruned((*beside, proposal.effect), proposal.fit)
+    whole = (*beside, proposal.effect)
+    every, found = wider.pruned(whole, wider.refit(whole, proposal.fit.values))
     found, held = wider.settled(every, found)
     estimate, covariance = estimates(found, wider.workshop.parameters(proposal.effect))
     kept = every[:-1]
@@ -230,15 +233,23 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
 
 
 def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,
-             last: Step) -> str:  # fmt: skip
+             last: Step, left: Evidence) -> str:  # fmt: skip
     if proposal is not None or last.left > UNEXPLAINED:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
+    if _structured(left):
+        return "outside"
     if _small(rounds, "small"):
         return "small"
     powers = [s.power for s in rounds[0].scores]
     return "adequate" if np.mean([p >= ENOUGH_POWER for p in powers] or [0]) >= WHOLE_LIBRARY else "cannot_see"
+
+
+def _structured(left: Evidence) -> bool:
+    """Is there more left than noise accounts for, over all or in one channel of one run, and alike from sample to sample?"""
+    worst = max((rms for row in left.table().values() for rms in row.values()), default=0.0)
+    return correlation_time(left) > LASTING and (left.rms > MORE_THAN_NOISE or worst > FAR_OFF)
 
 
 def _small(rounds: Sequence[Round], verdict: str) -> tuple[str, ...]:
