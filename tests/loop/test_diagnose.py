@@ -16,7 +16,7 @@ from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.diagnose import Round, Search, begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.statistics import sandwich
-from wheelchair_fmu.loop.verdict import Diagnosis, diagnose
+from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.generic import library, terms
 from wheelchair_fmu.model.variant import Variant
@@ -49,6 +49,36 @@ def test_its_json_has_the_keys_that_are_fixed(sampled):
     parameter = content["ranking"][0]["parameters"]["D"]
     assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting", "interval"} and parameter["unit"] == "N"
     assert {r["effect"] for r in content["ranking"]} >= {"toe_misalignment", "floor_cross_slope", "camber_misalignment"}
+
+
+def test_the_ranking_tells_the_last_model(sampled):
+    row = as_json(sampled)["ranking"][0]
+    assert row["parameters"]["D"]["estimate"] == sampled.final.values[DRAG]
+    assert row["heldout_after"] == pytest.approx(sampled.ladder[-1].heldout, abs=0.005)
+
+
+def test_lasting_structure_is_no_noise(sampled):
+    """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
+    before = Workshop(sampled.search.workshop.campaign, Variant()).bench()
+    calibrated = before.evidence(sampled.search.workshop.campaign.fit, sampled.rounds[0].fit.values)
+    assert _structured(calibrated) and not _structured(sampled.final.evidence)
+
+
+def test_an_effect_is_judged_from_its_own_starts(tmp_path):
+    """Both wheels larger than they are said to be: every speed is off by as much, those at the start of each run too."""
+    campaign = read(make(tmp_path / "campaign", {"wheel_radius_error": {"r": 0.03, "l": 0.03}}, seed=2))
+    found = diagnose(campaign)
+    assert found.effects == ("wheel_radius_error",)
+    (judged,) = (c for c in found.rounds[0].candidates if c.effect == "wheel_radius_error")
+    assert judged.heldout.rms == pytest.approx(found.ladder[-1].heldout, abs=0.01) and judged.heldout.rms < 1.05
+    assert found.final.values["effect.wheel_radius_error.r"] == pytest.approx(0.03, abs=0.004)
+
+
+def test_toe_of_opposite_signs_is_found(tmp_path):
+    campaign = read(make(tmp_path / "campaign", {"toe_misalignment": {"tau_r": -0.015, "tau_l": 0.012}}, seed=2))
+    found = diagnose(campaign)
+    assert "toe_misalignment" in found.effects and found.ladder[-1].left < 1.05
+    assert found.final.values["effect.toe_misalignment.tau_r"] < 0 < found.final.values["effect.toe_misalignment.tau_l"]
 
 
 def test_look_alikes_are_tied_where_nothing_tells_them_apart():

@@ -147,38 +147,42 @@ class Search(Screen):
         """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
         in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
         change, both signs of δ, and larger ones."""
+        if s.score.drop < (least if s.linear else least / BEYOND):
+            return []
         names = [*base.names, *self.workshop.parameters(s.score.effect)]
-        records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         straightened = self.straightened(bench, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
-        linear, off = s.linear, [base.values.get(n, 0.0) for n in names]
-        if s.score.drop < (least if linear else least / BEYOND):
-            return []
-        if linear and len(calibrations) == 1:
+        if s.linear and len(calibrations) == 1:
+            off = [base.values.get(n, 0.0) for n in names]
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
             if known and not self._shows(bench, known, names, s, outlook(bench, known, names, off), visible):
                 return []
             return [(dict(zip(names, off, strict=True)), known)]
+        thetas = self._sizes(bench, base, names, calibrations, s, least, visible)
+        return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
+
+    def _sizes(self, bench: Bench, base: Fit, names: Sequence[str], calibrations: Sequence[Sequence[float]], s: Screened,
+               least: float, visible: float) -> list[tuple[float, ...]]:  # fmt: skip
+        """The most promising calibrations and sizes of an effect together, by `names`."""
+        records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
+        record, known, calibrated = self.workshop.catalogue[s.score.effect], s.evidence.only(base.names), len(base.names)
         tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
-        known = s.evidence.only(base.names)
-        many = len(records) > 1 and not linear
-        wanted = 1 if linear else DIRECTIONS if many else STARTS
+        many = len(records) > 1 and not s.linear
+        wanted = 1 if s.linear else DIRECTIONS if many else STARTS
         best = most_promising(bench, known, names, tries, wanted, s.score.signature, _signs if many else None)
-        without = outlook(bench, known, names, off).misfit
-        record, most = self.workshop.catalogue[s.score.effect], np.inf
-        if not (linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
+        off = [base.values.get(n, 0.0) for n in names]
+        without, most = outlook(bench, known, names, off).misfit, np.inf
+        if not (s.linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:
             most = min(most, without - HALFWAY * (without - best[0].misfit))
-        thetas = [o.theta for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
+        found = [o.theta for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
         as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
-        if not linear and s.negligible and as_expected:
-            thetas, large = [], visible == 0
-        else:
-            large = bool(thetas) and not as_expected
-        if large and record.rows and s.surprising:  # the error may fall only close to the truth
-            thetas += [(*off[: len(base.names)], *(f * s.delta)) for f in GRID]
-        return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
+        negligible = not s.linear and s.negligible and as_expected
+        if record.rows and s.surprising and (visible == 0 if negligible else found and not as_expected):
+            # the error may fall only close to the truth
+            return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
+        return [] if negligible else found
 
     @staticmethod
     def _shows(bench: Bench, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
