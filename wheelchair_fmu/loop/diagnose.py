@@ -155,8 +155,10 @@ class Search(Screen):
         if s.linear and len(calibrations) == 1:
             off = [base.values.get(n, 0.0) for n in names]
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
-            if known and not self._shows(bench, known, names, s, outlook(bench, known, names, off), visible):
-                return []
+            if known and not s.anyway(visible):
+                step = outlook(bench, known, names, off)
+                if not self._shows(bench, known, names, s, step, visible):
+                    return []
             return [(dict(zip(names, off, strict=True)), known)]
         thetas = self._sizes(bench, base, names, calibrations, s, least, visible)
         return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
@@ -170,15 +172,17 @@ class Search(Screen):
         many = len(records) > 1 and not s.linear
         wanted = 1 if s.linear else DIRECTIONS if many else STARTS
         best = most_promising(bench, known, names, tries, wanted, s.score.signature, _signs if many else None)
+        if s.linear:
+            return [o.theta for o in best if self._shows(bench, known, names, s, o, visible)]
         off = [base.values.get(n, 0.0) for n in names]
         without, most = outlook(bench, known, names, off).misfit, np.inf
-        if not (s.linear or record.needs or record.rows):  # with another law or more states runs may go another way altogether
+        if not (record.needs or record.rows):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:
             most = min(most, without - HALFWAY * (without - best[0].misfit))
         found = [o.theta for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
         as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
-        negligible = not s.linear and s.negligible and as_expected
+        negligible = s.negligible and as_expected
         if record.rows and s.surprising and (visible == 0 if negligible else found and not as_expected):
             # the error may fall only close to the truth
             return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
@@ -187,7 +191,7 @@ class Search(Screen):
     @staticmethod
     def _shows(bench: Bench, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
         """Does an effect lower some channel's RMS in some run by about so much, by a step that was simulated?"""
-        return visible == 0 or s.far or visible_fall(bench, known, names, to) > NEARLY_ENOUGH * visible
+        return s.anyway(visible) or visible_fall(bench, known, names, to) > NEARLY_ENOUGH * visible
 
     def judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
               names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
@@ -201,7 +205,6 @@ class Search(Screen):
                 chance_beyond(drop / correlation_time(found.evidence), len(spread)))  # fmt: skip
         if len(names) == 1 and one_sided[0]:
             p /= 2
-        before, after = base.evidence.table(), found.evidence.table()
         return Candidate(
             effect=effect,
             fit=replace(found, evidence=found.evidence.brief()),
@@ -210,7 +213,7 @@ class Search(Screen):
             se=np.sqrt(np.maximum(np.diag(covariance), 0)),
             p=min(1.0, tests * p),
             falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
-            visible=max(before[run][c] - after[run][c] for run in before for c in before[run]),
+            visible=base.evidence.fall_to(found.evidence),
             gain=held_out_gain(base_held, held) if held is not None else None,
             heldout=held.brief() if held is not None else None,
             small=_small(along, spread),

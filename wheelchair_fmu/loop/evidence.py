@@ -158,6 +158,11 @@ class Evidence:
         """Whitened RMS by run and channel."""
         return {e.run.name: e.rms for e in self.runs}
 
+    def fall_to(self, after: Evidence) -> float:
+        """Of a channel's whitened RMS, in the run where it falls most."""
+        there = after.table()
+        return max(rms - there[run][channel] for run, row in self.table().items() for channel, rms in row.items())
+
     def brief(self) -> Evidence:
         """See `RunEvidence.brief`."""
         return Evidence(tuple(e.brief() for e in self.runs), ())

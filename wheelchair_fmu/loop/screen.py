@@ -53,6 +53,10 @@ class Screened:
         """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
         return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
 
+    def anyway(self, visible: float) -> bool:
+        """Is it refitted whatever one simulated step shows?"""
+        return visible == 0 or self.far
+
     def shows(self, visible: float) -> bool:
         """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
         return self.far or self.score.visible > FAINTLY * visible

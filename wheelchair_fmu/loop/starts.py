@@ -77,10 +77,9 @@ def visible_fall(bench: Bench, known: Evidence, names: Sequence[str], to: Outloo
     """Of a channel's whitened RMS in the run where it falls most, by that step; infinite where nobody can say."""
     values = dict(zip(names, to.reached, strict=True))
     try:
-        after = bench.restarted(bench.again(known, values), values).table()
+        return known.fall_to(bench.restarted(bench.again(known, values), values))
     except SimulationError:
         return float("inf")
-    return max(rms - after[run][channel] for run, row in known.table().items() for channel, rms in row.items())
 
 
 def _ranked(bench: Bench, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:

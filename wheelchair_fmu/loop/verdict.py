@@ -222,8 +222,10 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
     wider = Search(search.workshop.widened(generic), search.say)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
     whole = (*beside, proposal.effect)
-    every, found = wider.pruned(whole, wider.refit(whole, proposal.fit.values))
-    found, held = wider.settled(every, found)
+    found, held = wider.settled(whole, proposal.fit)
+    every, fewer = wider.pruned(whole, found)
+    if every != whole:
+        found, held = wider.settled(every, fewer)
     estimate, covariance = estimates(found, wider.workshop.parameters(proposal.effect))
     kept = every[:-1]
     steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
