@@ -180,3 +180,23 @@ def test_what_a_later_effect_makes_needless_is_left_out(sample, sampled, monkeyp
     assert found.effects == sampled.effects == ("rolling_resistance_asymmetry",) and found.verdict == "missing"
     for step, other in zip(found.ladder, sampled.ladder, strict=True):
         assert step.name == other.name and step.heldout == pytest.approx(other.heldout, rel=0.002)
+
+
+def test_what_is_small_may_help_and_is_not_named(tmp_path):
+    """A wheel that drags, and a radius that is wrong by less than anybody cares for, which the recordings show all the same."""
+    hidden = {"rolling_resistance_asymmetry": {"D": 1.6}, "wheel_radius_error": usual("wheel_radius_error", 0.7)}
+    found = diagnose(read(make(tmp_path / "campaign", hidden, seed=5)))
+    assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)
+    assert found.included == ("rolling_resistance_asymmetry", "wheel_radius_error")
+    assert found.ladder[-2].left > 1.15 > 1.02 > found.ladder[-1].left
+    rows = {row["effect"]: row["verdict"] for row in as_json(found)["ranking"]}
+    assert rows["rolling_resistance_asymmetry"] == "missing" and rows["wheel_radius_error"] == "small"
+
+
+def test_a_tie_beside_other_effects_is_broken_with_these_in(tmp_path):
+    hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 1.2), "rolling_resistance_asymmetry": {"D": 1.6}}
+    campaign = read(make(tmp_path / "campaign", hidden, manoeuvres="straight", noise_scale=4.0, seed=7))
+    chair = Variant().with_effects(["rolling_resistance_asymmetry"])
+    found = diagnose(campaign, chair, experiments=experiments())
+    assert found.verdict == "tie" and found.already == ("rolling_resistance_asymmetry",)
+    assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}

@@ -64,6 +64,26 @@ def test_position_is_judged_by_what_each_reading_adds(short):
     np.testing.assert_allclose(pickle.loads(pickle.dumps(one)).errors(one.predicted + 0.001), one.errors(one.predicted + 0.001))
 
 
+def test_where_a_chair_comes_to_rest_slopes_foretell_nothing(short):
+    """By slopes, a speed that is off by a little there makes a deceleration of many m/s²; friction does a tenth of one."""
+    time = np.arange(0, 9, 0.01)
+    run = replace(short.fit[0], time=time, inputs={n: 0 * time for n in short.fit[0].inputs}, set={"start.u": 0.6},
+                  channels={c: 0 * time for c in ("wheel_speed_l", "wheel_speed_r", "a_x", "a_y")})  # fmt: skip
+    bench = Bench(replace(short, runs=(run,)), Variant())
+    true = bench.evidence([run], {}).runs[0].predicted
+    moving = true[:, 0] > 0.001
+    assert moving[0] and not moving[-100:].any()  # it does come to rest
+    run = replace(run, channels={c: true[:, i] for i, c in enumerate(run.channels)})
+    bench = Bench(replace(short, runs=(run,)), Variant())
+    (e,) = bench.evidence([run], {}).runs
+    silent = np.argwhere(e.whitener.kinks)
+    assert set(silent[:, 1]) == {2, 3} and np.isfinite(e.r).all() and not e.r[e.whitener.kinks].any()
+    assert np.abs(time[silent[:, 0]] - time[moving][-1]).max() < 0.08
+    earlier = bench.known(run)["resistance.f_r"] * np.linspace(1.1, 1.11, 200)  # so that it stops half a second early
+    foretold = [bench.evidence([run], {"resistance.f_r": f}).runs[0].r[:, 2:] for f in earlier]
+    assert np.abs(foretold).max() * short.noise["a_x"] < 0.4  # m/s²
+
+
 def test_a_start_that_a_run_sets_stands(short):
     """Whatever its first samples say, and however the readings pull."""
     said = {"start.x": 3.0, "start.y": -1.0, "start.psi": 0.7, "start.u": 0.4, "start.v": 0.02, "start.psi_dot": 0.1}

@@ -24,7 +24,8 @@ VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls
 PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long as they do not contradict
 SHORTLIST = 5
 HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted,
-BEYOND = 10.0  # unless slopes say little of it, and it may do so many times what they say
+BESIDE = 0.5  # unless it may hope for this part of what slopes promised of the leader,
+BEYOND = 10.0  # or they say little of it, and it may do so many times what they say
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
@@ -105,6 +106,13 @@ class Round:
         far = best.drop + decisive(best.fit.evidence)
         better = (c for c in self.candidates if c.small and c.lawful and c.drop > far)
         return None if any(better) else best
+
+    @property
+    def help(self) -> Candidate | None:
+        """The best candidate proven, however small, if slopes promised about as much: a refit may owe its fall to a better
+        calibration."""
+        promised = {s.effect: s.drop for s in self.scores}
+        return next((c for c in self.candidates if c.proven and promised[c.effect] > BESIDE * c.drop), None)
 
 
 class Search(Screen):
@@ -234,14 +242,23 @@ class Search(Screen):
         there are. `rival` is the misfit of another model to be compared with."""
         screened = self.screen(base, effects, among)
         candidates: list[Candidate] = []
+        leader, hope = math.inf, least
         for s in shortlist([s for s in screened if not s.linear or s.shows(visible)], most, twin):
-            leader = min((c.fit.misfit for c in candidates), default=math.inf)
-            hope = max(least, HOPELESS * (base.misfit - leader))
             c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), hope, visible)
-            if c is not None:
-                candidates.append(c)
+            if c is None:
+                continue
+            candidates.append(c)
+            if c.fit.misfit < leader:
+                leader = c.fit.misfit
+                hope = max(least, _hope(base.misfit - leader, s.score.drop))
         candidates.sort(key=lambda c: -c.drop)
         return Round(effects, base, base_held, tuple(s.score for s in screened), tuple(candidates))
+
+
+def _hope(fall: float, promised: float) -> float:
+    """What another effect must promise beside one that did `fall`, and `promised` so much, to be refitted."""
+    least = HOPELESS * fall
+    return min(least, BESIDE * promised) if BEYOND * promised > fall else least
 
 
 def _signs(sizes: Sequence[float]) -> tuple[float, ...]:

@@ -192,6 +192,7 @@ class Bench:
         self.offsets = {f"offset.{c}": c for c in campaign.nuisance if c in channels}
         offsets = (Parameter(name, channels[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
+        self._speeds = [[s.name for s in self.sensitivities.model.states].index(name) for name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
     def known(self, run: Run) -> dict[str, float]:
@@ -272,7 +273,7 @@ class Bench:
         to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
         spread = to_state * [sd[n] for n in START]
         offset = to_state @ [prior[n] - start[n] for n in START]
-        whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured))
+        whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured), self._speeds)
         S = self._columns(run, simulated, w, by, columns, which)
         white = whitener(np.concatenate([(measured - predicted)[:, :, None], S], axis=2), offset)
         k = len(by)

@@ -33,14 +33,15 @@ class Experiment(Protocol):
 
 
 def separate(
-    search: Search, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment]
+    search: Search, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment], beside: Sequence[str] = ()
 ) -> dict[str, Any] | None:
-    """The experiment that separates two fitted models with the fewest repeats, or None where none does.
+    """The experiment that separates two fitted models, of these effects, with the fewest repeats, or None where none does.
+    `beside` are the effects that both models have.
 
     The first model says what would be read; what the second cannot imitate, within what the campaign already says of
     its parameters, is −2 log of the odds that one run gives.
     """
-    bench = search.workshop.bench([e for e in effects if e in search.workshop.catalogue])
+    bench = search.workshop.bench([e for e in (*beside, *effects) if e in search.workshop.catalogue])
     needed = decisive(one.evidence)  # as the verdict on a tie has it
     odds = []
     for experiment in among:

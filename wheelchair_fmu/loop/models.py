@@ -13,7 +13,7 @@ from .noise import QUIETER, colour_of
 from .statistics import TIED, decisive, estimates
 from .workshop import Workshop
 
-PLAINLY = 10.0  # times what would be decisive
+PLAINLY = 100.0  # times what would be decisive
 
 
 class Models:

@@ -100,7 +100,7 @@ def diagnose(
             base, held, ladder = _by_its_noise(search, effects, *search.with_given(effects, base), ladder)
             climb(effect)
     already, tried = effects, False
-    helping: set[str] = set()  # effects that went in together with others and are too small to be missed by themselves
+    helping: set[str] = set()  # effects that went in, or are in with others, though too small to be missed by themselves
     for _ in range(MOST_EFFECTS):
         progress(f"screening {'what is left' if effects else 'the catalogue'}")
         now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
@@ -111,9 +111,12 @@ def diagnose(
             tried = True
             joined = together(search, effects, base, now.scores)
             ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
-            helping = {c.effect for r in joined for c in r.candidates if c.small}
+            helping |= {c.effect for r in joined for c in r.candidates if c.small}
             rounds[-1:] = joined or [now]
             best = joined[-1].candidates[0] if joined else None
+        if best is None and ladder[-1].left > AT_THE_FLOOR and now.help:
+            best = now.help
+            helping.add(best.effect)
         if best is None:
             break
         effects = (*rounds[-1].effects, best.effect)
@@ -129,14 +132,15 @@ def diagnose(
     if proposal is not None:
         effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
         climbed(tuple(ladder))
-    groups = (still_tied(search, r, effects, base) for r in rounds) if proposal is None else ()
-    ties = tuple(group for group in groups if len(group) > 1)
+    groups = [(still_tied(search, r, effects, base), r) for r in rounds] if proposal is None else []
+    groups = [(group, r) for group, r in groups if len(group) > 1]
+    ties = tuple(group for group, _ in groups)
     every = effects
-    effects = tuple(e for e in effects if e not in already and e not in helping)
+    effects = tuple(e for e in effects if e not in already and not (e in helping and search.small(base, e)))
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1], base.evidence)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
-    following = _next(search, verdict, ties, rounds, experiments)
+    following = _next(search, verdict, groups, rounds, experiments)
     intervals = _intervals(search, every, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
     notes = (*thinned, *search.notes, *search.noise_notes)
@@ -168,17 +172,16 @@ def _anew(search: Search, effects: Sequence[str], found: Fit) -> tuple[Fit, Evid
     return *search.settled(effects, found), ladder
 
 
-def _next(search: Search, verdict: str, ties: Sequence[Sequence[str]], rounds: Sequence[Round],
+def _next(search: Search, verdict: str, ties: Sequence[tuple[Sequence[str], Round]], rounds: Sequence[Round],
           experiments: Sequence[Experiment]) -> dict[str, Any] | None:  # fmt: skip
-    """What to measure next: to break the first tie, or to see what could not be seen."""
+    """What to measure next: to break the first tie, each with the round that tied it, or to see what could not be seen."""
     if not experiments:
         return None
     if verdict == "tie":
         search.say("looking for an experiment that breaks the tie")
-        group = ties[0]
-        found = next(r for r in rounds if any(c.effect == group[0] and c.found for c in r.candidates))
+        (group, found), *_ = ties
         fits = {c.effect: c.fit for c in found.candidates}
-        return separate(search, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments)
+        return separate(search, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments, found.effects)
     if verdict == "cannot_see":
         search.say("looking for an experiment that would show more")
         weak = [s.effect for s in rounds[0].scores if s.power < ENOUGH_POWER]
