@@ -55,7 +55,7 @@ class Screened:
 
     def anyway(self, visible: float) -> bool:
         """Is it refitted whatever one simulated step shows?"""
-        return visible == 0 or self.far
+        return visible == 0 or self.score.drop > LITTLE
 
     def shows(self, visible: float) -> bool:
         """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""

@@ -114,7 +114,7 @@ def diagnose(
             helping |= {c.effect for r in joined for c in r.candidates if c.small}
             rounds[-1:] = joined or [now]
             best = joined[-1].candidates[0] if joined else None
-        if best is None and ladder[-1].left > AT_THE_FLOOR and now.help:
+        if best is None and ladder[-1].fit > AT_THE_FLOOR and now.help:
             best = now.help
             helping.add(best.effect)
         if best is None:
