@@ -9,7 +9,7 @@ from .diagnose import Candidate, Round, Search
 from .fit import Fit
 from .statistics import decisive, difference_blocks, resampled_totals
 
-NEARLY = 0.95  # of a fall: a rival that reaches it may be tied by what is held out, and no generic term replaces it
+NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out or found later, and no generic term replaces it
 
 
 def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
@@ -32,12 +32,16 @@ def tied(r: Round) -> tuple[str, ...]:
 
 
 def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
-    """What a round tied, less those that fall behind in the place of its effect once all that was found later is in too."""
+    """What a round tied, and what came near, less those that fall behind in the place of its effect once all that was found
+    later is in too: of a model that leaves much the very best values are not known, nor which of two is ahead."""
     group = tied(r)
     if not group or group[0] not in effects:  # or needed no more
         return ()
-    if len(group) < 2 or set(effects) == {*r.effects, group[0]}:
+    if set(effects) == {*r.effects, group[0]}:
         return group
+    leader = next(c for c in r.candidates if c.effect == group[0])
+    near = (c.effect for c in r.candidates if c.lawful and c.drop >= NEARLY * leader.drop)
+    rivals = dict.fromkeys((*group, *near))
     candidates, margin = {c.effect: c.fit.values for c in r.candidates}, decisive(final.evidence)
 
     def keeps_up(rival: str) -> bool:
@@ -49,7 +53,7 @@ def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> 
             return False
         return found.misfit - final.misfit < margin
 
-    return (group[0], *(rival for rival in group[1:] if rival not in effects and keeps_up(rival)))
+    return (group[0], *(rival for rival in rivals if rival not in effects and keeps_up(rival)))
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:

@@ -208,6 +208,8 @@ def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidenc
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
     left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0)
+    if found and max(base.evidence.rms, held.rms) < AT_THE_FLOOR:
+        return left, None  # what one channel shows beside what was found is too little to call that wrong
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
     return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)
