@@ -29,7 +29,6 @@ BEYOND = 10.0  # or they say little of it, and it may do so many times what they
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
-MOST_EFFECTS = 4
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
 DIRECTIONS = 4  # pairs of signs, and of these

@@ -14,12 +14,12 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .diagnose import HOPELESS, MOST_EFFECTS, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
+from .climb import AT_THE_FLOOR, Climb
+from .diagnose import HOPELESS, Candidate, Round, Search, Step
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
-from .joint import together
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
@@ -29,8 +29,6 @@ WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they we
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
-AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
-MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 3.0  # that is no noise where so many samples are alike
@@ -84,92 +82,34 @@ def diagnose(
     variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
     campaign = windows(campaign)
-    workshop = Workshop(campaign, variant, fixed, calibrated)
-    search = Search(workshop, progress)
-    base, held, ladder = begin(search, progress)
-
-    def climb(effect: str) -> None:
-        ladder.append(Step(f"+{effect}", base.evidence.rms, held.rms))
-        climbed(tuple(ladder))
-
-    climbed(tuple(ladder))
-    rounds, effects = [], ()
-    for effect in variant.effects:
-        if workshop.parameters(effect):
-            effects = (*effects, effect)
-            base, held, ladder = _by_its_noise(search, effects, *search.with_given(effects, base), ladder)
-            climb(effect)
-    already, tried = effects, False
-    helping: set[str] = set()  # effects that went in, or are in with others, though too small to be missed by themselves
-    for _ in range(MOST_EFFECTS):
-        progress(f"screening {'what is left' if effects else 'the catalogue'}")
-        now = search.round(effects, base, held, visible=VISIBLE if rounds else 0.0)  # the first may find what is small
-        rounds.append(now)
-        best = now.winner
-        if best is None and ladder[-1].left > MUCH and not tried:
-            progress("trying effects of one law together")
-            tried = True
-            joined = together(search, effects, base, now.scores)
-            ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
-            helping |= {c.effect for r in joined for c in r.candidates if c.small}
-            rounds[-1:] = joined or [now]
-            best = joined[-1].candidates[0] if joined else None
-        if best is None and ladder[-1].fit > AT_THE_FLOOR and now.help:
-            best = now.help
-            helping.add(best.effect)
-        if best is None:
-            break
-        effects = (*rounds[-1].effects, best.effect)
-        base, held, ladder = _by_its_noise(search, effects, *search.settled(effects, best.fit), ladder)
-        climb(best.effect)
-        needed, fewer = search.pruned(effects, base, already)
-        if needed != effects:
-            progress("starting again without what is needed no more")
-            effects = needed
-            base, held, ladder = _anew(search, effects, fewer)
-            climb(effects[-1])
-    leftover, proposal = _leftover(search, effects, base, held, rounds, generic)
+    search = Search(Workshop(campaign, variant, fixed, calibrated), progress)
+    climb = Climb(search, climbed)
+    climb.to_the_top()
+    leftover, proposal = _leftover(climb, generic)
+    included, base, ladder, rounds = climb.effects, climb.base, climb.ladder, climb.rounds
     if proposal is not None:
-        effects, proposal, ladder = _settle(search, generic, effects, proposal, ladder)
+        included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
         climbed(tuple(ladder))
-    groups = [(still_tied(search, r, effects, base), r) for r in rounds] if proposal is None else []
+    groups = [(still_tied(search, r, included, base), r) for r in rounds] if proposal is None else []
     groups = [(group, r) for group, r in groups if len(group) > 1]
     ties = tuple(group for group, _ in groups)
-    every = effects
-    effects = tuple(e for e in effects if e not in already and not (e in helping and search.small(base, e)))
+    helping = {e for e in climb.helping.intersection(included) if search.small(base, e)}
+    effects = tuple(e for e in included if e not in climb.already and e not in helping)
     verdict = _verdict(effects, ties, rounds, proposal, ladder[-1], base.evidence)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, groups, rounds, experiments)
-    intervals = _intervals(search, every, effects, base) if proposal is None else {}
+    intervals = _intervals(search, included, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
     notes = (*thinned, *search.notes, *search.noise_notes)
-    return Diagnosis(campaign.name, verdict, tuple(named), already, ties, tuple(ladder), tuple(rounds), leftover, proposal,
-                     base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
+    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds), leftover,
+                     proposal, base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
     """Intervals of the parameters of the effects that were found."""
     bench, names = search.workshop.bench(included), [n for e in effects for n in search.workshop.parameters(e)]
     return {n: profile_interval(bench, found, n) for n in names if n in found.names}
-
-
-def _by_its_noise(search: Search, effects: Sequence[str], found: Fit, held: Evidence,
-                  ladder: list[Step]) -> tuple[Fit, Evidence, list[Step]]:  # fmt: skip
-    """The model with these effects and the staircase up to the last: anew if another noise shows, now that they are in."""
-    if not search.recolour(found.evidence, again=True):
-        return found, held, ladder
-    search.say("calibrating with the noise that is left")
-    return _anew(search, effects, found)
-
-
-def _anew(search: Search, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence, list[Step]]:
-    """The model with these effects, fitted about so, and the staircase up to the last, from its first step."""
-    base, held, ladder = first_steps(search)
-    for i in range(1, len(effects)):
-        base, held = search.with_given(effects[:i], replace(found, values={**found.values, **base.values}))
-        ladder.append(Step(f"+{effects[i - 1]}", base.evidence.rms, held.rms))
-    return *search.settled(effects, found), ladder
 
 
 def _next(search: Search, verdict: str, ties: Sequence[tuple[Sequence[str], Round]], rounds: Sequence[Round],
@@ -189,11 +129,11 @@ def _next(search: Search, verdict: str, ties: Sequence[tuple[Sequence[str], Roun
     return None
 
 
-def _leftover(search: Search, effects: tuple[str, ...], base: Fit, held: Evidence, rounds: Sequence[Round],
-              generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:  # fmt: skip
+def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:
     """Test the generic terms on what is left; a proposal where one is found that no effect explains."""
     if not generic:
         return None, None
+    search, effects, base, held, rounds = climb.search, climb.effects, climb.base, climb.held, climb.rounds
     search.say("looking for what no effect explains")
     wider = search.workshop.widened(generic)
     generic_search = Search(wider, search.say)

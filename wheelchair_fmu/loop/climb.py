@@ -1,0 +1,104 @@
+"""Up the staircase: effect after effect goes into the model, and what it makes needless leaves, until nothing more is found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
+from .fit import Fit
+from .joint import together
+
+MOST_EFFECTS = 4
+AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
+MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
+
+
+class Climb:
+    """A model on its way up: its `effects`, the fit `base` with all of them, the `held`-out evidence, the staircase `ladder`
+    that led there, and the `rounds` of search.
+
+    `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named.
+    `climbed` is told the staircase whenever it has changed.
+    """
+
+    def __init__(self, search: Search, climbed: Callable[[Sequence[Step]], None]):
+        self.search, self._climbed = search, climbed
+        self.effects: tuple[str, ...] = ()
+        self.rounds: list[Round] = []
+        self.helping: set[str] = set()
+        self._tried_together = False
+        self.base, self.held, self.ladder = begin(search, search.say)
+        climbed(tuple(self.ladder))
+        for effect in search.workshop.variant.effects:
+            if search.workshop.parameters(effect):
+                self.effects = (*self.effects, effect)
+                self.base, self.held = search.with_given(self.effects, self.base)
+                self._step()
+        self.already = self.effects
+
+    def to_the_top(self) -> None:
+        """Search, put in what was found, and leave out what that makes needless, as long as anything is found."""
+        for _ in range(MOST_EFFECTS):
+            best = self._found()
+            if best is None:
+                return
+            self.effects = (*self.rounds[-1].effects, best.effect)
+            self.base, self.held = self.search.settled(self.effects, best.fit)
+            self._step()
+            needed, fewer = self.search.pruned(self.effects, self.base, self.already)
+            if needed != self.effects:
+                self.search.say("starting again without what is needed no more")
+                self.effects = needed
+                self._anew(fewer)
+                self._tell()
+
+    def _found(self) -> Candidate | None:
+        """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""
+        self.search.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
+        visible = VISIBLE if self.rounds else 0.0  # the first round may find what is small
+        now = self.search.round(self.effects, self.base, self.held, visible=visible)
+        self.rounds.append(now)
+        best = now.winner
+        if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
+            best = self._together(now)
+        if best is None and self.ladder[-1].fit > AT_THE_FLOOR and now.help:
+            best = now.help
+            self.helping.add(best.effect)
+        return best
+
+    def _together(self, now: Round) -> Candidate | None:
+        """The last of several effects of one law that explain something only together; the others are steps by then."""
+        self.search.say("trying effects of one law together")
+        self._tried_together = True
+        joined = together(self.search, self.effects, self.base, now.scores)
+        if not joined:
+            return None
+        self.ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
+        self.helping |= {c.effect for r in joined for c in r.candidates if c.small}
+        self.rounds[-1:] = joined
+        return joined[-1].candidates[0]
+
+    def _step(self) -> None:
+        """A step up to the model at hand, by the noise that shows now that its last effect is in."""
+        if self.search.recolour(self.base.evidence, again=True):
+            self.search.say("calibrating with the noise that is left")
+            self._anew(self.base)
+        else:
+            self.ladder.append(self._top())
+        self._tell()
+
+    def _anew(self, found: Fit) -> None:
+        """The model with these effects, fitted about so, and its staircase, from the first step."""
+        base, _, self.ladder = first_steps(self.search)
+        for i in range(1, len(self.effects)):
+            base, held = self.search.with_given(self.effects[:i], replace(found, values={**found.values, **base.values}))
+            self.ladder.append(Step(f"+{self.effects[i - 1]}", base.evidence.rms, held.rms))
+        self.base, self.held = self.search.settled(self.effects, found)
+        self.ladder.append(self._top())
+
+    def _top(self) -> Step:
+        return Step(f"+{self.effects[-1]}", self.base.evidence.rms, self.held.rms)
+
+    def _tell(self) -> None:
+        self._climbed(tuple(self.ladder))
