@@ -28,6 +28,7 @@ BESIDE = 0.5  # unless it may hope for this part of what slopes promised of the 
 BEYOND = 10.0  # or they say little of it, and it may do so many times what they say
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
+SURELY = 0.8  # of δ, below which an effect is small
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
@@ -277,8 +278,9 @@ def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
 
 
 def _small(along: np.ndarray, variance: np.ndarray) -> bool:
-    """Are all these sizes, in δ, surely below 1?"""
-    return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < 1))
+    """Are all these sizes, in δ, surely below 1? Standard errors allow for noise; two models that mean the same by a parameter
+    differ by a fifth."""
+    return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < SURELY))
 
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
