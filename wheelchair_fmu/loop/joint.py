@@ -41,7 +41,7 @@ def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequen
     for group in kin(search):
         new = tuple(e for e in group if e not in effects)
         found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
-        if found is not None and found.misfit < base.misfit - decisive(base.evidence) and _explains(base, found):
+        if found is not None and found.misfit < base.misfit - decisive(base.evidence) and explains(base, found):
             try:
                 return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
             except SimulationError:
@@ -49,7 +49,7 @@ def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequen
     return []
 
 
-def _explains(base: Fit, found: Fit) -> bool:
+def explains(base: Fit, found: Fit) -> bool:
     """Does a model leave less than half of what was left above the noise?"""
     return found.evidence.rms - 1 < (base.evidence.rms - 1) / 2
 

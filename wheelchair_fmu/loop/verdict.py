@@ -20,6 +20,7 @@ from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
+from .joint import explains
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, still_tied
 from .workshop import CALIBRATED, Workshop
@@ -152,7 +153,8 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
         return left, None  # what one channel shows beside what was found is too little to call that wrong
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
-    return left, next((c for c in left.candidates if _clear(c) and c.drop > better), None)
+    terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
+    return left, next(terms, None)
 
 
 def _clear(c: Candidate) -> bool:
