@@ -14,18 +14,11 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from .cache import helper
 from .sensitivities import Linearised
 
 MOST = 64  # states, pushes and readings together, as in innovations.c
-AROUND = 0.05  # s, each way, of where a speed that
-REMEMBERS = 10.0  # fades at less than this rate, 1/s, and then
-FORGETS = 100.0  # at more: a chair comes to rest
-OFF = 0.02  # m/s, a speed's usual error
-STEEP = 10.0  # standard deviations of a reading, by such an error
-CHANGING = 1.1  # ratio of a reading's slopes about there, above which it tells nothing
 
 
 class _Filter(ctypes.Structure):
@@ -59,12 +52,11 @@ class Whitener:
     """The filter of one run: `run` its linearisation, `which` the places of its readings that were measured,
     `present` (n, nz) False in gaps. `logdet` is Σ log of the innovations' variances.
 
-    A reading that no slope foretells tells nothing: it is 0, and in `logdet` as if it were as expected. `speeds` are the
-    places of the states that say where that is (see `kinked`).
+    Readings about the moment a chair comes to rest, which no slope foretells (`kinks`; see wc_kinks in innovations.c), tell
+    nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
     """
 
     def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray, speeds: Sequence[int] = ()):
-        self.kinks = present & kinked(run, which, noise, speeds) if speeds else np.zeros_like(present)
         self.present, self.noise = present, noise
         n, nz = present.shape
         nx, nq = run.transition.shape[1], len(noise.pushes)
@@ -75,12 +67,21 @@ class Whitener:
                   "input_sd": noise.pushes, "input_phi": noise.push_colour, "sd": noise.readings, "phi": noise.colour,
                   "start_cov": noise.start}  # fmt: skip
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
-        self._arrays["present"] = np.ascontiguousarray(present & ~self.kinks, np.int8)
+        self._arrays["present"] = np.ascontiguousarray(present, np.int8)
         self._size = (nx, nq, nz)
+        self.kinks = np.zeros(present.shape, bool)
+        if speeds:
+            self._find_kinks(float(np.median(np.diff(run.time))), *speeds)
         self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
         self.logdet: float = _library().wc_design(ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain),
                                                   _of(self._scale))  # fmt: skip
         self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(noise.readings)))
+
+    def _find_kinks(self, dt: float, forward: int, sideways: int) -> None:
+        _library().wc_kinks(ctypes.byref(self._filter), ctypes.c_long(len(self.kinks)), ctypes.c_double(dt), forward, sideways,
+                            _of(self.kinks))  # fmt: skip
+        self.kinks &= self.present
+        self._arrays["present"][self.kinks] = 0
 
     @property
     def _filter(self) -> _Filter:
@@ -110,24 +111,6 @@ class Whitener:
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
-
-
-def kinked(run: Linearised, which: list[int], noise: Noise, speeds: Sequence[int]) -> np.ndarray:
-    """(n, nz) readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes make of
-    that a deceleration of many times what friction can do. `speeds` are the places of the states u and v."""
-    dt = float(np.median(np.diff(run.time)))
-    kept = np.clip(run.transition[:, speeds[0], speeds[0]], 1e-12, 1)
-    slowest, fastest = _extremes(-np.log(np.append(kept[:1], kept)) / dt, dt)
-    least, most = _extremes(np.abs(run.by_state[:, which][:, :, speeds]), dt)
-    steep = (most * OFF > STEEP * noise.readings[:, None]) & (most > CHANGING * least)
-    rests = (slowest < REMEMBERS) & (fastest > FORGETS)
-    return rests[:, None] & steep.any(axis=2)
-
-
-def _extremes(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """Least and most of values (n, …) near each sample."""
-    width = 1 + 2 * max(1, round(AROUND / dt))
-    return tuple(f(values, width, axis=0, mode="nearest") for f in (minimum_filter1d, maximum_filter1d))
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

@@ -14,6 +14,13 @@
 
 #define MOST 64 /* states, inputs and readings together */
 
+#define AROUND 0.05     /* s, each way, of where a speed that */
+#define REMEMBERS 10.0  /* fades at less than this rate, 1/s, and then */
+#define FORGETS 100.0   /* at more: a chair comes to rest */
+#define OFF 0.02        /* m/s, a speed's usual error */
+#define STEEP 10.0      /* standard deviations of a reading, by such an error */
+#define CHANGING 1.1    /* ratio of a reading's slopes about there, above which it tells nothing */
+
 typedef struct {
     int nx, nq, nz;
     const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
@@ -148,5 +155,42 @@ void wc_spread(const filter *f, long n, double *scale) {
     for (long i = 0; i < n; i++) {
         if (i) predict(f, i - 1, P);
         for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, P, Ph));
+    }
+}
+
+/* Does a state fade slowly here and fast there, within the samples from … to? */
+static int rests(const filter *f, long from, long to, double dt, int state) {
+    double least = INFINITY, most = -INFINITY;
+    for (long i = from; i <= to; i++) {
+        double kept = f->A[((i ? i - 1 : 0) * f->nx + state) * f->nx + state];
+        least = fmin(least, kept);
+        most = fmax(most, kept);
+    }
+    return most > exp(-REMEMBERS * dt) && least < exp(-FORGETS * dt);
+}
+
+/* Is reading z steep by a state, and steeper here than there? */
+static int bends(const filter *f, long from, long to, int z, int state) {
+    double least = INFINITY, most = 0;
+    for (long i = from; i <= to; i++) {
+        double slope = fabs(f->H[(i * f->nz + z) * f->nx + state]);
+        least = fmin(least, slope);
+        most = fmax(most, slope);
+    }
+    return most * OFF > STEEP * f->sd[z] && most > CHANGING * least;
+}
+
+/* kinks: n x nz, 1 for readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes
+ * make of that a deceleration of many times what friction can do. dt: s between samples; forward, sideways: the places of
+ * these speeds among the states. */
+void wc_kinks(const filter *f, long n, double dt, int forward, int sideways, char *kinks) {
+    long half = AROUND / dt < 1 ? 1 : (long)(AROUND / dt + 0.5);
+    memset(kinks, 0, (size_t)(n * f->nz));
+    for (long i = 0; i < n; i++) {
+        long from = i < half ? 0 : i - half, to = i + half < n ? i + half : n - 1;
+        if (!rests(f, from, to, dt, forward)) continue;
+        for (int z = 0; z < f->nz; z++) {
+            kinks[i * f->nz + z] = (char)(bends(f, from, to, z, forward) || bends(f, from, to, z, sideways));
+        }
     }
 }

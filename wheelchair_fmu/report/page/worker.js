@@ -126,9 +126,15 @@ class Kernel {
 
 /** The filter of one linearised run, as engine/innovations.py's Whitener. */
 class Whitener {
-  constructor(kernel, system, noise, present, n, startCov) {
-    Object.assign(this, { kernel, system, noise, present, n, startCov, nz: noise.sd.length });
+  constructor(kernel, system, noise, present, n, startCov, dt) {
+    Object.assign(this, { kernel, system, noise, n, startCov, nz: noise.sd.length });
     this.size = kernel.states + noise.pushes.length + this.nz;
+    this.present = Uint8Array.from(present);
+    kernel.withFilter(this, startCov, (record) => {
+      const at = kernel.doubles(Math.ceil(present.length / 8));
+      kernel.wasm.wc_page_kinks(record, n, dt, at);
+      new Uint8Array(kernel.wasm.memory.buffer, at, present.length).forEach((kink, i) => { if (kink) this.present[i] = 0; });
+    });
     kernel.withFilter(this, startCov, (record) => {
       const gain = kernel.doubles(n * this.nz * this.size), scale = kernel.doubles(n * this.nz);
       kernel.wasm.wc_page_design(record, n, gain, scale);
@@ -137,9 +143,10 @@ class Whitener {
     });
   }
 
-  /** Innovations of signals (n, nz, m), in place; 0 in gaps stays 0. `startMean` belongs to the first signal. */
+  /** Innovations of signals (n, nz, m), in place; 0 in gaps and kinks. `startMean` belongs to the first signal. */
   whiten(signals, m, startMean) {
     const { kernel, n } = this;
+    this.present.forEach((there, i) => { if (!there) signals.fill(0, i * m, (i + 1) * m); });
     kernel.withFilter(this, this.startCov, (record) => {
       const [gain, scale, mean, at] = [this.gain, this.scale, startMean, signals].map((a) => kernel.put(a));
       kernel.wasm.wc_page_whiten(record, n, gain, scale, mean, m, at, kernel.doubles(2 * this.size * m));
@@ -157,6 +164,12 @@ class Whitener {
       return kernel.get(scale, n * nz);
     });
   }
+}
+
+/** Median of the time between samples. */
+function usualStep(time) {
+  const steps = Float64Array.from(time.slice(1), (t, i) => t - time[i]).sort(), half = steps.length >> 1;
+  return steps.length % 2 ? steps[half] : (steps[half - 1] + steps[half]) / 2;
 }
 
 function interpolated(time, series, delay) {
@@ -252,7 +265,7 @@ function linearised(f, values, start) {
     if (campaign.start[c] in run.set) continue; // a run's own setting stands, so that parameter moves nothing in it
     for (let i = 0; i < n; i++) for (let z = 0; z < nz; z++) byStart[(i * nz + z) * k + c] = s.by_parameter[(i * ns + which[z]) * k + column[c]];
   }
-  const whitener = new Whitener(kernel, system, f.noise, f.present, n, cov);
+  const whitener = new Whitener(kernel, system, f.noise, f.present, n, cov, usualStep(run.time));
   return { start, y: s.y, predicted: readings(f, s.y), byStart, offset, whitener };
 }
 
