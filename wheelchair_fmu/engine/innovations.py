@@ -52,8 +52,8 @@ class Whitener:
     """The filter of one run: `run` its linearisation, `which` the places of its readings that were measured,
     `present` (n, nz) False in gaps. `logdet` is Σ log of the innovations' variances.
 
-    Readings about the moment a chair comes to rest, which no slope foretells (`kinks`; see wc_kinks in innovations.c), tell
-    nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
+    Readings about the moment a chair comes to rest, which no slope foretells (`kinks`; see wc_drop_kinks in innovations.c),
+    tell nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
     """
 
     def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray, speeds: Sequence[int] = ()):
@@ -69,19 +69,14 @@ class Whitener:
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self._arrays["present"] = np.ascontiguousarray(present, np.int8)
         self._size = (nx, nq, nz)
-        self.kinks = np.zeros(present.shape, bool)
         if speeds:
-            self._find_kinks(float(np.median(np.diff(run.time))), *speeds)
+            dt = float(np.median(np.diff(run.time)))
+            _library().wc_drop_kinks(ctypes.byref(self._filter), ctypes.c_long(n), ctypes.c_double(dt), *speeds)
+        self.kinks = present & (self._arrays["present"] == 0)
         self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
         self.logdet: float = _library().wc_design(ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain),
                                                   _of(self._scale))  # fmt: skip
         self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(noise.readings)))
-
-    def _find_kinks(self, dt: float, forward: int, sideways: int) -> None:
-        _library().wc_kinks(ctypes.byref(self._filter), ctypes.c_long(len(self.kinks)), ctypes.c_double(dt), forward, sideways,
-                            _of(self.kinks))  # fmt: skip
-        self.kinks &= self.present
-        self._arrays["present"][self.kinks] = 0
 
     @property
     def _filter(self) -> _Filter:
@@ -94,7 +89,6 @@ class Whitener:
         sensitivities, 0 there. `start_mean` (nx,) is where the true start is expected, less the simulated one.
         """
         out = np.array(signals, float, order="C")
-        out[self._arrays["present"] == 0] = 0
         m = out.shape[2]
         mean, work = np.ascontiguousarray(start_mean, float), np.empty(2 * self._gain.shape[2] * m)
         _library().wc_whiten(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(self._gain), _of(self._scale),

@@ -29,7 +29,7 @@ class Climb:
         self.helping: set[str] = set()
         self._tried_together = False
         self.base, self.held, self.ladder = begin(search, search.say)
-        climbed(tuple(self.ladder))
+        self._tell()
         for effect in search.workshop.variant.effects:
             if search.workshop.parameters(effect):
                 self.effects = (*self.effects, effect)

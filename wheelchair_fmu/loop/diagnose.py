@@ -138,17 +138,16 @@ class Search(Screen):
                 continue
         if not begun:
             return None
-        for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(w.parameters(effect)) > 1 else 1]:
-            if all(self._signs(ahead, effect) != self._signs(other, effect) for other in ended):
+        own = w.parameters(effect)
+        for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
+            signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
+            if signs not in others:
                 ended.append(self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival))
                 rival = min(rival, ended[-1].misfit)
         found = min(ended, key=lambda f: f.misfit)
         found = replace(found, evidence=bench.restarted(found.evidence, found.values))
         held = bench.restarted(bench.evidence(w.campaign.holdout, found.values), found.values) if w.campaign.holdout else None
-        return self.judge(base, base_held, found, held, effect, w.parameters(effect), tests)
-
-    def _signs(self, found: Fit, effect: str) -> tuple[float, ...]:
-        return _signs([found.values[n] for n in self.workshop.parameters(effect)])
+        return self.judge(base, base_held, found, held, effect, own, tests)
 
     def _starts(self, bench: Bench, base: Fit, s: Screened, least: float,
                 visible: float) -> list[tuple[dict[str, float], Evidence | None]]:  # fmt: skip
@@ -278,8 +277,8 @@ def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
 
 
 def _small(along: np.ndarray, variance: np.ndarray) -> bool:
-    """Are all these sizes, in δ, surely below 1? Standard errors allow for noise; two models that mean the same by a parameter
-    differ by a fifth."""
+    """Are all these sizes, in δ, surely below 1? Standard errors allow for noise, `SURELY` for models that mean the same by a
+    parameter and differ by a fifth."""
     return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < SURELY))
 
 

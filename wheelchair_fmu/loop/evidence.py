@@ -192,7 +192,7 @@ class Bench:
         self.offsets = {f"offset.{c}": c for c in campaign.nuisance if c in channels}
         offsets = (Parameter(name, channels[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
-        self._speeds = [[s.name for s in self.sensitivities.model.states].index(name) for name in ("u", "v")]
+        self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
     def known(self, run: Run) -> dict[str, float]:

@@ -28,7 +28,7 @@ typedef struct {
     const double *input_sd, *input_phi; /* nq: standard deviation and AR(1) coefficient of each input */
     const double *sd, *phi;             /* nz: the same of each reading */
     const double *start_cov;  /* nx x nx */
-    const char *present;      /* n x nz: 0 in a gap */
+    char *present;            /* n x nz: 0 in a gap */
 } filter;
 
 static void add_row(int m, double factor, const double *restrict from, double *restrict to) {
@@ -120,7 +120,7 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
     return total;
 }
 
-/* signals: n x nz x m, turned into innovations in place; gaps are left as they are.
+/* signals: n x nz x m, turned into innovations in place; 0 in gaps, whatever they were.
  * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
 void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
                double *signals, double *work) {
@@ -138,7 +138,10 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
         for (int z = 0; z < nz; z++) {
             long at = i * nz + z;
             double *signal = signals + at * m;
-            if (!f->present[at]) continue;
+            if (!f->present[at]) {
+                memset(signal, 0, sizeof(double) * (size_t)m);
+                continue;
+            }
             for (int k = 0; k < nx; k++) add_row(m, -f->H[at * nx + k], S + k * m, signal);
             for (int q = 0; q < nq; q++) add_row(m, -f->D[at * nq + q], S + (nx + q) * m, signal);
             add_row(m, -1, S + (nx + nq + z) * m, signal);
@@ -158,15 +161,15 @@ void wc_spread(const filter *f, long n, double *scale) {
     }
 }
 
-/* Does a state fade slowly here and fast there, within the samples from … to? */
-static int rests(const filter *f, long from, long to, double dt, int state) {
+/* Does a state keep more than `much` of itself from one sample to the next here, and less than `little` there, from … to? */
+static int rests(const filter *f, long from, long to, int state, double much, double little) {
     double least = INFINITY, most = -INFINITY;
     for (long i = from; i <= to; i++) {
         double kept = f->A[((i ? i - 1 : 0) * f->nx + state) * f->nx + state];
         least = fmin(least, kept);
         most = fmax(most, kept);
     }
-    return most > exp(-REMEMBERS * dt) && least < exp(-FORGETS * dt);
+    return most > much && least < little;
 }
 
 /* Is reading z steep by a state, and steeper here than there? */
@@ -180,17 +183,17 @@ static int bends(const filter *f, long from, long to, int z, int state) {
     return most * OFF > STEEP * f->sd[z] && most > CHANGING * least;
 }
 
-/* kinks: n x nz, 1 for readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes
+/* Makes gaps of the readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes
  * make of that a deceleration of many times what friction can do. dt: s between samples; forward, sideways: the places of
  * these speeds among the states. */
-void wc_kinks(const filter *f, long n, double dt, int forward, int sideways, char *kinks) {
+void wc_drop_kinks(const filter *f, long n, double dt, int forward, int sideways) {
     long half = AROUND / dt < 1 ? 1 : (long)(AROUND / dt + 0.5);
-    memset(kinks, 0, (size_t)(n * f->nz));
+    double much = exp(-REMEMBERS * dt), little = exp(-FORGETS * dt);
     for (long i = 0; i < n; i++) {
         long from = i < half ? 0 : i - half, to = i + half < n ? i + half : n - 1;
-        if (!rests(f, from, to, dt, forward)) continue;
+        if (!rests(f, from, to, forward, much, little)) continue;
         for (int z = 0; z < f->nz; z++) {
-            kinks[i * f->nz + z] = (char)(bends(f, from, to, z, forward) || bends(f, from, to, z, sideways));
+            if (bends(f, from, to, z, forward) || bends(f, from, to, z, sideways)) f->present[i * f->nz + z] = 0;
         }
     }
 }

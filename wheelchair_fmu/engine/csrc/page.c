@@ -53,4 +53,4 @@ void EXPORT(wc_page_whiten)(const filter *f, long n, const double *gain, const d
 void EXPORT(wc_page_spread)(const filter *f, long n, double *scale) { wc_spread(f, n, scale); }
 
 /* The states of every model begin with x, y, psi, u, v. */
-void EXPORT(wc_page_kinks)(const filter *f, long n, double dt, char *kinks) { wc_kinks(f, n, dt, 3, 4, kinks); }
+void EXPORT(wc_page_drop_kinks)(const filter *f, long n, double dt) { wc_drop_kinks(f, n, dt, 3, 4); }

@@ -112,7 +112,7 @@ class Kernel {
     throw new Error(`the simulation stops at t = ${when.toPrecision(6)} s: ${WHY[status]}`);
   }
 
-  /** Calls `act` with the address of a filter's record, whose matrices are put into memory. */
+  /** Calls `act` with the addresses of a filter's record, whose matrices are put into memory, and of its `present`. */
   withFilter(filter, startCov, act) {
     this.reset();
     const { system, noise, present, nz } = filter, nx = this.states, nq = noise.pushes.length;
@@ -120,22 +120,18 @@ class Kernel {
     const arrays = [system.A, system.B, system.C, system.H, system.D, noise.pushes, noise.push_ar, noise.sd, noise.ar, startCov];
     const flags = this.doubles(Math.ceil(present.length / 8));
     new Uint8Array(this.wasm.memory.buffer, flags, present.length).set(present);
-    return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]));
+    return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]), flags);
   }
 }
 
 /** The filter of one linearised run, as engine/innovations.py's Whitener. */
 class Whitener {
   constructor(kernel, system, noise, present, n, startCov, dt) {
-    Object.assign(this, { kernel, system, noise, n, startCov, nz: noise.sd.length });
+    Object.assign(this, { kernel, system, noise, present, n, startCov, nz: noise.sd.length });
     this.size = kernel.states + noise.pushes.length + this.nz;
-    this.present = Uint8Array.from(present);
-    kernel.withFilter(this, startCov, (record) => {
-      const at = kernel.doubles(Math.ceil(present.length / 8));
-      kernel.wasm.wc_page_kinks(record, n, dt, at);
-      new Uint8Array(kernel.wasm.memory.buffer, at, present.length).forEach((kink, i) => { if (kink) this.present[i] = 0; });
-    });
-    kernel.withFilter(this, startCov, (record) => {
+    kernel.withFilter(this, startCov, (record, flags) => {
+      kernel.wasm.wc_page_drop_kinks(record, n, dt);
+      this.present = new Uint8Array(kernel.wasm.memory.buffer, flags, present.length).slice();
       const gain = kernel.doubles(n * this.nz * this.size), scale = kernel.doubles(n * this.nz);
       kernel.wasm.wc_page_design(record, n, gain, scale);
       this.gain = kernel.get(gain, n * this.nz * this.size);
@@ -146,7 +142,6 @@ class Whitener {
   /** Innovations of signals (n, nz, m), in place; 0 in gaps and kinks. `startMean` belongs to the first signal. */
   whiten(signals, m, startMean) {
     const { kernel, n } = this;
-    this.present.forEach((there, i) => { if (!there) signals.fill(0, i * m, (i + 1) * m); });
     kernel.withFilter(this, this.startCov, (record) => {
       const [gain, scale, mean, at] = [this.gain, this.scale, startMean, signals].map((a) => kernel.put(a));
       kernel.wasm.wc_page_whiten(record, n, gain, scale, mean, m, at, kernel.doubles(2 * this.size * m));
@@ -269,20 +264,15 @@ function linearised(f, values, start) {
   return { start, y: s.y, predicted: readings(f, s.y), byStart, offset, whitener };
 }
 
-/** What is left of the readings, 0 in gaps. */
-function residual(f, predicted) {
-  return f.measured.map((v, i) => (f.present[i] ? v - predicted[i] : 0));
-}
-
 /** What each reading says that was not known from those before it, where the chair reads `predicted` from the start of `s`. */
 function innovations(f, s, predicted) {
-  return s.whitener.whiten(residual(f, predicted), 1, s.offset);
+  return s.whitener.whiten(f.measured.map((v, i) => v - predicted[i]), 1, s.offset);
 }
 
 /** How each innovation goes with the start (n, nz, k). */
 function startSlopes(f, s) {
   const k = campaign.start.length;
-  return s.whitener.whiten(s.byStart.map((v, i) => (f.present[Math.floor(i / k)] ? v : 0)), k, new Float64Array(f.kernel.states));
+  return s.whitener.whiten(s.byStart.slice(), k, new Float64Array(f.kernel.states));
 }
 
 /** The start given all readings, to first order: prior mean + P0 S0' r, of innovations r and how they go with the start. */
