@@ -23,7 +23,7 @@ from .source import CSRC, c_source, coefficients, tangent_source
 from .tangent import tangent
 
 PACKAGE = Path(__file__).parent.parent
-GENERATED = "-O1"  # of derivatives; a model's can have 80 000 lines: 9 s for the compiler, where -O2 takes 33 for 6 % of speed
+GENERATED = "-O1"  # of derivatives; -O2 takes compilers twice as long for a few percent of speed
 
 
 def folder() -> Path:
@@ -50,29 +50,45 @@ def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | 
 
 def helper(name: str) -> ctypes.CDLL:
     """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
-    source = CSRC / f"{name}.c"
-    key = hashlib.sha256(source.read_bytes() + _toolchain().encode()).hexdigest()[:24]
-    target = folder() / f"{name}-{key}{compiler.SUFFIX}"
+    target = _place(name, compiler.SUFFIX)
     if not target.exists():
-        compiler.compile_shared([source], target, ["-fvisibility=default", "-O3"])
+        compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3"])
     return ctypes.CDLL(str(target))
 
 
 def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, place: Path, target: Path) -> None:
     model = assemble(choice, effects)
-    common = ["-fvisibility=default", f"-I{CSRC}"]
     sources = {place / "model.c": "-O2"}
     (place / "model.c").write_text(c_source(kernel(model), "model"))
-    if columns is None:
-        sources[CSRC / "advance.c"] = "-O2"
-    else:
+    if columns is not None:
+        sources[place / "tangent_model.c"] = GENERATED
         (place / "tangent_model.c").write_text(tangent_source(tangent(model, columns), "tangent"))
-        (place / "coefficients.h").write_text(coefficients())
-        common += ["-include", str(place / "coefficients.h")]
-        sources |= {place / "tangent_model.c": GENERATED, CSRC / "tangent.c": "-O3", CSRC / "rodas.c": "-O3"}
+
+    def generated(source: Path) -> Path:
+        return compiler.compile_object(source, source.with_suffix(".o"), ["-fvisibility=default", f"-I{CSRC}", sources[source]])
+
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = pool.map(lambda c: compiler.compile_object(c, place / f"{c.stem}.o", [*common, sources[c]]), sources)
-        compiler.compile_shared(list(objects), target)
+        objects = [pool.submit(generated, source) for source in sources]
+        objects += [pool.submit(_by_hand, name) for name in (["advance"] if columns is None else ["tangent", "rodas"])]
+        compiler.compile_shared([o.result() for o in objects], target)
+
+
+def _by_hand(name: str) -> Path:
+    """A file of `csrc` that all models share, compiled once."""
+    target = _place(name, ".o")
+    if not target.exists():
+        with tempfile.TemporaryDirectory(dir=folder()) as place:
+            header = Path(place) / "coefficients.h"
+            header.write_text(coefficients())
+            flags = ["-fvisibility=default", f"-I{CSRC}", "-include", str(header), "-O2" if name == "advance" else "-O3"]
+            compiler.compile_object(CSRC / f"{name}.c", target, flags)
+    return target
+
+
+def _place(name: str, suffix: str) -> Path:
+    """Where a file of `csrc`, compiled, is kept."""
+    key = hashlib.sha256(f"{_toolchain()} {suffix}".encode()).hexdigest()[:24]
+    return folder() / f"{name}-{key}{suffix}"
 
 
 def _toolchain() -> str:

@@ -63,15 +63,15 @@ def _off(model: Model, places: list[int]) -> cs.SX:
 
 
 def _algebraic_change(model: Model, residual: cs.SX) -> cs.SX:
-    """dx that takes the algebraic rows' `residual` to zero, to first order; zero in all other rows."""
+    """dx (nx, m) that takes the algebraic rows' `residual` (nx, m) to zero, to first order; zero in all other rows."""
     places = algebraic(model)
-    change = cs.SX.zeros(model.x.numel())
+    change = cs.SX.zeros(*residual.shape)
     if places:
         off = _off(model, places)
         jacobian = cs.jacobian(model.f[places], model.x[places])
         identity = cs.SX.eye(len(places))
         gated = cs.diag(off) @ jacobian + cs.diag(1 - off) @ identity
-        change[places] = factorise(gated).solve(-off * residual[places])
+        change[places, :] = factorise(gated).solve(cs.diag(-off) @ residual[places, :])
     return change
 
 

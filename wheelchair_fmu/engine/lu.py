@@ -22,8 +22,8 @@ class Factors:
     inverse: dict[int, cs.SX]  # 1 / pivot
 
     def solve(self, right: cs.SX) -> cs.SX:
-        """k with W k = right, for a right side of shape (n,)."""
-        k = [right[i] for i in range(right.numel())]
+        """k with W k = right, for right sides of shape (n, m)."""
+        k = cs.vertsplit(right)
         for place, pivot in enumerate(self.order):
             for i in self.order[place + 1 :]:
                 if (i, pivot) in self.lower:

@@ -12,19 +12,19 @@ There are more directions than states, so a step's end x₁ = x + Σ b_i U_i is 
 These are the functions it needs; `csrc/tangent.c` does the sums, of the U_i too. A model with no special structure in mind: any
 states, pushes as the noisy inputs, any parameters.
 
-d[J U_i + γ_i F_w Δw] is linear in U_i and Δw, and J's own derivatives are at the step's start whatever the stage,
-so these are evaluated once a step.
+d[J U_i + γ_i F_w Δw], all at the step's start, is how F there moves along (U_i, γ_i Δw): a derivative in one direction, which
+is less work than all second derivatives would be. What of it is the same for every stage is evaluated once a step.
 
     motion(x, w, p)          → f (nx)
     ramp(x, w, p, dw)        → F_w dw (nx)             by all inputs
     slopes(x, w, p)          → F (nx, nx + 4)          by states and pushes
-    curvature(x, w, p)       → d[∂f/∂x, ∂f/∂w] by states and pushes, those that are not zero
-    bend(curvature, U, dw)   → d[J U + F_w dw] (nx, nx + 4)
+    prepare(x, w, p)         → what the next needs of a step's start, once for all stages
+    bend(prepared, U, dw)    → d[J U + F_w dw] (nx, nx + 4)
     readout(x, w, p)         → dy of the sensors (ns, nx + 4 + nc)
     masses(p)                → M (nx), dM (nx, nc)
     begin(x, w, p)           → derivative of the consistent start x (nx, nc)
 
-`slopes_all`, `curvature_all` and `bend_all` go on with nc columns by parameters, and are run only where somebody asks for any.
+`slopes_all`, `prepare_all` and `bend_all` go on with nc columns by parameters, and are run only where somebody asks for any.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from ..model.wheelchair import Model
 from ..quantities import Parameter
 from .kernel import _algebraic_change
 
-NAMES = ("motion", "ramp", "slopes", "curvature", "bend", "slopes_all", "curvature_all", "bend_all", "readout", "masses",
+NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses",
          "begin")  # fmt: skip
 SENSORS = "sensor."
 SENSED = ("chair.u", "chair.v")  # results that are also measured directly
@@ -109,19 +109,19 @@ def _touched(model: Model, columns: cs.SX) -> tuple[int, ...]:
 
 
 def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:
-    """`slopes`, `curvature` and `bend` by some of the model's variables (k,)."""
-    at, nx = [model.x, model.w, model.p], model.x.numel()
-    J = cs.jacobian(model.f, cs.vertcat(model.x, model.w))
-    row, column = J.sparsity().get_triplet()
-    dJ = cs.jacobian(J.nz[:], by)
-    curvature = cs.SX.sym("curvature", dJ.nnz())
-    U, dw = cs.SX.sym("U", nx), cs.SX.sym("dw", model.w.numel())
-    along = cs.SX(cs.Sparsity.triplet(nx, J.nnz(), row, list(range(J.nnz()))), cs.vertcat(U, dw)[column])
-    bend = cs.densify(along @ cs.SX(dJ.sparsity(), curvature))
+    """`slopes`, `prepare` and `bend` by some of the model's variables (k,)."""
+    at = [model.x, model.w, model.p]
+    slopes = cs.jacobian(model.f, by)
+    along = [cs.SX.sym("U", model.x.numel()), cs.SX.sym("dw", model.w.numel())]
+    bent = cs.cse(cs.jtimes(slopes.nz[:], cs.vertcat(*at[:2]), cs.vertcat(*along)))
+    bent, names, known = cs.extract_parametric(bent, cs.vertcat(*at))
+    given = {s.element_hash() for s in cs.vertsplit(cs.vertcat(*names, *along))}
+    bare = [s for s in cs.symvar(bent) if s.element_hash() not in given]  # of x, w and p
+    bend = cs.SX(slopes.sparsity(), bent)
     outputs = {
-        "slopes": (at, _rows(cs.densify(cs.jacobian(model.f, by)))),
-        "curvature": (at, dJ.nz[:]),
-        "bend": ([curvature, U, dw], _rows(bend)),
+        "slopes": (at, _rows(cs.densify(slopes))),
+        "prepare": (at, cs.vertcat(*known, *bare)),
+        "bend": ([cs.vertcat(*names, *bare), *along], _rows(cs.densify(bend))),
     }
     return {n + suffix: cs.Function(n + suffix, given, cs.cse([result])) for n, (given, result) in outputs.items()}
 
@@ -134,11 +134,6 @@ def _rows(matrix: cs.SX) -> cs.SX:
 def _begin(model: Model, places: list[int]) -> cs.SX:
     """dx(0)/dp, algebraic states following the others."""
     start = cs.jacobian(model.start, model.p)[:, places]
-    everything = cs.vertcat(model.x, model.p)
-    result = []
-    for i, place in enumerate(places):
-        seed = cs.SX.zeros(model.p.numel())
-        seed[place] = 1
-        residual = cs.jtimes(model.f, everything, cs.vertcat(start[:, i], seed))
-        result.append(start[:, i] + _algebraic_change(model, residual))
-    return cs.horzcat(*result)
+    seed = cs.SX.eye(model.p.numel())[:, places]
+    slopes = cs.jacobian(model.f, cs.vertcat(model.x, model.p))
+    return start + _algebraic_change(model, slopes @ cs.vertcat(start, seed))

@@ -26,7 +26,7 @@ FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O3", "-
 
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
 KERNEL = {"step": "wc_page_step", "forward": NOTHING, "rate": NOTHING}
-TANGENT = dict.fromkeys(("curvature", "bend", "slopes_all", "curvature_all", "bend_all", "begin"), NOTHING)
+TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_all", "begin"), NOTHING)
 
 
 def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str]) -> list[bytes]:

@@ -26,10 +26,10 @@ typedef struct {
     double *dM, *moved; /* nx x columns, parameters */
     double *slopes;     /* WC_STAGES x nx x span: states, pushes and, where any is asked for, all columns */
     double *bend;       /* nx x span */
-    double *curvature;  /* of the step, where the model brings it */
+    double *prepared;   /* what bends of a step have in common, where the model brings it */
     touch *touched;
     int touches;
-    wc_function sloped, curved, bent;
+    wc_function sloped, prepare, bent;
     double mass[WC_MAX_STATES];
 } carrier;
 
@@ -100,7 +100,7 @@ static void find_bend(carrier *c, const wc_rodas *s, int i) {
     const double *U = s->U + i * c->nx;
     double dw[WC_MAX_INPUTS];
     for (int q = 0; q < c->k->inputs; q++) dw[q] = wc_GAMMA_I[i] * (s->of.w1[q] - s->of.w0[q]);
-    if (c->bent) call(c->bent, c->curvature, U, dw, c->bend);
+    if (c->bent) call(c->bent, c->prepared, U, dw, c->bend);
     else bend_by_difference(c, s, U, dw);
 }
 
@@ -130,7 +130,7 @@ static void carry(void *context, const double *x, const double *wa, const double
     wc_rodas s;
     double V[WC_MAX_STATES];
     wc_rodas_begin(&s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
-    if (c->curved) call(c->curved, x, wa, c->p, c->curvature);
+    if (c->prepare) call(c->prepare, x, wa, c->p, c->prepared);
     for (int i = 0; i < WC_STAGES; i++) {
         wc_rodas_stage(&s, i);
         if (i == 0 && !c->out->forced) memcpy(c->slopes, s.first, sizeof(double) * (size_t)size);
@@ -219,7 +219,7 @@ static int padded(int n) { return (n + LANE - 1) / LANE * LANE; }
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
     long nx = k->states, stride = padded(k->states), m = nx + 2 * WC_PUSHES + active /* at most */, nc = g->columns;
     long span = nx + WC_PUSHES + nc;
-    return 3 * m * stride + 2 * WC_STAGES * nx * stride + (WC_STAGES + 1) * nx * span + nx * nc + g->curvatures + k->parameters +
+    return 3 * m * stride + 2 * WC_STAGES * nx * stride + (WC_STAGES + 1) * nx * span + nx * nc + g->prepared + k->parameters +
            2 * nx * active + g->sensors * span + 2 * g->touches; /* a touch is smaller than two numbers */
 }
 
@@ -230,7 +230,7 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     int m = nx + 2 * WC_PUSHES + (forced ? out->active : 0), span = forced ? widest : nx + WC_PUSHES;
     carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .stride = stride, .m = m, .span = span,
                  .sloped = forced ? g->slopes_all : g->slopes,
-                 .curved = forced ? g->curvature_all : g->curvature,
+                 .prepare = forced ? g->prepare_all : g->prepare,
                  .bent = forced ? g->bend_all : g->bend};
     c.D = work;
     c.step = c.D + m * stride;
@@ -240,8 +240,8 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     c.slopes = c.P + WC_STAGES * nx * stride;
     c.bend = c.slopes + WC_STAGES * nx * widest;
     c.dM = c.bend + nx * widest;
-    c.curvature = c.dM + nx * g->columns;
-    c.moved = c.curvature + g->curvatures;
+    c.prepared = c.dM + nx * g->columns;
+    c.moved = c.prepared + g->prepared;
     c.through = c.moved + k->parameters;
     c.next = c.through + nx * out->active;
     c.touched = (touch *)(c.next + nx * out->active);

@@ -12,12 +12,12 @@
  * parameters that start a run may be asked for. */
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
-    int curvatures;       /* numbers that `curvature_all` gives; `curvature` gives fewer */
+    int prepared;         /* numbers that `prepare` or `prepare_all` gives, at most */
     int touches;          /* places, row * columns + column, where an equation moves with a parameter */
     const int *touched;
     const int *rows;      /* places of those results */
     const int *places;    /* of those parameters */
-    wc_function motion, ramp, slopes, curvature, bend, slopes_all, curvature_all, bend_all, readout, masses, begin;
+    wc_function motion, ramp, slopes, prepare, bend, slopes_all, prepare_all, bend_all, readout, masses, begin;
 } wc_tangent;
 
 /* What is wanted of a run, and where it goes. All matrices are stored by rows. */
