@@ -54,6 +54,12 @@ def outside(t: Trial) -> bool:
     return t["verdict"] == "outside"
 
 
+def remains(t: Trial, floors: Mapping[tuple[str, int], float]) -> bool:
+    """Is the error off the floor of its noise and seed in the end, with all in that was found?"""
+    effects = [step["fit"] for step in t["ladder"] if not step["step"].startswith("+generic")]
+    return effects[-1] > SHOWS * floors.get((t["noise"], t["seed"]), FLOOR)
+
+
 def covered(t: Trial) -> list[bool]:
     out = []
     for effect, values in t["hidden"].items():
@@ -98,6 +104,7 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("false alarms where nothing is hidden", share(nulls, lambda t: t["verdict"] not in QUIET), "5 %"),
         ("of a quarter δ, said to be missing", share(small, lambda t: t["verdict"] == "missing"), ""),
         ("outside found, truth left out of the catalogue", share(by.get("left-out", []), outside), "85 %"),
+        ("  of those that leave more than noise", share([t for t in by.get("left-out", []) if remains(t, floor)], outside), ""),
         ("outside found, effect that no catalogue has", share(by.get("outside", []), outside), "85 %"),
         ("pairs: both found", share(by.get("pair", []), lambda t: set(t["effects"]) <= named(t)), ""),
         ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),

@@ -13,10 +13,10 @@ from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
-from wheelchair_fmu.loop.diagnose import Round, Search, begin
+from wheelchair_fmu.loop.diagnose import Round, Search, Step, begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.statistics import sandwich
-from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose
+from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.generic import library, terms
 from wheelchair_fmu.model.variant import Variant
@@ -62,6 +62,19 @@ def test_lasting_structure_is_no_noise(sampled):
     before = Workshop(sampled.search.workshop.campaign, Variant()).bench()
     calibrated = before.evidence(sampled.search.workshop.campaign.fit, sampled.rounds[0].fit.values)
     assert _structured(calibrated) and not _structured(sampled.final.evidence)
+
+
+@pytest.mark.parametrize(("calibrated", "top", "expected"), [
+    ((1.281, 1.219), (1.238, 1.184), True),  # a delay of the record, called caster inertia where the catalogue lacks it
+    ((1.1, 1.127), (1.082, 1.112), True),  # slip of the driven wheels, called a gyro's scale
+    ((1.565, 1.565), (1.064, 1.116), False),  # a trail that was hidden: another simulator's casters swing a little otherwise
+    ((1.08, 1.05), (1.05, 1.04), False),  # little was left to begin with
+    ((9.0, 8.0), (1.4, 1.35), True),
+    ((9.0, float("nan")), (1.2, float("nan")), False),  # nothing held out
+])  # fmt: skip
+def test_effects_that_leave_much_of_what_they_were_to_explain_do_not_suffice(calibrated, top, expected):
+    ladder = [Step("nominal", 10.0, 10.0), Step("calibrated", *calibrated), Step("+effect", *top)]
+    assert insufficient(ladder) == expected
 
 
 def test_an_effect_is_judged_from_its_own_starts(tmp_path):

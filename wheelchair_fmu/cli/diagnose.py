@@ -14,7 +14,7 @@ from ..handling.experiments import experiments
 from ..loop.bootstrap import Bootstrap, bootstrap
 from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
-from ..loop.verdict import UNEXPLAINED, Diagnosis
+from ..loop.verdict import Diagnosis, insufficient
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
@@ -83,8 +83,7 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     if d.proposal:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"
-        enough = min(d.ladder[-1].fit, d.ladder[-1].heldout) <= UNEXPLAINED
-        lead = "What would explain it" if enough else "The term that helps most, and does not suffice either"
+        lead = "The term that helps most, and does not suffice either" if insufficient(d.ladder) else "What would explain it"
         out.print(f"{lead}: {term.words}, {size}.")
     out.print(staircase_table(d.ladder))
     out.print(_ranking(content))

@@ -31,6 +31,8 @@ SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
+A_LITTLE = 1.06  # the same, that may be what two models of the same chair differ by; more may not,
+MOSTLY = 0.15  # if it is more of the mean square error above the noise than effects may leave that are said to explain it
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 3.0  # that is no noise where so many samples are alike
 
@@ -96,7 +98,7 @@ def diagnose(
     ties = tuple(group for group, _ in groups)
     helping = {e for e in climb.helping.intersection(included) if search.small(base, e)}
     effects = tuple(e for e in included if e not in climb.already and e not in helping)
-    verdict = _verdict(effects, ties, rounds, proposal, ladder[-1], base.evidence)
+    verdict = _verdict(effects, ties, rounds, proposal, ladder, base.evidence)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, groups, rounds, experiments)
@@ -182,8 +184,10 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
 
 
 def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,
-             last: Step, left: Evidence) -> str:  # fmt: skip
-    if proposal is not None or last.left > UNEXPLAINED:
+             ladder: Sequence[Step], left: Evidence) -> str:  # fmt: skip
+    if proposal is not None or ladder[-1].left > UNEXPLAINED:
+        return "outside"
+    if effects and insufficient(ladder) and correlation_time(left) > LASTING:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
@@ -193,6 +197,12 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
         return "small"
     powers = [s.power for s in rounds[0].scores]
     return "adequate" if np.mean([p >= ENOUGH_POWER for p in powers] or [0]) >= WHOLE_LIBRARY else "cannot_see"
+
+
+def insufficient(ladder: Sequence[Step]) -> bool:
+    """Does the model at the top of a staircase leave much, or more than a little of what calibration did?"""
+    top, calibrated = ladder[-1].left, ladder[1].left
+    return top > UNEXPLAINED or (top > A_LITTLE and top**2 - 1 > MOSTLY * (calibrated**2 - 1))
 
 
 def _structured(left: Evidence) -> bool:
