@@ -87,6 +87,18 @@ def test_an_effect_is_judged_from_its_own_starts(tmp_path):
     assert found.final.values["effect.wheel_radius_error.r"] == pytest.approx(0.03, abs=0.004)
 
 
+def test_another_effect_may_overtake_what_was_found_first(tmp_path):
+    """A gain of the force sensors does alone more than heavy wheels, as it stands in for load
+    transfer, too; with that in, they do less."""
+    hidden = {"wheel_inertia": {"m": 3.0}, "lateral_load_transfer": {"h": 1.2}}
+    found = diagnose(read(make(tmp_path / "campaign", hidden, seed=2, noise_scale=0.4)))
+    drops = {c.effect: c.drop for c in found.rounds[0].candidates}
+    assert drops["push_force_gain"] > 1.2 * drops["wheel_inertia"]
+    assert found.effects == ("wheel_inertia", "lateral_load_transfer") and found.verdict == "missing"
+    assert found.final.values["effect.wheel_inertia.m"] == pytest.approx(3.0, abs=0.3)
+    assert [s.name for s in found.ladder[2:]] == ["+wheel_inertia", "+lateral_load_transfer"] and found.ladder[-1].heldout < 1.02
+
+
 def test_toe_of_opposite_signs_is_found(tmp_path):
     campaign = read(make(tmp_path / "campaign", {"toe_misalignment": {"tau_r": -0.015, "tau_l": 0.012}}, seed=2))
     found = diagnose(campaign)

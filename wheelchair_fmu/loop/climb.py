@@ -8,6 +8,7 @@ from dataclasses import replace
 from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .fit import Fit
 from .joint import together
+from .ties import overtaker
 
 MOST_EFFECTS = 4
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
@@ -38,10 +39,13 @@ class Climb:
         self.already = self.effects
 
     def to_the_top(self) -> None:
-        """Search, put in what was found, and leave out what that makes needless, as long as anything is found."""
+        """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
+        overtake, as long as anything is found."""
         for _ in range(MOST_EFFECTS):
             best = self._found()
             if best is None:
+                if self._overtaken():
+                    continue
                 return
             self.effects = (*self.rounds[-1].effects, best.effect)
             self.base, self.held = self.search.settled(self.effects, best.fit)
@@ -52,6 +56,21 @@ class Climb:
                 self.effects = needed
                 self._anew(fewer)
                 self._tell()
+
+    def _overtaken(self) -> bool:
+        """Put another effect in the place of one that it overtakes beside what was found later."""
+        for i, r in enumerate(self.rounds):
+            found = overtaker(self.search, r, self.effects, self.base)
+            if found is None:
+                continue
+            ahead, fit = found
+            self.search.say(f"starting again with {ahead.effect} in the place of another")
+            self.effects = tuple(ahead.effect if e == r.winner.effect else e for e in self.effects)
+            self.rounds[i] = replace(r, candidates=(ahead, *(c for c in r.candidates if c is not ahead)))
+            self._anew(fit)
+            self._tell()
+            return True
+        return False
 
     def _found(self) -> Candidate | None:
         """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..errors import SimulationError
 from .diagnose import Candidate, Round, Search
 from .fit import Fit
 from .statistics import decisive, difference_blocks, resampled_totals
 
-NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out or found later, and no generic term replaces it
+HALF = 0.5  # of a fall: who reaches it alone may do as much as the leader, or more, beside what is found later
+NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
 
 
 def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
@@ -40,20 +40,29 @@ def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> 
     if set(effects) == {*r.effects, group[0]}:
         return group
     leader = next(c for c in r.candidates if c.effect == group[0])
-    near = (c.effect for c in r.candidates if c.lawful and c.drop >= NEARLY * leader.drop)
-    rivals = dict.fromkeys((*group, *near))
-    candidates, margin = {c.effect: c.fit.values for c in r.candidates}, decisive(final.evidence)
+    near = (c.effect for c in r.candidates if c.lawful and c.drop >= HALF * leader.drop)
+    rivals, margin = {*group, *near}.difference(effects), decisive(final.evidence)
+    fits = {c.effect: in_place(search, c, group[0], effects, final) for c in r.candidates if c.effect in rivals}
+    return (group[0], *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
 
-    def keeps_up(rival: str) -> bool:
-        own = {n: candidates[rival][n] for n in search.workshop.parameters(rival)}
-        swapped = [rival if e == group[0] else e for e in effects]
-        try:
-            found = search.refit(swapped, {**final.values, **own}, rival=final.misfit)
-        except SimulationError:
-            return False
-        return found.misfit - final.misfit < margin
 
-    return (group[0], *(rival for rival in rivals if rival not in effects and keeps_up(rival)))
+def overtaker(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[Candidate, Fit] | None:
+    """Another effect that a round found, which in the place of the one it took explains more by far, now that what was found
+    later is in too; and the model with it. Alone the one taken had done what others do."""
+    leader = r.winner
+    if leader is None or leader.effect not in effects or set(effects) == {*r.effects, leader.effect}:
+        return None
+    rivals = [c for c in r.candidates if c.found and c.effect not in effects and c.drop >= HALF * leader.drop]
+    fits = [(c, in_place(search, c, leader.effect, effects, final)) for c in rivals]
+    better = [(c, f) for c, f in fits if f and f.misfit < final.misfit - decisive(final.evidence)]
+    return min(better, key=lambda found: found[1].misfit, default=None)
+
+
+def in_place(search: Search, rival: Candidate, of: str, effects: Sequence[str], final: Fit) -> Fit | None:
+    """The `final` model of these `effects` with a rival in the place of one of them, refitted; None where that cannot run."""
+    own = {n: rival.fit.values[n] for n in search.workshop.parameters(rival.effect)}
+    swapped = tuple(rival.effect if e == of else e for e in effects)
+    return search.remembered(swapped, {**final.values, **own}, final.misfit)
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:

@@ -34,7 +34,8 @@ UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate m
 A_LITTLE = 1.06  # the same, that may be what two models of the same chair differ by; more may not,
 MOSTLY = 0.15  # if it is more of the mean square error above the noise than effects may leave that are said to explain it
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
-LASTING = 3.0  # that is no noise where so many samples are alike
+LASTING = 3.0  # that is no noise where so many samples are alike,
+OR_SO = 2.0  # or beside effects so many
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,7 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
              ladder: Sequence[Step], left: Evidence) -> str:  # fmt: skip
     if proposal is not None or ladder[-1].left > UNEXPLAINED:
         return "outside"
-    if effects and insufficient(ladder) and correlation_time(left) > LASTING:
+    if effects and insufficient(ladder) and correlation_time(left) > OR_SO:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
