@@ -179,10 +179,11 @@ class Search(Screen):
         many = len(records) > 1 and not s.linear
         wanted = 1 if s.linear else DIRECTIONS if many else STARTS
         best = most_promising(bench, known, names, tries, wanted, s.score.signature, _signs if many else None)
-        if s.linear:
-            return [o.theta for o in best if self._shows(bench, known, names, s, o, visible)]
         off = [base.values.get(n, 0.0) for n in names]
         without, most = outlook(bench, known, names, off).misfit, np.inf
+        if s.linear:
+            hopeful = (o for o in best if o.misfit <= without - HALFWAY * least)
+            return [o.theta for o in hopeful if self._shows(bench, known, names, s, o, visible)]
         if not (record.needs or record.rows):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:

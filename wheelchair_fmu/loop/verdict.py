@@ -151,9 +151,10 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
         plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
-    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0)
     if found and max(base.evidence.rms, held.rms) < AT_THE_FLOOR:
-        return left, None  # what one channel shows beside what was found is too little to call that wrong
+        scores = (s.score for s in generic_search.screen(base, effects, list(generic)))
+        return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
+    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0)
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
     terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
