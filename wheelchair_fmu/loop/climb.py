@@ -63,9 +63,9 @@ class Climb:
             found = overtaker(self.search, r, self.effects, self.base)
             if found is None:
                 continue
-            ahead, fit = found
-            self.search.say(f"starting again with {ahead.effect} in the place of another")
-            self.effects = tuple(ahead.effect if e == r.winner.effect else e for e in self.effects)
+            overtaken, ahead, fit = found
+            self.search.say(f"starting again with {ahead.effect} in the place of {overtaken}")
+            self.effects = tuple(ahead.effect if e == overtaken else e for e in self.effects)
             self.rounds[i] = replace(r, candidates=(ahead, *(c for c in r.candidates if c is not ahead)))
             self._anew(fit)
             self._tell()

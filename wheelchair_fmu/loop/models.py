@@ -50,12 +50,13 @@ class Models:
         """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
         return fit(self.workshop.bench(effects), self.names(effects), start, here, **how)
 
-    def remembered(self, effects: tuple[str, ...], start: Mapping[str, float], rival: float) -> Fit | None:
-        """`refit`, done once: from where it starts it may be asked for again. None where the model cannot run."""
-        key = (effects, tuple(start.items()), rival)
+    def remembered(self, effects: tuple[str, ...], start: Mapping[str, float]) -> Fit | None:
+        """`refit`, followed to its end, and done once: from where it starts it may be asked for again. None where the model
+        cannot run."""
+        key = (effects, tuple(start.items()))
         if key not in self._known:
             try:
-                found = self.refit(effects, start, rival=rival)
+                found = self.refit(effects, start)
                 self._known[key] = replace(found, evidence=found.evidence.brief())
             except SimulationError:
                 self._known[key] = None

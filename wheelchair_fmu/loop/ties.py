@@ -46,23 +46,23 @@ def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> 
     return (group[0], *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
 
 
-def overtaker(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[Candidate, Fit] | None:
-    """Another effect that a round found, which in the place of the one it took explains more by far, now that what was found
-    later is in too; and the model with it. Alone the one taken had done what others do."""
-    leader = r.winner
-    if leader is None or leader.effect not in effects or set(effects) == {*r.effects, leader.effect}:
+def overtaker(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, Candidate, Fit] | None:
+    """What a round put in, another effect it found that in its place explains more by far, now that what was found later is in
+    too, and the model with that. Alone the one put in had done what others do; or it was small, and helped others on."""
+    taken = r.winner or r.help
+    if taken is None or taken.effect not in effects or (r.winner and set(effects) == {*r.effects, taken.effect}):
         return None
-    rivals = [c for c in r.candidates if c.found and c.effect not in effects and c.drop >= HALF * leader.drop]
-    fits = [(c, in_place(search, c, leader.effect, effects, final)) for c in rivals]
-    better = [(c, f) for c, f in fits if f and f.misfit < final.misfit - decisive(final.evidence)]
-    return min(better, key=lambda found: found[1].misfit, default=None)
+    rivals = [c for c in r.candidates if c.found and c.effect not in effects and c.drop >= HALF * taken.drop]
+    fits = [(c, in_place(search, c, taken.effect, effects, final)) for c in rivals]
+    better = [(taken.effect, c, f) for c, f in fits if f and f.misfit < final.misfit - decisive(final.evidence)]
+    return min(better, key=lambda found: found[2].misfit, default=None)
 
 
 def in_place(search: Search, rival: Candidate, of: str, effects: Sequence[str], final: Fit) -> Fit | None:
     """The `final` model of these `effects` with a rival in the place of one of them, refitted; None where that cannot run."""
     own = {n: rival.fit.values[n] for n in search.workshop.parameters(rival.effect)}
     swapped = tuple(rival.effect if e == of else e for e in effects)
-    return search.remembered(swapped, {**final.values, **own}, final.misfit)
+    return search.remembered(swapped, {**final.values, **own})
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
