@@ -88,8 +88,8 @@ def test_an_effect_is_judged_from_its_own_starts(tmp_path):
 
 
 def test_another_effect_may_overtake_what_was_found_first(tmp_path):
-    """A gain of the force sensors does alone more than heavy wheels, as it stands in for load
-    transfer, too; with that in, they do less."""
+    """A gain of the force sensors does alone more than heavy wheels, as it stands in for load transfer, too; with that
+    in, it does less."""
     hidden = {"wheel_inertia": {"m": 3.0}, "lateral_load_transfer": {"h": 1.2}}
     found = diagnose(read(make(tmp_path / "campaign", hidden, seed=2, noise_scale=0.4)))
     drops = {c.effect: c.drop for c in found.rounds[0].candidates}

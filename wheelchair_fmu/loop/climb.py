@@ -43,19 +43,22 @@ class Climb:
         overtake, as long as anything is found."""
         for _ in range(MOST_EFFECTS):
             best = self._found()
-            if best is None:
-                if self._overtaken():
-                    continue
+            if best is not None:
+                self._put_in(best)
+            elif not self._overtaken():
                 return
-            self.effects = (*self.rounds[-1].effects, best.effect)
-            self.base, self.held = self.search.settled(self.effects, best.fit)
-            self._step()
-            needed, fewer = self.search.pruned(self.effects, self.base, self.already)
-            if needed != self.effects:
-                self.search.say("starting again without what is needed no more")
-                self.effects = needed
-                self._anew(fewer)
-                self._tell()
+
+    def _put_in(self, best: Candidate) -> None:
+        """The model with what the last round found, and without what that makes needless."""
+        self.effects = (*self.rounds[-1].effects, best.effect)
+        self.base, self.held = self.search.settled(self.effects, best.fit)
+        self._step()
+        needed, fewer = self.search.pruned(self.effects, self.base, self.already)
+        if needed != self.effects:
+            self.search.say("starting again without what is needed no more")
+            self.effects = needed
+            self._anew(fewer)
+            self._tell()
 
     def _overtaken(self) -> bool:
         """Put another effect in the place of one that it overtakes beside what was found later."""
@@ -66,6 +69,7 @@ class Climb:
             overtaken, ahead, fit = found
             self.search.say(f"starting again with {ahead.effect} in the place of {overtaken}")
             self.effects = tuple(ahead.effect if e == overtaken else e for e in self.effects)
+            # a round's winner is the first that was found: ties are with the one that is in the model now
             self.rounds[i] = replace(r, candidates=(ahead, *(c for c in r.candidates if c is not ahead)))
             self._anew(fit)
             self._tell()

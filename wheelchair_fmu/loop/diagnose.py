@@ -34,8 +34,8 @@ SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refi
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
 DIRECTIONS = 4  # pairs of signs, and of these
 ENDED = 3  # refits go on to their end
-HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises: of directions that promise less no refit
-# starts, and if no size at all promises so much, refits start from
+HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
+# where less is promised no refit starts, and if no size at all promises so much, refits start from
 GRID = (1.0, 2.0, 4.0)  # of δ as well
 
 

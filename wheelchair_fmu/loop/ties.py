@@ -34,16 +34,16 @@ def tied(r: Round) -> tuple[str, ...]:
 def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
     """What a round tied, and what came near, less those that fall behind in the place of its effect once all that was found
     later is in too: of a model that leaves much the very best values are not known, nor which of two is ahead."""
-    group = tied(r)
-    if not group or group[0] not in effects:  # or needed no more
+    leader = r.winner
+    if leader is None or leader.effect not in effects:  # or needed no more
         return ()
-    if set(effects) == {*r.effects, group[0]}:
+    group = tied(r)
+    if set(effects) == {*r.effects, leader.effect}:
         return group
-    leader = next(c for c in r.candidates if c.effect == group[0])
     near = (c.effect for c in r.candidates if c.lawful and c.drop >= HALF * leader.drop)
     rivals, margin = {*group, *near}.difference(effects), decisive(final.evidence)
-    fits = {c.effect: in_place(search, c, group[0], effects, final) for c in r.candidates if c.effect in rivals}
-    return (group[0], *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
+    fits = {c.effect: in_place(search, c, leader.effect, effects, final) for c in r.candidates if c.effect in rivals}
+    return (leader.effect, *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
 
 
 def overtaker(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, Candidate, Fit] | None:

@@ -31,11 +31,11 @@ SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
-A_LITTLE = 1.06  # the same, that may be what two models of the same chair differ by; more may not,
-MOSTLY = 0.15  # if it is more of the mean square error above the noise than effects may leave that are said to explain it
+A_LITTLE = 1.06  # the same, that two models of one chair may differ by; where more is left, effects that are said to explain
+REST = 0.15  # what calibration left may leave this much of its mean square error above the noise
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 3.0  # that is no noise where so many samples are alike,
-OR_SO = 2.0  # or beside effects so many
+LASTING_BESIDE = 2.0  # or so many beside effects that were found
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
              ladder: Sequence[Step], left: Evidence) -> str:  # fmt: skip
     if proposal is not None or ladder[-1].left > UNEXPLAINED:
         return "outside"
-    if effects and insufficient(ladder) and correlation_time(left) > OR_SO:
+    if effects and insufficient(ladder) and correlation_time(left) > LASTING_BESIDE:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
@@ -204,7 +204,7 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
 def insufficient(ladder: Sequence[Step]) -> bool:
     """Does the model at the top of a staircase leave much, or more than a little of what calibration did?"""
     top, calibrated = ladder[-1].left, ladder[1].left
-    return top > UNEXPLAINED or (top > A_LITTLE and top**2 - 1 > MOSTLY * (calibrated**2 - 1))
+    return top > UNEXPLAINED or (top > A_LITTLE and top**2 - 1 > REST * (calibrated**2 - 1))
 
 
 def _structured(left: Evidence) -> bool:
