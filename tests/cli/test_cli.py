@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 from wheelchair_fmu import __version__
-from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.cli.main import COMMANDS, app
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant, variant_text
 from wheelchair_fmu.quantities import Parameter
@@ -212,9 +212,17 @@ def test_every_source_that_looks_like_a_key_is_in_the_references():
 
 def test_version_help_and_unknown_commands():
     assert wheelchair("--version").output == f"wheelchair-fmu {__version__}\n"
-    assert "simulate" in wheelchair("--help").output
+    listed = wheelchair("--help").output
+    assert all(f"  {name} " in listed and what in listed for name, what in COMMANDS.items())
     for words in (["simulat"], ["simulate"], ["effects", "shw", "x"], ["check"], ["--verson"]):
         assert wheelchair(*words).exit_code == 2, words
+
+
+def test_help_waits_for_no_command():
+    script = ("import sys\nfrom wheelchair_fmu.cli.main import COMMANDS, main\nsys.argv = ['wheelchair', '--help']\n"
+              "try:\n    main()\nexcept SystemExit:\n    pass\n"
+              "sys.exit(any(f'wheelchair_fmu.cli.{name}' in sys.modules for name in COMMANDS))")  # fmt: skip
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, check=False).returncode == 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")

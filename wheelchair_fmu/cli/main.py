@@ -10,9 +10,25 @@ import typer
 from .. import __version__
 from .group import Group
 
-# Modules in the order of --help; each has `register(app)`.
-COMMANDS = ("simulate", "linearize", "steady", "paper", "sweep", "tyre", "check", "compare", "diagnose", "fleet", "add",
-            "improve", "report", "workbench", "effects", "ssp")  # fmt: skip
+# Modules, each with `register(app)`, and what they are for.
+COMMANDS = {
+    "simulate": "Put the chair through a manoeuvre.",
+    "linearize": "Find a steady turn and linearise the chair about it, exactly.",
+    "steady": "Understeer, oversteer, and the limits of a turn, against speed.",
+    "paper": "Run sections 6.1 to 6.3 of the paper.",
+    "sweep": "Simulate every chair of a plan.",
+    "tyre": "Tyres identified from rig data.",
+    "check": "Read a campaign and print all its faults: place, fact, cure.",
+    "compare": "Simulate every run, and say how far off the model is.",
+    "diagnose": "Say which physical effect is missing, with the evidence.",
+    "fleet": "Diagnose every campaign of a fleet.",
+    "add": "Refit with one more effect, and write the improved variant.",
+    "improve": "Diagnose and add, until nothing is missing.",
+    "report": "Write one page with the verdict, its evidence, and the model.",
+    "workbench": "Do all of this in a browser, from recordings dropped in.",
+    "effects": "The physical effects that the chair can have.",
+    "ssp": "Systems of FMUs: the chair with a pusher and a floor.",
+}
 
 
 class Commands(Group):
@@ -27,6 +43,10 @@ class Commands(Group):
             import_module(f".{cmd_name}", __package__).register(alone)
             self.commands |= typer.main.get_group(alone).commands
         return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         if args[0] not in COMMANDS:  # all are needed for a guess at what was meant
