@@ -94,10 +94,14 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
     found = diagnose(read(make(tmp_path / "campaign", hidden, seed=2, noise_scale=0.4)))
     drops = {c.effect: c.drop for c in found.rounds[0].candidates}
     assert drops["push_force_gain"] > 1.2 * drops["wheel_inertia"]
-    assert found.effects == ("wheel_inertia", "lateral_load_transfer") and found.verdict == "missing"
+    assert found.effects == ("lateral_load_transfer", "wheel_inertia") and found.verdict == "missing"
     assert found.final.values["effect.wheel_inertia.m"] == pytest.approx(3.0, abs=0.3)
-    assert [s.name for s in found.ladder[2:]] == ["+wheel_inertia", "+lateral_load_transfer"]
+    assert [s.name for s in found.ladder[2:]] == ["+lateral_load_transfer", "+wheel_inertia"]
     assert found.ladder[-1].heldout < 1.02
+    again = next(r for r in found.rounds if r.winner and r.winner.effect == "wheel_inertia")
+    assert again.effects == ("lateral_load_transfer",)
+    (stable,) = (s for s in bootstrap(found, 200).rounds if s.effect == "wheel_inertia")
+    assert stable.first["wheel_inertia"] > 0.9 > 0.1 > stable.first["push_force_gain"]
 
 
 def test_toe_of_opposite_signs_is_found(tmp_path):

@@ -8,9 +8,10 @@ from dataclasses import replace
 from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .fit import Fit
 from .joint import together
-from .ties import overtaker
+from .ties import overtaken
 
 MOST_EFFECTS = 4
+MOST_STEPS = 8  # that put one in, or one in the place of another
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
@@ -41,8 +42,8 @@ class Climb:
     def to_the_top(self) -> None:
         """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
         overtake, as long as anything is found."""
-        for _ in range(MOST_EFFECTS):
-            best = self._found()
+        for _ in range(MOST_STEPS):
+            best = self._found() if len(self.effects) - len(self.already) < MOST_EFFECTS else None
             if best is not None:
                 self._put_in(best)
             elif not self._overtaken():
@@ -53,26 +54,27 @@ class Climb:
         self.effects = (*self.rounds[-1].effects, best.effect)
         self.base, self.held = self.search.settled(self.effects, best.fit)
         self._step()
+        self._prune()
+
+    def _prune(self) -> None:
+        """The model without what its last effect makes needless."""
         needed, fewer = self.search.pruned(self.effects, self.base, self.already)
         if needed != self.effects:
             self.search.say("starting again without what is needed no more")
             self.effects = needed
             self._anew(fewer)
-            self._tell()
 
     def _overtaken(self) -> bool:
         """Put another effect in the place of one that it overtakes beside what was found later."""
-        for i, r in enumerate(self.rounds):
-            found = overtaker(self.search, r, self.effects, self.base)
-            if found is None:
+        for r in self.rounds:
+            again = overtaken(self.search, r, self.effects, self.base)
+            if again is None or again.winner is None:
                 continue
-            overtaken, ahead, fit = found
-            self.search.say(f"starting again with {ahead.effect} in the place of {overtaken}")
-            self.effects = tuple(ahead.effect if e == overtaken else e for e in self.effects)
-            # a round's winner is the first that was found: ties are with the one that is in the model now
-            self.rounds[i] = replace(r, candidates=(ahead, *(c for c in r.candidates if c is not ahead)))
-            self._anew(fit)
-            self._tell()
+            self.search.say(f"starting again with {again.winner.effect}, which explains more")
+            self.rounds.append(again)
+            self.effects = (*again.effects, again.winner.effect)
+            self._anew(again.winner.fit)
+            self._prune()
             return True
         return False
 
@@ -109,7 +111,7 @@ class Climb:
             self._anew(self.base)
         else:
             self.ladder.append(self._top())
-        self._tell()
+            self._tell()
 
     def _anew(self, found: Fit) -> None:
         """The model with these effects, fitted about so, and its staircase, from the first step."""
@@ -119,6 +121,7 @@ class Climb:
             self.ladder.append(Step(f"+{self.effects[i - 1]}", base.evidence.rms, held.rms))
         self.base, self.held = self.search.settled(self.effects, found)
         self.ladder.append(self._top())
+        self._tell()
 
     def _top(self) -> Step:
         return Step(f"+{self.effects[-1]}", self.base.evidence.rms, self.held.rms)

@@ -89,13 +89,15 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of search: the model it started from, all scores, and the refitted candidates, best first."""
+    """One round of search: the model it started from, all scores, and the refitted candidates, best first. `again`: what an
+    earlier round found, beside what was found later."""
 
     effects: tuple[str, ...]
     fit: Fit
     heldout: Evidence
     scores: tuple[Score, ...]
     candidates: tuple[Candidate, ...]
+    again: bool = False
 
     @property
     def winner(self) -> Candidate | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from .diagnose import Candidate, Round, Search
 from .fit import Fit
@@ -18,14 +18,15 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 
 
 def tied(r: Round) -> tuple[str, ...]:
-    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be."""
+    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be. Beside what
+    was found later likelihoods alone tell, as in `still_tied`."""
     leader = r.winner
     if leader is None:
         return ()
     group, margin = [leader.effect], decisive(leader.fit.evidence)
     for c in r.candidates:
         near = leader.drop - c.drop <= margin
-        same = c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
+        same = not r.again and c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
@@ -46,16 +47,30 @@ def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> 
     return (leader.effect, *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
 
 
-def overtaker(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, Candidate, Fit] | None:
-    """What a round put in, another effect it found that in its place explains more by far, now that what was found later is in
-    too, and the model with that. Alone the one put in had done what others do; or it was small, and helped others on."""
+def overtaken(search: Search, r: Round, effects: Sequence[str], final: Fit) -> Round | None:
+    """A round of search again, beside what was found later, if there another effect that it found explains more by far than the
+    one it put in: alone that one had done what others do; or it was small, and helped others on."""
     taken = r.winner or r.help
     if taken is None or taken.effect not in effects or (r.winner and set(effects) == {*r.effects, taken.effect}):
         return None
     rivals = [c for c in r.candidates if c.found and c.effect not in effects and c.drop >= HALF * taken.drop]
-    fits = [(c, in_place(search, c, taken.effect, effects, final)) for c in rivals]
-    better = [(taken.effect, c, f) for c, f in fits if f and f.misfit < final.misfit - decisive(final.evidence)]
-    return min(better, key=lambda found: found[2].misfit, default=None)
+    fits = {c.effect: in_place(search, c, taken.effect, effects, final) for c in rivals}
+    known = {e: found for e, found in fits.items() if found}
+    if all(found.misfit >= final.misfit - decisive(final.evidence) for found in known.values()):
+        return None
+    again = _beside(search, r, tuple(e for e in effects if e != taken.effect), {taken.effect: final, **known})
+    return again if again.winner and again.winner.effect != taken.effect else None
+
+
+def _beside(search: Search, r: Round, effects: tuple[str, ...], fits: Mapping[str, Fit]) -> Round:
+    """A round again, from the model with these `effects`; `fits` are the models with one more."""
+    w, candidates = search.workshop, []
+    base, held = search.with_given(effects, next(iter(fits.values())))
+    for e, found in fits.items():
+        there = search.refit((*effects, e), found.values, most=0)  # as it is, with slopes
+        there_held = search.heldout(w.bench((*effects, e)), found.values)
+        candidates.append(search.judge(base, held, there, there_held, e, w.parameters(e), len(r.scores)))
+    return Round(effects, base, held, r.scores, tuple(sorted(candidates, key=lambda c: -c.drop)), again=True)
 
 
 def in_place(search: Search, rival: Candidate, of: str, effects: Sequence[str], final: Fit) -> Fit | None:
