@@ -92,7 +92,7 @@ def _samples(measured: Campaign) -> Line:
     """Runs put end to end, at their own sampling."""
     run = max(measured.runs, key=lambda r: len(r.time))
     longer = {len(run.time) * times: _repeated(run, times) for times in (1, 2, 4, 8)}
-    bench = Workshop(replace(measured, runs=(run,)), Variant()).bench()
+    bench = Workshop(replace(measured, runs=(run,)), Variant()).wide()
     by = [n for n in bench.sensitivities.columns if n.startswith("effect.")]
     return _line("samples", {n: (lambda r=r: bench.evidence([r], {}, by)) for n, r in longer.items()})
 

@@ -23,7 +23,7 @@ def baselines(search: Search) -> dict[str, str | None]:
     base, _, _ = begin(fresh, lambda words: None)
     w = fresh.workshop
     names = [n for e in w.light for n in w.parameters(e)]
-    evidence = w.bench().evidence(w.campaign.fit, base.values, names)
+    evidence = w.wide().evidence(w.campaign.fit, base.values, names)
     delta = np.array([fresh.records[n].smallest_interesting for n in names])
     owner = [n.split(".")[1] for n in names]
     return {"refit everything, BIC": _refit(fresh, base),

@@ -23,7 +23,8 @@ from .source import CSRC, c_source, coefficients, tangent_source
 from .tangent import tangent
 
 PACKAGE = Path(__file__).parent.parent
-GENERATED = "-O1"  # of derivatives; -O2 takes compilers twice as long for a few percent of speed
+# How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
+LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "-O3", "rodas": "-O3"}
 
 
 def folder() -> Path:
@@ -58,18 +59,15 @@ def helper(name: str) -> ctypes.CDLL:
 
 def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, place: Path, target: Path) -> None:
     model = assemble(choice, effects)
-    sources = {place / "model.c": "-O2"}
-    (place / "model.c").write_text(c_source(kernel(model), "model"))
+    texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
-        sources[place / "tangent_model.c"] = GENERATED
-        (place / "tangent_model.c").write_text(tangent_source(tangent(model, columns), "tangent"))
-
-    def generated(source: Path) -> Path:
-        return compiler.compile_object(source, source.with_suffix(".o"), ["-fvisibility=default", f"-I{CSRC}", sources[source]])
-
+        texts["tangent_model"] = tangent_source(tangent(model, columns), "tangent")
+        by_hand = ["tangent", "rodas"]
+    for name, text in texts.items():
+        (place / f"{name}.c").write_text(text)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = [pool.submit(generated, source) for source in sources]
-        objects += [pool.submit(_by_hand, name) for name in (["advance"] if columns is None else ["tangent", "rodas"])]
+        objects = [pool.submit(_object, place / f"{name}.c", place / f"{name}.o") for name in texts]
+        objects += [pool.submit(_by_hand, name) for name in by_hand]
         compiler.compile_shared([o.result() for o in objects], target)
 
 
@@ -80,9 +78,13 @@ def _by_hand(name: str) -> Path:
         with tempfile.TemporaryDirectory(dir=folder()) as place:
             header = Path(place) / "coefficients.h"
             header.write_text(coefficients())
-            flags = ["-fvisibility=default", f"-I{CSRC}", "-include", str(header), "-O2" if name == "advance" else "-O3"]
-            compiler.compile_object(CSRC / f"{name}.c", target, flags)
+            _object(CSRC / f"{name}.c", target, "-include", str(header))
     return target
+
+
+def _object(source: Path, target: Path, *flags: str) -> Path:
+    """Compile one of the files of a library."""
+    return compiler.compile_object(source, target, ["-fvisibility=default", f"-I{CSRC}", LEVELS[source.stem], *flags])
 
 
 def _place(name: str, suffix: str) -> Path:

@@ -46,19 +46,20 @@ class Linearised:
 
 class Sensitivities:
     """A variant, compiled with its derivatives by all parameters that a fit may touch, or by some `columns` of them: the
-    fewer, the faster. Instances may run in parallel threads."""
+    fewer, the faster; with none, only its `simulator` runs. Instances may run in parallel threads."""
 
     def __init__(self, variant: Variant, columns: Sequence[str] | None = None):
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
-        self.simulator = Simulator(variant, self.columns)
-        self._library = cache.library(variant.choice, variant.active(), self.columns)
-        self._library.wc_tangent_work.restype = ctypes.c_long
-        self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
-        self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
+        self.simulator = Simulator(variant, self.columns or None)
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
         self.results = tuple(o.name for o in self.model.outputs)
+        if self.columns:
+            self._library = cache.library(variant.choice, variant.active(), self.columns)
+            self._library.wc_tangent_work.restype = ctypes.c_long
+            self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
+            self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
 
     def run(
         self,

@@ -115,8 +115,8 @@ def _bending(model: Model, by: cs.SX, suffix: str) -> dict[str, cs.Function]:
     along = [cs.SX.sym("U", model.x.numel()), cs.SX.sym("dw", model.w.numel())]
     bent = cs.cse(cs.jtimes(slopes.nz[:], cs.vertcat(*at[:2]), cs.vertcat(*along)))
     bent, names, known = cs.extract_parametric(bent, cs.vertcat(*at))
-    given = {s.element_hash() for s in cs.vertsplit(cs.vertcat(*names, *along))}
-    bare = [s for s in cs.symvar(bent) if s.element_hash() not in given]  # of x, w and p
+    others = {s.element_hash() for s in cs.vertsplit(cs.vertcat(*names, *along))}
+    bare = [s for s in cs.symvar(bent) if s.element_hash() not in others]  # of x, w and p
     bend = cs.SX(slopes.sparsity(), bent)
     outputs = {
         "slopes": (at, _rows(cs.densify(slopes))),

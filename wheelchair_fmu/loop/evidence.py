@@ -188,9 +188,8 @@ class Bench:
         self.sensitivities = Sensitivities(self.variant, columns and (*columns, *START))
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
-        channels = {c.name: c for c in CHANNELS if any(c.name in r.channels for r in campaign.runs)}
-        self.offsets = {f"offset.{c}": c for c in campaign.nuisance if c in channels}
-        offsets = (Parameter(name, channels[c].unit, f"offset of {c}") for name, c in self.offsets.items())
+        self.offsets = offsets_of(campaign)
+        offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
@@ -347,6 +346,12 @@ class Bench:
         other = object.__new__(Bench)
         other.__dict__ = {**self.__dict__, "colour": colour}
         return other
+
+
+def offsets_of(campaign: Campaign) -> dict[str, str]:
+    """Names of the sensor offsets that a campaign has for nuisances, and the channels they are added to."""
+    measured = {c for r in campaign.runs for c in r.channels}
+    return {f"offset.{c}": c for c in campaign.nuisance if c in measured}
 
 
 def _each(do: Callable[[Any], Any], things: Iterable[Any]) -> list[Any]:

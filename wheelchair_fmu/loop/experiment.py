@@ -67,7 +67,7 @@ def separate(
 
 def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
     """The experiment that would show most of the effects that this campaign could not have shown."""
-    bench = search.workshop.bench()
+    bench = search.workshop.wide()
     effects = [e for e in hidden if e in search.workshop.light]
     names = [n for e in effects for n in search.workshop.parameters(e)]
     best: tuple[int, Any, list[str], float] | None = None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SimulationError
-from .evidence import Bench, Evidence
+from .evidence import Bench, Evidence, offsets_of
 from .fit import Fit, fit, start_value
 from .noise import QUIETER, colour_of
 from .statistics import TIED, decisive, estimates
@@ -23,7 +23,7 @@ class Models:
 
     def __init__(self, workshop: Workshop, progress: Callable[[str], None] = lambda words: None):
         self.workshop, self.say = workshop, progress
-        self.offsets = tuple(workshop.bench().offsets)
+        self.offsets = tuple(offsets_of(workshop.campaign))
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self.twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}

@@ -31,7 +31,7 @@ def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[
     zero keeps knots that the data hardly reach from running away.
     """
     workshop = search.workshop.widened(free)
-    bench = workshop.bench(effects)
+    bench = workshop.wide(effects)
     names = [n for effect in free for n in workshop.parameters(effect)]
     evidence = bench.evidence(workshop.campaign.fit, base.values, [*base.names, *names])
     k = len(base.names)

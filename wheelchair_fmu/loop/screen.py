@@ -74,13 +74,13 @@ class Screen(Models):
         for group in (w.heavy, w.demanding):
             more = [e for e in free if e in group]
             if more:
-                found += self._by_secants(w.bench((*effects, *more)), base, here, more)
+                found += self._by_secants(w.rerun((*effects, *more)), base, here, more)
         return sorted(found, key=lambda s: -s.score.drop)
 
     def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
         """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
         w = self.workshop
-        bench, names = w.bench(effects), [n for e in light for n in w.parameters(e)]
+        bench, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
         here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
         off, unbent = self._off(bench, base, here), self._unbent(bench, base, names)
         found = []

@@ -1,7 +1,7 @@
 """Benches for any set of effects: each as light as it can be, made once.
 
-An effect that brings a state makes every simulation dearer, so a bench carries all effects that bring
-none, and of the others only those asked for.
+An effect that brings a state makes every simulation dearer, and one more model to compile. Those that bring none are in one
+model together, off or on, and beside effects with states only where somebody asks for any.
 """
 
 from __future__ import annotations
@@ -36,17 +36,30 @@ class Workshop:
         self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
         self.light = [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
         self.colour = Colour(campaign.noise)
-        self._benches: dict[frozenset[str], Bench] = {}
+        self._benches: dict[tuple[frozenset[str], bool], Bench] = {}
         self.starts: dict[str, dict[str, float]] = {}
 
     def bench(self, effects: Iterable[str] = ()) -> Bench:
+        """The bench on which these effects may be on."""
+        wanted = {*effects, *self.variant.effects}
+        heavy = wanted.difference(self.light)
+        return self._bench(wanted if heavy and heavy == wanted else {*self.light, *heavy})
+
+    def wide(self, effects: Iterable[str] = ()) -> Bench:
         """The bench on which these effects, and all light ones, may be on."""
-        wanted = frozenset(e for e in (*effects, *self.variant.effects) if e not in self.light)
-        if wanted not in self._benches:
-            variant = self.variant.with_effects((*self.light, *sorted(wanted)))
-            columns = (*self.calibrated, *(n for e in self.catalogue for n in self.parameters(e)))
-            self._benches[wanted] = Bench(self.campaign, variant, columns=columns)
-        bench = self._benches[wanted]
+        return self._bench({*self.light, *effects, *self.variant.effects})
+
+    def rerun(self, effects: Iterable[str] = ()) -> Bench:
+        """A bench on which these effects may be on, and that only runs evidence again: it is compiled in half the time."""
+        return self._bench({*effects, *self.variant.effects}, derives=False)
+
+    def _bench(self, effects: set[str], derives: bool = True) -> Bench:
+        key = frozenset(effects), derives
+        if key not in self._benches:
+            variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
+            columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
+            self._benches[key] = Bench(self.campaign, variant, columns=columns if derives else ())
+        bench = self._benches[key]
         bench.colour = self.colour
         bench.starts.update(self.starts)
         return bench

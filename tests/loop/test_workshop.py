@@ -1,0 +1,42 @@
+"""Which effects a bench can switch on, and that benches of one model agree."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.loop.workshop import Workshop
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
+
+SIGMA, TOE = "effect.relaxation_length.sigma", "effect.toe_misalignment.tau_r"
+
+
+@pytest.fixture(scope="module")
+def shop(sample):
+    return Workshop(sample, Variant(catalogue=bundled()))
+
+
+def test_a_bench_carries_what_was_asked_for_and_light_effects_where_that_costs_no_state(shop):
+    light = set(shop.light)
+    assert set(shop.bench().variant.effects) == set(shop.bench(["toe_misalignment"]).variant.effects) == light
+    assert shop.bench(["relaxation_length"]).variant.effects == ("relaxation_length",)
+    assert set(shop.bench(["relaxation_length", "toe_misalignment"]).variant.effects) == light | {"relaxation_length"}
+    assert set(shop.wide(["relaxation_length"]).variant.effects) == light | {"relaxation_length"}
+
+
+def test_benches_of_one_model_agree(shop):
+    values, runs = {SIGMA: 0.1}, shop.campaign.fit[:2]
+    narrow, wide = (bench.evidence(runs, values, [SIGMA]) for bench in (shop.bench(["relaxation_length"]),
+                                                                         shop.wide(["relaxation_length"])))  # fmt: skip
+    assert np.abs(narrow.r - wide.r).max() < 1e-9
+    assert np.abs(narrow.S - wide.S).max() < 1e-9 * np.abs(wide.S).max()
+    again = shop.rerun(["relaxation_length"]).again(wide, {SIGMA: 0.12})
+    assert np.abs(again.r - shop.wide(["relaxation_length"]).again(wide, {SIGMA: 0.12}).r).max() < 1e-9
+
+
+def test_a_variant_s_own_effects_are_on_every_bench(sample):
+    shop = Workshop(sample, Variant(catalogue=bundled()).with_effects(["relaxation_length"]))
+    for bench in (shop.bench(), shop.wide(), shop.rerun(["trunk_motion"])):
+        assert "relaxation_length" in bench.variant.effects
+    assert TOE in shop.wide().records and TOE not in shop.bench().records
