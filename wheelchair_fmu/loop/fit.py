@@ -193,12 +193,12 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
 
 
 def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
-    """The step from `theta`, or the half, the quarter … of it that is more likely once all is linearised anew.
+    """The step from `theta`, or the half or quarter of it that is more likely once all is linearised anew.
 
     A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
     """
     before = problem.misfit(here, theta)
-    for shrink in (1.0, 0.5, 0.25, 0.125):
+    for shrink in (1.0, 0.5, 0.25):
         trial = theta + shrink * (to - theta)
         try:
             found = problem.linearised(trial)

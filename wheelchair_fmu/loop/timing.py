@@ -6,7 +6,7 @@ seems to; so such a run is found before the search, by reading its pushes earlie
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -15,9 +15,11 @@ from ..errors import SimulationError
 from .evidence import Bench, Evidence, RunEvidence
 from .score import projector
 
-SHIFTS = np.arange(0.2, 2.05, 0.1)  # s, each way; less is what a delay of the force record is for
+SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way; less is what a delay of the force record is for
+FINER = 0.1  # s, either side of the best of these
 SUSPECT = 2.0  # RMS innovation below which nobody looks
-EXPLAINED = 0.25  # share of the mean square innovation that may remain
+EXPLAINED = 0.25  # share of the mean square innovation that may remain,
+HOPEFUL = 0.6  # or so near it
 
 
 def late(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[str, float]:
@@ -26,16 +28,20 @@ def late(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[
     for e in evidence.runs:
         if float(np.nanmean(e.r**2)) < SUSPECT**2:
             continue
-        left = _left(bench, e, values)
+        left = _left(bench, e, values, [*-SHIFTS, *SHIFTS])
         best = min(left, key=lambda t: left[t])
+        if left[best] < HOPEFUL:
+            finer = (best + side for side in (-FINER, FINER) if abs(best + side) > SHIFTS[0])
+            left |= _left(bench, e, values, finer)
+            best = min(left, key=lambda t: left[t])
         if left[best] < EXPLAINED and abs(best) > SHIFTS[0]:  # at the smallest, less might do as well
             found[e.run.name] = round(float(best), 1)
     return found
 
 
-def _left(bench: Bench, e: RunEvidence, values: Mapping[str, float]) -> dict[float, float]:
-    """By how many seconds later than recorded the pushes are read, the share of the squared innovations that is left."""
-    shifts = [float(t) for t in (*-SHIFTS, *SHIFTS)]
+def _left(bench: Bench, e: RunEvidence, values: Mapping[str, float], later: Iterable[float]) -> dict[float, float]:
+    """By how many seconds `later` than recorded the pushes are read, the share of the squared innovations that is left."""
+    shifts = [float(t) for t in later]
     moved = [_moved(e, seconds) for seconds in shifts]
     try:
         again = bench.again(Evidence(tuple(moved), ()), values).runs  # all at once, on all cores
