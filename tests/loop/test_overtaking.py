@@ -6,92 +6,90 @@ from types import SimpleNamespace as Some
 
 import pytest
 
-from wheelchair_fmu.loop import diagnose, ties
+from wheelchair_fmu.loop import ties
+from wheelchair_fmu.loop.ties import beside, overtakes
 
 MARGIN = 9.2
+WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
 
 
-def one(effect, drop, found=True):
-    fit = Some(values={f"effect.{effect}.size": drop / 100}, evidence=None)
-    return Some(effect=effect, drop=drop, found=found, small=not found, lawful=True, fit=fit)
+@pytest.fixture(autouse=True)
+def a_margin(monkeypatch):
+    monkeypatch.setattr(ties, "_margin", lambda found: MARGIN)
 
 
-def a_round(*candidates, helped=None):
-    """A round of search from the calibrated model; `helped`: only that one went in, to help others on."""
-    best = None if helped else candidates[0]
-    help_ = next((c for c in candidates if c.effect == helped), None)
-    return Some(effects=(), candidates=candidates, winner=best, help=help_, scores=())
+def fit(misfit):
+    return Some(misfit=misfit, evidence=None, values={})
 
 
-class Misfits:
-    """A search whose models with these effects would have these misfits; None for one that cannot run. It notes what it is
-    `asked` for."""
+def one(effect, misfit):
+    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit)
 
-    def __init__(self, misfits, small=()):
-        self.misfits, self.small, self.asked = misfits, small, []
-        self.workshop = Some(parameters=lambda effect: [f"effect.{effect}.size"], bench=lambda effects: effects)
 
-    def remembered(self, swapped, start):
-        self.asked.append((swapped, start))
-        misfit = self.misfits[swapped]
-        return None if misfit is None else Some(misfit=misfit, values={})
+@pytest.mark.parametrize(("ahead", "again", "expected"), [
+    (one("inertia", -20.0), True, True),
+    (one("inertia", -9.0), True, False),  # not by far
+    (one("gain", -20.0), True, False),  # the effect itself, from another start
+    (one("inertia", -20.0), False, False),  # the round that found it: others were judged beside the same
+    (None, True, False),
+])  # fmt: skip
+def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again, expected):
+    assert overtakes(Some(winner=ahead, again=again), "gain", fit(0.0)) == expected
 
-    def with_given(self, effects, base):
-        return Some(misfit=1000.0), None
 
-    def refit(self, effects, start, most):
-        assert most == 0
-        return Some(misfit=self.misfits.get((effects[-1], *effects[:-1]), 0.0))
+class Known:
+    """A search that knows what every model does; it notes what refits it is `asked` for."""
+
+    def __init__(self, misfits):
+        self.misfits, self.asked = misfits, []
+        self.workshop = Some(parameters=lambda effect: [f"effect.{effect}.size"], bench=lambda effects: None)
+
+    def screen(self, base, effects):
+        return [Some(score=Some(effect=e, drop=WITHOUT - m)) for e, m in self.misfits.items()]
+
+    def refit(self, effects, start):
+        assert effects == ("later",)
+        return fit(WITHOUT)
 
     def heldout(self, bench, values):
         return None
 
     def judge(self, base, held, found, found_held, effect, names, tests):
-        return one(effect, base.misfit - found.misfit, effect not in self.small)
+        assert names == [f"effect.{effect}.size"] and tests == len(self.misfits)
+        return one(effect, found.misfit)
+
+    def candidate(self, base, held, effects, s, tests, least, visible):
+        self.asked.append((s.score.effect, least))
+        return one(s.score.effect, self.misfits[s.score.effect]) if s.score.drop >= least else None
+
+
+def before(*others, alone=0.0, small=False):
+    """The round that found a gain of the force sensors, alone, and others with these misfits."""
+    gain = Some(**vars(one("gain", alone)) | {"small": small})
+    rest = (Some(**vars(one(e, m)), lawful=True) for e, m in others)
+    return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest))
 
 
 @pytest.fixture
-def overtaken(monkeypatch):
-    """Calls `overtaken` where the final model's misfit is 0: the round again, and what was asked."""
-    for module in (ties, diagnose):
-        monkeypatch.setattr(module, "decisive", lambda evidence: MARGIN)
-
-    def call(r, effects, misfits, small=()):
-        search = Misfits(misfits, small)
-        final = Some(misfit=0.0, evidence=None, values={"tyre.C_lambda": 5000.0})
-        return ties.overtaken(search, r, effects, final), search.asked
-
-    return call
+def search(monkeypatch):
+    monkeypatch.setattr(ties, "shortlist", lambda screened, most, alike: screened)
+    return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 
 
-def test_who_explains_more_beside_what_came_later_takes_the_place(overtaken):
-    r = a_round(one("gain", 1000), one("inertia", 700), one("radius", 600), one("slope", 400))
-    again, asked = overtaken(r, ("gain", "later"), {("inertia", "later"): -20.0, ("radius", "later"): -50.0})
-    assert asked[0] == (("inertia", "later"), {"tyre.C_lambda": 5000.0, "effect.inertia.size": 7.0})
-    assert [swapped[0] for swapped, _ in asked] == ["inertia", "radius"]  # a slope did too little alone
-    assert again.effects == ("later",) and again.winner.effect == "radius"
-    # the round says what each does beside what was found later, the one overtaken as well
-    assert [(c.effect, c.drop) for c in again.candidates] == [("radius", 1050.0), ("inertia", 1020.0), ("gain", 1000.0)]
+@pytest.mark.parametrize("found_in", [
+    before(("inertia", 400.0)),  # somebody came near
+    before(alone=-1500.0),  # what it did alone others do now
+    before(small=True),  # it only helped others on
+])  # fmt: skip
+def test_an_effect_is_searched_for_again_beside_all_others(search, found_in):
+    r = beside(search, "gain", ("gain", "later"), fit(0.0), None, found_in)
+    assert r.again and r.effects == ("later",)
+    # the effect is as it is in the model; others are refitted, where they promise half as much
+    assert [(c.effect, c.drop) for c in r.candidates] == [("inertia", 1050.0), ("gain", 1000.0), ("radius", 700.0)]
+    assert search.asked == [("inertia", 500.0), ("radius", 500.0), ("slope", 500.0)]
+    assert {s.effect for s in r.scores} == set(search.misfits)
 
 
-@pytest.mark.parametrize("misfit", [-9.0, 50.0, None])
-def test_who_does_not_explain_more_by_far_does_not(overtaken, misfit):
-    r = a_round(one("gain", 1000), one("inertia", 700))
-    assert overtaken(r, ("gain", "later"), {("inertia", "later"): misfit})[0] is None
-
-
-def test_what_is_not_found_beside_what_came_later_takes_no_place(overtaken):
-    r = a_round(one("gain", 1000), one("inertia", 700))
-    assert overtaken(r, ("gain", "later"), {("inertia", "later"): -20.0}, small=("inertia",))[0] is None
-
-
-def test_nobody_is_tried_again_where_nothing_came_later_or_the_effect_is_needed_no_more(overtaken):
-    r = a_round(one("gain", 1000), one("inertia", 700))
-    assert overtaken(r, ("gain",), {}) == (None, [])
-    assert overtaken(r, ("inertia", "later"), {}) == (None, [])
-
-
-def test_what_only_helped_gives_way_to_what_is_found(overtaken):
-    r = a_round(one("cross_slope", 1700, found=False), one("camber", 1300), helped="cross_slope")
-    again, _ = overtaken(r, ("cross_slope",), {("camber",): -140.0}, small=("cross_slope",))
-    assert again.effects == () and again.winner.effect == "camber"
+def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(search):
+    assert beside(search, "gain", ("gain", "later"), fit(0.0), None, before(("slope", 900.0), ("later", 100.0))) is None
+    assert not search.asked

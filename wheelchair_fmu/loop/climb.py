@@ -8,7 +8,7 @@ from dataclasses import replace
 from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .fit import Fit
 from .joint import together
-from .ties import overtaken
+from .ties import beside, overtakes
 
 MOST_EFFECTS = 4
 MOST_STEPS = 8  # that put one in, or one in the place of another
@@ -28,6 +28,7 @@ class Climb:
         self.search, self._climbed = search, climbed
         self.effects: tuple[str, ...] = ()
         self.rounds: list[Round] = []
+        self.beside: dict[str, Round | None] = {}
         self.helping: set[str] = set()
         self._tried_together = False
         self.base, self.held, self.ladder = begin(search, search.say)
@@ -65,18 +66,28 @@ class Climb:
             self._anew(fewer)
 
     def _overtaken(self) -> bool:
-        """Put another effect in the place of one that it overtakes beside what was found later."""
-        for r in self.rounds:
-            again = overtaken(self.search, r, self.effects, self.base)
-            if again is None or again.winner is None:
+        """Search again for each effect beside all others, and put another in its place where that explains more by far."""
+        self.beside = {}
+        for effect in self.effects[len(self.already) :]:
+            self.beside[effect] = r = self._beside(effect)
+            if r is None or r.winner is None or not overtakes(r, effect, self.base):
                 continue
-            self.search.say(f"starting again with {again.winner.effect}, which explains more")
-            self.rounds.append(again)
-            self.effects = (*again.effects, again.winner.effect)
-            self._anew(again.winner.fit)
+            self.search.say(f"starting again with {r.winner.effect} in the place of {effect}")
+            self.rounds.append(r)
+            self.effects = (*r.effects, r.winner.effect)
+            self._anew(r.winner.fit)
             self._prune()
+            self.beside = {}
             return True
         return False
+
+    def _beside(self, effect: str) -> Round | None:
+        """The round that found an effect beside all others of the model, or else a search again."""
+        before = next(r for r in reversed(self.rounds) if any(c.effect == effect for c in r.candidates))
+        if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
+            return before
+        self.search.say(f"searching for {effect} again, beside all others")
+        return beside(self.search, effect, self.effects, self.base, self.held, before)
 
     def _found(self) -> Candidate | None:
         """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""

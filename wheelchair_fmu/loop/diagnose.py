@@ -89,8 +89,8 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of search: the model it started from, all scores, and the refitted candidates, best first. `again`: what an
-    earlier round found, beside what was found later."""
+    """One round of search: the model it started from, all scores, and the refitted candidates, best first. `again`: it is
+    for what an earlier round found, beside all that was found later."""
 
     effects: tuple[str, ...]
     fit: Fit

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..errors import SimulationError
 from .evidence import Bench, Evidence, offsets_of
 from .fit import Fit, fit, start_value
 from .noise import QUIETER, colour_of
@@ -27,7 +25,6 @@ class Models:
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self.twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
-        self._known: dict[tuple[object, ...], Fit | None] = {}
         self.notes: list[str] = []  # on runs left out
         self.noise_notes: list[str] = []
 
@@ -49,18 +46,6 @@ class Models:
     def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
         return fit(self.workshop.bench(effects), self.names(effects), start, here, **how)
-
-    def remembered(self, effects: tuple[str, ...], start: Mapping[str, float]) -> Fit | None:
-        """`refit`, followed to its end, and done once: from where it starts it may be asked for again. None where the model
-        cannot run."""
-        key = (effects, tuple(start.items()))
-        if key not in self._known:
-            try:
-                found = self.refit(effects, start)
-                self._known[key] = replace(found, evidence=found.evidence.brief())
-            except SimulationError:
-                self._known[key] = None
-        return self._known[key]
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""

@@ -37,7 +37,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     first = d.rounds[0]
     scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
     candidates: dict[str, tuple[Candidate, Round]] = {}
-    for r in d.rounds:
+    for r in (*d.rounds, *d.beside):
         for c in r.candidates:
             if c.effect not in candidates or c.effect in d.included:
                 candidates[c.effect] = (c, r)

@@ -14,7 +14,7 @@ def story(d: Diagnosis) -> dict[str, Any]:
     values}] for steps of the staircase, the one where the search `begins`, and `values` of each refitted effect in the
     ranking. Full names, SI units."""
     content, models = as_json(d), _models(d)
-    refitted = {c.effect: c.fit.values for r in reversed(d.rounds) for c in r.candidates}
+    refitted = {c.effect: c.fit.values for r in reversed((*d.rounds, *d.beside)) for c in r.candidates}
     for row in content["ranking"]:
         values = models.get(f"+{row['effect']}", refitted.get(row["effect"]))
         row["values"] = None if values is None else dict(values)
@@ -35,7 +35,10 @@ def _beginning(d: Diagnosis) -> str:
 
 def _models(d: Diagnosis) -> dict[str, Mapping[str, float]]:
     """Fitted values by step of the staircase, from where the search began; what came between is not kept."""
+    known = {r.effects: r.fit.values for r in d.rounds}
     models: dict[str, Mapping[str, float]] = {"nominal": {}, _beginning(d): d.rounds[0].fit.values}
-    models |= {f"+{r.effects[-1]}": r.fit.values for r in d.rounds[1:]}
+    for i in range(len(d.already) + 1, len(d.included) + 1):
+        if d.included[:i] in known:
+            models[f"+{d.included[i - 1]}"] = known[d.included[:i]]
     models[d.ladder[-1].name] = (d.proposal.fit if d.proposal else d.final).values
     return models

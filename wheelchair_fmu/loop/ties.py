@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from .diagnose import Candidate, Round, Search
+import numpy as np
+
+from ..errors import SimulationError
+from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search
+from .evidence import Evidence
 from .fit import Fit
+from .screen import shortlist
 from .statistics import decisive, difference_blocks, resampled_totals
 
-HALF = 0.5  # of a fall: who reaches it alone may do as much as the leader, or more, beside what is found later
+HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
 
 
@@ -18,66 +23,58 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 
 
 def tied(r: Round) -> tuple[str, ...]:
-    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be. Beside what
-    was found later likelihoods alone tell, as in `still_tied`."""
+    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be. In a search
+    again, beside all that was found, likelihoods alone tell."""
     leader = r.winner
     if leader is None:
         return ()
-    group, margin = [leader.effect], decisive(leader.fit.evidence)
+    group, margin = [leader.effect], _margin(leader.fit)
     for c in r.candidates:
-        near = leader.drop - c.drop <= margin
+        near = c.fit.misfit - leader.fit.misfit <= margin
         same = not r.again and c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
 
 
-def still_tied(search: Search, r: Round, effects: Sequence[str], final: Fit) -> tuple[str, ...]:
-    """What a round tied, and what came near, less those that fall behind in the place of its effect once all that was found
-    later is in too: of a model that leaves much the very best values are not known, nor which of two is ahead."""
-    leader = r.winner
-    if leader is None or leader.effect not in effects:  # or needed no more
-        return ()
-    group = tied(r)
-    if set(effects) == {*r.effects, leader.effect}:
-        return group
-    near = (c.effect for c in r.candidates if c.lawful and c.drop >= HALF * leader.drop)
-    rivals, margin = {*group, *near}.difference(effects), decisive(final.evidence)
-    fits = {c.effect: in_place(search, c, leader.effect, effects, final) for c in r.candidates if c.effect in rivals}
-    return (leader.effect, *(e for e, found in fits.items() if found and found.misfit - final.misfit < margin))
-
-
-def overtaken(search: Search, r: Round, effects: Sequence[str], final: Fit) -> Round | None:
-    """A round of search again, beside what was found later, if there another effect that it found explains more by far than the
-    one it put in: alone that one had done what others do; or it was small, and helped others on."""
-    taken = r.winner or r.help
-    if taken is None or taken.effect not in effects or (r.winner and set(effects) == {*r.effects, taken.effect}):
+def beside(search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence, before: Round) -> Round | None:
+    """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it.
+    None where it stands without that, or where the model cannot run without it."""
+    w, others = search.workshop, tuple(e for e in effects if e != effect)
+    try:
+        base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
+        base_held = search.heldout(w.bench(others), base.values)
+    except SimulationError:
         return None
-    rivals = [c for c in r.candidates if c.found and c.effect not in effects and c.drop >= HALF * taken.drop]
-    fits = {c.effect: in_place(search, c, taken.effect, effects, final) for c in rivals}
-    known = {e: found for e, found in fits.items() if found}
-    if all(found.misfit >= final.misfit - decisive(final.evidence) for found in known.values()):
+    fall = base.misfit - final.misfit
+    if _stands(effect, effects, fall, before):
         return None
-    again = _beside(search, r, tuple(e for e in effects if e != taken.effect), {taken.effect: final, **known})
-    return again if again.winner and again.winner.effect != taken.effect else None
+    screened = search.screen(base, others)
+    own = search.judge(base, base_held, final, held, effect, w.parameters(effect), len(screened))
+    promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
+    tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
+    candidates = sorted([own, *(c for c in tried if c)], key=lambda c: -c.drop)
+    return Round(others, base, base_held, tuple(s.score for s in screened), tuple(candidates), again=True)
 
 
-def _beside(search: Search, r: Round, effects: tuple[str, ...], fits: Mapping[str, Fit]) -> Round:
-    """A round again, from the model with these `effects`; `fits` are the models with one more."""
-    w, candidates = search.workshop, []
-    base, held = search.with_given(effects, next(iter(fits.values())))
-    for e, found in fits.items():
-        there = search.refit((*effects, e), found.values, most=0)  # as it is, with slopes
-        there_held = search.heldout(w.bench((*effects, e)), found.values)
-        candidates.append(search.judge(base, held, there, there_held, e, w.parameters(e), len(r.scores)))
-    return Round(effects, base, held, r.scores, tuple(sorted(candidates, key=lambda c: -c.drop)), again=True)
+def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:
+    """Did no other come near an effect in the round that found it, and does it still do most of what it did then? If not, it
+    may have done what others do that were found later, and one that does the rest may not have shown."""
+    then = next(c for c in before.candidates if c.effect == effect)
+    near = (c for c in before.candidates if c.lawful and c.effect not in effects and c.drop >= HALF * then.drop)
+    return not any(near) and not then.small and fall >= HALF * (before.fit.misfit - then.fit.misfit)
 
 
-def in_place(search: Search, rival: Candidate, of: str, effects: Sequence[str], final: Fit) -> Fit | None:
-    """The `final` model of these `effects` with a rival in the place of one of them, refitted; None where that cannot run."""
-    own = {n: rival.fit.values[n] for n in search.workshop.parameters(rival.effect)}
-    swapped = tuple(rival.effect if e == of else e for e in effects)
-    return search.remembered(swapped, {**final.values, **own})
+def overtakes(r: Round, effect: str, final: Fit) -> bool:
+    """Did a search again for one effect of the `final` model find another, with which that explains more by far?"""
+    ahead = r.winner
+    far = final.misfit - _margin(final)
+    return r.again and ahead is not None and ahead.effect != effect and ahead.fit.misfit < far
+
+
+def _margin(found: Fit) -> float:
+    """What −2 log likelihood has to differ by, as its innovations scatter and last."""
+    return decisive(found.evidence) * float(np.mean(found.evidence.r**2))
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:

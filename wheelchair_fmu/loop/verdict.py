@@ -22,7 +22,7 @@ from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
 from .statistics import correlation_time, decisive, estimates
-from .ties import NEARLY, grouped, still_tied
+from .ties import NEARLY, grouped, tied
 from .workshop import CALIBRATED, Workshop
 
 ENOUGH_POWER = 0.8
@@ -41,7 +41,8 @@ LASTING_BESIDE = 2.0  # or so many beside effects that were found
 @dataclass(frozen=True)
 class Diagnosis:
     """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
-    `proposal` the generic term of "outside", `intervals` the profile-likelihood intervals of what was found."""
+    `beside` those that judge each effect beside all others, `proposal` the generic term of "outside", `intervals` the
+    profile-likelihood intervals of what was found."""
 
     campaign: str
     verdict: str
@@ -50,6 +51,7 @@ class Diagnosis:
     ties: tuple[tuple[str, ...], ...]
     ladder: tuple[Step, ...]
     rounds: tuple[Round, ...]
+    beside: tuple[Round, ...]
     leftover: Round | None
     proposal: Candidate | None
     final: Fit
@@ -94,8 +96,8 @@ def diagnose(
     if proposal is not None:
         included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
         climbed(tuple(ladder))
-    groups = [(still_tied(search, r, included, base), r) for r in rounds] if proposal is None else []
-    groups = [(group, r) for group, r in groups if len(group) > 1]
+    beside = [r for r in climb.beside.values() if r] if proposal is None else []
+    groups = [(group, r) for r in beside if len(group := tied(r)) > 1]
     ties = tuple(group for group, _ in groups)
     helping = {e for e in climb.helping.intersection(included) if search.small(base, e)}
     effects = tuple(e for e in included if e not in climb.already and e not in helping)
@@ -106,8 +108,8 @@ def diagnose(
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
     notes = (*thinned, *search.notes, *search.noise_notes)
-    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds), leftover,
-                     proposal, base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
+    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds), tuple(beside),
+                     leftover, proposal, base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
