@@ -214,6 +214,7 @@ def test_version_help_and_unknown_commands():
     assert wheelchair("--version").output == f"wheelchair-fmu {__version__}\n"
     listed = wheelchair("--help").output
     assert all(f"  {name} " in listed and what in listed for name, what in COMMANDS.items())
+    assert "no command 'simulat'; did you mean 'simulate'?" in wheelchair("simulat").stderr
     for words in (["simulat"], ["simulate"], ["effects", "shw", "x"], ["check"], ["--verson"]):
         assert wheelchair(*words).exit_code == 2, words
 

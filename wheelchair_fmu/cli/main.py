@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from .. import __version__
+from ..errors import unknown
 from .group import Group
 
 # Modules, each with `register(app)`, and what they are for.
@@ -49,9 +50,8 @@ class Commands(Group):
             formatter.write_dl(list(COMMANDS.items()))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        if args[0] not in COMMANDS:  # all are needed for a guess at what was meant
-            for name in COMMANDS:
-                self.get_command(ctx, name)
+        if args[0] not in COMMANDS:
+            raise unknown("command", args[0], COMMANDS)
         return super().resolve_command(ctx, args)
 
 
