@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from types import SimpleNamespace as Some
 
+import numpy as np
 import pytest
 
 from wheelchair_fmu.loop import ties
-from wheelchair_fmu.loop.ties import beside, overtakes
+from wheelchair_fmu.loop.evidence import Evidence
+from wheelchair_fmu.loop.fit import Fit
+from wheelchair_fmu.loop.ties import beside, overtakes, tied
 
 MARGIN = 9.2
 WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
@@ -19,7 +22,7 @@ def a_margin(monkeypatch):
 
 
 def fit(misfit):
-    return Some(misfit=misfit, evidence=None, values={})
+    return Fit((), {}, np.zeros((0, 0)), Evidence((), ()), misfit, np.zeros(0))
 
 
 def one(effect, misfit):
@@ -42,7 +45,10 @@ class Known:
 
     def __init__(self, misfits):
         self.misfits, self.asked = misfits, []
-        self.workshop = Some(parameters=lambda effect: [f"effect.{effect}.size"], bench=lambda effects: None)
+        self.workshop = Some(parameters=lambda effect: [f"effect.{effect}.size"], bench=lambda effects: self)
+
+    def restarted(self, evidence, values):
+        return evidence
 
     def screen(self, base, effects):
         return [Some(score=Some(effect=e, drop=WITHOUT - m)) for e, m in self.misfits.items()]
@@ -52,7 +58,10 @@ class Known:
         return fit(WITHOUT)
 
     def heldout(self, bench, values):
-        return None
+        return Evidence((), ())
+
+    def rival_of(self, effect, effects, base, held):
+        return base, held
 
     def judge(self, base, held, found, found_held, effect, names, tests):
         assert names == [f"effect.{effect}.size"] and tests == len(self.misfits)
@@ -67,7 +76,7 @@ def before(*others, alone=0.0, small=False):
     """The round that found a gain of the force sensors, alone, and others with these misfits."""
     gain = Some(**vars(one("gain", alone)) | {"small": small})
     rest = (Some(**vars(one(e, m)), lawful=True) for e, m in others)
-    return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest))
+    return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest), again=True)
 
 
 @pytest.fixture
@@ -80,6 +89,8 @@ def search(monkeypatch):
     before(("inertia", 400.0)),  # somebody came near
     before(alone=-1500.0),  # what it did alone others do now
     before(small=True),  # it only helped others on
+    before(("inertia", 992.0), alone=983.0),  # somebody was as good, of little
+    None,  # nobody knew the noise
 ])  # fmt: skip
 def test_an_effect_is_searched_for_again_beside_all_others(search, found_in):
     r = beside(search, "gain", ("gain", "later"), fit(0.0), None, found_in)
@@ -93,3 +104,10 @@ def test_an_effect_is_searched_for_again_beside_all_others(search, found_in):
 def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(search):
     assert beside(search, "gain", ("gain", "later"), fit(0.0), None, before(("slope", 900.0), ("later", 100.0))) is None
     assert not search.asked
+
+
+def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_found():
+    """Without held-out runs, say, nobody is found who is not plain: then the best found may be far behind."""
+    lawful = [Some(**vars(one(e, m)), lawful=True, found=e == "slope") for e, m in
+              (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))]  # fmt: skip
+    assert tied(Some(candidates=lawful, again=True), "gain") == ("gain", "inertia")

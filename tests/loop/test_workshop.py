@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.workshop import Workshop
+from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
@@ -33,6 +33,12 @@ def test_benches_of_one_model_agree(shop):
     assert np.abs(narrow.S - wide.S).max() < 1e-9 * np.abs(wide.S).max()
     again = shop.rerun(["relaxation_length"]).again(wide, {SIGMA: 0.12})
     assert np.abs(again.r - shop.wide(["relaxation_length"]).again(wide, {SIGMA: 0.12}).r).max() < 1e-9
+
+
+def test_a_bench_without_parameters_to_fit_derives_by_where_runs_start(sample):
+    shop = Workshop(sample, Variant(catalogue=bundled()).with_effects(["relaxation_length"]), {*CALIBRATED, SIGMA})
+    evidence = shop.bench().evidence(sample.fit[:1], {}, tune_start=1)
+    assert evidence.S.shape[1] == 0 and np.isfinite(evidence.rms)
 
 
 def test_a_variant_s_own_effects_are_on_every_bench(sample):

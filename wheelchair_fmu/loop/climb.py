@@ -18,7 +18,7 @@ MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search fo
 
 class Climb:
     """A model on its way up: its `effects`, the fit `base` with all of them, the `held`-out evidence, the staircase `ladder`
-    that led there, and the `rounds` of search.
+    that led there, the `rounds` of search, and for an effect that was found the one that judges it `beside` all others.
 
     `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named.
     `climbed` is told the staircase whenever it has changed.
@@ -31,6 +31,7 @@ class Climb:
         self.beside: dict[str, Round | None] = {}
         self.helping: set[str] = set()
         self._tried_together = False
+        self._recoloured = 0  # rounds that were searched with other noise than is known now
         self.base, self.held, self.ladder = begin(search, search.say)
         self._tell()
         for effect in search.workshop.variant.effects:
@@ -49,6 +50,7 @@ class Climb:
                 self._put_in(best)
             elif not self._overtaken():
                 return
+        self.beside = {effect: self._beside(effect) for effect in self.effects[len(self.already) :]}
 
     def _put_in(self, best: Candidate) -> None:
         """The model with what the last round found, and without what that makes needless."""
@@ -77,17 +79,17 @@ class Climb:
             self.effects = (*r.effects, r.winner.effect)
             self._anew(r.winner.fit)
             self._prune()
-            self.beside = {}
             return True
         return False
 
     def _beside(self, effect: str) -> Round | None:
         """The round that found an effect beside all others of the model, or else a search again."""
-        before = next(r for r in reversed(self.rounds) if any(c.effect == effect for c in r.candidates))
+        i, before = next((i, r) for i, r in enumerate(reversed(self.rounds)) if any(c.effect == effect for c in r.candidates))
         if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
             return before
         self.search.say(f"searching for {effect} again, beside all others")
-        return beside(self.search, effect, self.effects, self.base, self.held, before)
+        same_noise = i < len(self.rounds) - self._recoloured
+        return beside(self.search, effect, self.effects, self.base, self.held, before if same_noise else None)
 
     def _found(self) -> Candidate | None:
         """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""
@@ -119,6 +121,7 @@ class Climb:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""
         if self.search.recolour(self.base.evidence, again=True):
             self.search.say("calibrating with the noise that is left")
+            self._recoloured = len(self.rounds)
             self._anew(self.base)
         else:
             self.ladder.append(self._top())

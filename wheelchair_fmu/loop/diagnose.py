@@ -224,7 +224,7 @@ class Search(Screen):
             p=min(1.0, tests * p),
             falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
             visible=base.evidence.fall_to(found.evidence),
-            gain=held_out_gain(base_held, held) if held is not None else None,
+            gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
             heldout=held.brief() if held is not None else None,
             small=_small(along, spread),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),

@@ -179,13 +179,15 @@ class Bench:
     `variant` has every effect that may be asked for, besides those that the campaign gives a size; effects at zero change
     nothing. `colour` is the noise. Sensor offsets
     that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
-    the parameters that sensitivities may be asked by, all if not given; the start is among them in any case.
+    the parameters that sensitivities may be asked by, all if not given; the start is among them in any case. One that does not
+    derive is compiled without, and only runs evidence `again`.
     """
 
     def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None,
-                 columns: Sequence[str] | None = None):  # fmt: skip
+                 columns: Sequence[str] | None = None, derives: bool = True):  # fmt: skip
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
-        self.sensitivities = Sensitivities(self.variant, columns and (*columns, *START))
+        wanted = None if columns is None else (*columns, *START)
+        self.sensitivities = Sensitivities(self.variant, wanted if derives else ())
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
         self.offsets = offsets_of(campaign)

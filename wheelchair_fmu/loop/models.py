@@ -21,12 +21,16 @@ class Models:
 
     def __init__(self, workshop: Workshop, progress: Callable[[str], None] = lambda words: None):
         self.workshop, self.say = workshop, progress
-        self.offsets = tuple(offsets_of(workshop.campaign))
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self.twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
         self.notes: list[str] = []  # on runs left out
         self.noise_notes: list[str] = []
+
+    @property
+    def offsets(self) -> tuple[str, ...]:
+        """Sensor offsets that every fit estimates."""
+        return tuple(offsets_of(self.workshop.campaign))
 
     def calibrate(self) -> tuple[Fit, Evidence, Evidence, Evidence]:
         """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
@@ -60,6 +64,7 @@ class Models:
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
         bench = self.workshop.bench(effects)
+        self._without.clear()  # these started elsewhere
         bench.evidence(self.workshop.campaign.runs, found.values, (), tune_start=2)
         self.workshop.remember(bench)
         again = self.refit(effects, found.values)
@@ -93,7 +98,10 @@ class Models:
         before = self.workshop.colour
         lowest = QUIETER if again else 0.0
         self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, lowest)
-        return self.workshop.colour.differs(before)
+        if self.workshop.colour.differs(before):
+            self._without.clear()
+            return True
+        return False
 
     def rival_of(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
         """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""

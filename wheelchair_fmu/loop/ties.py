@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,12 +23,10 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
     return tuple(dict.fromkeys(tuple(next((group for group in ties if e in group), (e,))) for e in effects))
 
 
-def tied(r: Round) -> tuple[str, ...]:
-    """The effect a round found, and every other that this campaign cannot tell from it, however small it would be. In a search
-    again, beside all that was found, likelihoods alone tell."""
-    leader = r.winner
-    if leader is None:
-        return ()
+def tied(r: Round, effect: str) -> tuple[str, ...]:
+    """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. In a
+    search again, beside all that was found, likelihoods alone tell."""
+    leader = _of(r, effect)
     group, margin = [leader.effect], _margin(leader.fit)
     for c in r.candidates:
         near = c.fit.misfit - leader.fit.misfit <= margin
@@ -37,32 +36,41 @@ def tied(r: Round) -> tuple[str, ...]:
     return tuple(group)
 
 
-def beside(search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence, before: Round) -> Round | None:
-    """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it.
-    None where it stands without that, or where the model cannot run without it."""
+def beside(search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence,
+           before: Round | None) -> Round | None:  # fmt: skip
+    """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it,
+    if that knew the same noise. None where it stands without that, or where the model cannot run without it."""
     w, others = search.workshop, tuple(e for e in effects if e != effect)
     try:
         base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
         base_held = search.heldout(w.bench(others), base.values)
     except SimulationError:
         return None
-    fall = base.misfit - final.misfit
-    if _stands(effect, effects, fall, before):
+    base = replace(base, evidence=w.bench(others).restarted(base.evidence, base.values))
+    without, without_held = search.rival_of(effect, others, base, base_held)
+    fall = without.misfit - final.misfit
+    if before and _stands(effect, effects, fall, before):
         return None
     screened = search.screen(base, others)
-    own = search.judge(base, base_held, final, held, effect, w.parameters(effect), len(screened))
+    own = search.judge(without, without_held, final, held, effect, w.parameters(effect), len(screened))
     promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
     tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
     candidates = sorted([own, *(c for c in tried if c)], key=lambda c: -c.drop)
-    return Round(others, base, base_held, tuple(s.score for s in screened), tuple(candidates), again=True)
+    base = replace(base, evidence=base.evidence.brief())
+    return Round(others, base, base_held.brief(), tuple(s.score for s in screened), tuple(candidates), again=True)
 
 
 def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:
     """Did no other come near an effect in the round that found it, and does it still do most of what it did then? If not, it
     may have done what others do that were found later, and one that does the rest may not have shown."""
-    then = next(c for c in before.candidates if c.effect == effect)
-    near = (c for c in before.candidates if c.lawful and c.effect not in effects and c.drop >= HALF * then.drop)
-    return not any(near) and not then.small and fall >= HALF * (before.fit.misfit - then.fit.misfit)
+    then = _of(before, effect)
+    near = {c.effect for c in before.candidates if c.lawful and c.drop >= HALF * then.drop}
+    most = fall >= HALF * (before.fit.misfit - then.fit.misfit)
+    return most and not then.small and near.union(tied(before, effect)) <= set(effects)
+
+
+def _of(r: Round, effect: str) -> Candidate:
+    return next(c for c in r.candidates if c.effect == effect)
 
 
 def overtakes(r: Round, effect: str, final: Fit) -> bool:

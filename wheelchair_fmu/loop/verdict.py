@@ -41,8 +41,8 @@ LASTING_BESIDE = 2.0  # or so many beside effects that were found
 @dataclass(frozen=True)
 class Diagnosis:
     """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
-    `beside` those that judge each effect beside all others, `proposal` the generic term of "outside", `intervals` the
-    profile-likelihood intervals of what was found."""
+    `beside` those that judge an effect beside all others, for those that do not stand without, `proposal` the generic term of
+    "outside", `intervals` the profile-likelihood intervals of what was found."""
 
     campaign: str
     verdict: str
@@ -96,11 +96,11 @@ def diagnose(
     if proposal is not None:
         included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
         climbed(tuple(ladder))
-    beside = [r for r in climb.beside.values() if r] if proposal is None else []
-    groups = [(group, r) for r in beside if len(group := tied(r)) > 1]
-    ties = tuple(group for group, _ in groups)
+    beside = {e: r for e, r in climb.beside.items() if r} if proposal is None else {}
     helping = {e for e in climb.helping.intersection(included) if search.small(base, e)}
     effects = tuple(e for e in included if e not in climb.already and e not in helping)
+    groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
+    ties = tuple(group for group, _ in groups)
     verdict = _verdict(effects, ties, rounds, proposal, ladder, base.evidence)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
@@ -108,8 +108,9 @@ def diagnose(
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
     notes = (*thinned, *search.notes, *search.noise_notes)
-    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds), tuple(beside),
-                     leftover, proposal, base, intervals, search, notes, following, time.monotonic() - began)  # fmt: skip
+    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds),
+                     tuple(beside.values()), leftover, proposal, base, intervals, search, notes, following,
+                     time.monotonic() - began)  # fmt: skip
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
@@ -146,7 +147,7 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
     found = effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         first = rounds[0]
-        promised = next((s.drop for s in first.scores if s.effect == found[0]), 0.0)  # by slopes, like the terms'
+        promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
                                      visible=PLAINLY_VISIBLE, rival=base.misfit, least=HOPELESS * promised)  # fmt: skip
         lone = next((c for c in alone.candidates if _clear(c)), None)

@@ -58,7 +58,7 @@ class Workshop:
         if key not in self._benches:
             variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
             columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
-            self._benches[key] = Bench(self.campaign, variant, columns=columns if derives else ())
+            self._benches[key] = Bench(self.campaign, variant, columns=columns, derives=derives)
         bench = self._benches[key]
         bench.colour = self.colour
         bench.starts.update(self.starts)
