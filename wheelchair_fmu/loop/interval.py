@@ -18,13 +18,19 @@ from .fit import Fit, Problem
 from .statistics import sandwich
 
 LEVEL = 0.95
+NORMAL = 1.96  # standard errors, at LEVEL
 FARTHEST = 6.0  # robust standard errors; what is further off is not looked for
 PRECISE = 0.03  # of a standard error
+JUMP = 0.5  # of a standard error, within which no smooth likelihood falls so far
 CORRECTIONS = 2  # steps of the other parameters towards their best
 
 
 def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]:
-    """The interval (SI) of one fitted parameter at LEVEL; an end is its bound, or FARTHEST off, where the data set none."""
+    """The interval (SI) of one fitted parameter at LEVEL; an end is its bound, or FARTHEST off, where the data set none.
+
+    Where the likelihood jumps close by, as with casters that swing round or do not, that says nothing of how sure an estimate
+    is: there an end is as far off as standard errors have it.
+    """
     at = found.names.index(name)
     se = float(np.sqrt(sandwich(found)[at, at]))
     threshold = value_beyond(1 - LEVEL, 1) * se**2 / found.covariance[at, at]
@@ -41,7 +47,8 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
             if far >= reach:
                 return best + side * reach
             near, far = far, min(1.6 * far, reach)
-        return best + side * float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
+        distance = float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
+        return best + side * (distance if distance > JUMP * se else min(NORMAL * se, reach))
 
     if not se > 0:
         return best, best
