@@ -10,7 +10,7 @@ import pytest
 from wheelchair_fmu.loop import ties
 from wheelchair_fmu.loop.evidence import Evidence
 from wheelchair_fmu.loop.fit import Fit
-from wheelchair_fmu.loop.ties import beside, overtakes, tied
+from wheelchair_fmu.loop.ties import beside, overtaker, tied
 
 MARGIN = 9.2
 WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
@@ -18,7 +18,7 @@ WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
 
 @pytest.fixture(autouse=True)
 def a_margin(monkeypatch):
-    monkeypatch.setattr(ties, "_margin", lambda found: MARGIN)
+    monkeypatch.setattr(ties, "margin", lambda evidence: MARGIN)
 
 
 def fit(misfit):
@@ -37,7 +37,7 @@ def one(effect, misfit):
     (None, True, False),
 ])  # fmt: skip
 def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again, expected):
-    assert overtakes(Some(winner=ahead, again=again), "gain", fit(0.0)) == expected
+    assert overtaker(Some(winner=ahead, again=again), "gain", fit(0.0)) is (ahead if expected else None)
 
 
 class Known:

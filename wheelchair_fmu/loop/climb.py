@@ -8,7 +8,7 @@ from dataclasses import replace
 from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .fit import Fit
 from .joint import together
-from .ties import beside, overtakes
+from .ties import beside, overtaker
 
 MOST_EFFECTS = 4
 MOST_STEPS = 8  # that put one in, or one in the place of another
@@ -72,24 +72,24 @@ class Climb:
         self.beside = {}
         for effect in self.effects[len(self.already) :]:
             self.beside[effect] = r = self._beside(effect)
-            if r is None or r.winner is None or not overtakes(r, effect, self.base):
-                continue
-            self.search.say(f"starting again with {r.winner.effect} in the place of {effect}")
-            self.rounds.append(r)
-            self.effects = (*r.effects, r.winner.effect)
-            self._anew(r.winner.fit)
-            self._prune()
-            return True
+            if r and (ahead := overtaker(r, effect, self.base)):
+                self.search.say(f"starting again with {ahead.effect} in the place of {effect}")
+                self.rounds.append(r)
+                self.effects = (*r.effects, ahead.effect)
+                self._anew(ahead.fit)
+                self._prune()
+                return True
         return False
 
     def _beside(self, effect: str) -> Round | None:
         """The round that found an effect beside all others of the model, or else a search again."""
-        i, before = next((i, r) for i, r in enumerate(reversed(self.rounds)) if any(c.effect == effect for c in r.candidates))
+        latest = max(i for i, r in enumerate(self.rounds) if any(c.effect == effect for c in r.candidates))
+        before = self.rounds[latest]
         if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
             return before
         self.search.say(f"searching for {effect} again, beside all others")
-        same_noise = i < len(self.rounds) - self._recoloured
-        return beside(self.search, effect, self.effects, self.base, self.held, before if same_noise else None)
+        known = before if latest >= self._recoloured else None
+        return beside(self.search, effect, self.effects, self.base, self.held, known)
 
     def _found(self) -> Candidate | None:
         """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""

@@ -18,7 +18,6 @@ from .fit import Fit, Problem
 from .statistics import sandwich
 
 LEVEL = 0.95
-NORMAL = 1.96  # standard errors, at LEVEL
 FARTHEST = 6.0  # robust standard errors; what is further off is not looked for
 PRECISE = 0.03  # of a standard error
 JUMP = 0.5  # of a standard error, within which no smooth likelihood falls so far
@@ -33,7 +32,8 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     """
     at = found.names.index(name)
     se = float(np.sqrt(sandwich(found)[at, at]))
-    threshold = value_beyond(1 - LEVEL, 1) * se**2 / found.covariance[at, at]
+    quantile = value_beyond(1 - LEVEL, 1)
+    threshold = quantile * se**2 / found.covariance[at, at]
     record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
 
     def above(distance: float) -> float:
@@ -48,7 +48,7 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
                 return best + side * reach
             near, far = far, min(1.6 * far, reach)
         distance = float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
-        return best + side * (distance if distance > JUMP * se else min(NORMAL * se, reach))
+        return best + side * (distance if distance > JUMP * se else min(quantile**0.5 * se, reach))
 
     if not se > 0:
         return best, best

@@ -18,7 +18,7 @@ from .diagnose import Round, Search
 from .fit import Fit
 from .score import Score
 from .starts import most_promising
-from .statistics import decisive
+from .statistics import decisive, margin
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
 TRIES = 125  # combinations of them, at most
@@ -92,7 +92,7 @@ def _stages(search: Search, effects: tuple[str, ...], new: tuple[str, ...], foun
     while new:
         without = {e: base if len(new) == 1 else _refitted(search, (*effects, *(o for o in new if o != e)), found) for e in new}
         least = min(without, key=lambda e: without[e].misfit)
-        needed = without[least].misfit - found.misfit > decisive(found.evidence) * float(np.mean(found.evidence.r**2))
+        needed = without[least].misfit - found.misfit > margin(found.evidence)
         if needed or stages:
             stages.insert(0, Stage(least, without[least], found))
         new, found = tuple(e for e in new if e != least), without[least]

@@ -10,7 +10,7 @@ import numpy as np
 from .evidence import Bench, Evidence, offsets_of
 from .fit import Fit, fit, start_value
 from .noise import QUIETER, colour_of
-from .statistics import TIED, decisive, estimates
+from .statistics import TIED, estimates, margin
 from .workshop import Workshop
 
 PLAINLY = 100.0  # times what would be decisive
@@ -79,7 +79,7 @@ class Models:
                 continue
             fewer = tuple(e for e in effects if e != effect)
             without = self.refit(fewer, found.values)
-            if without.misfit - found.misfit < decisive(found.evidence) * float(np.mean(found.evidence.r**2)):
+            if without.misfit - found.misfit < margin(found.evidence):
                 return self.pruned(fewer, without, keep)
         return effects, found
 

@@ -75,6 +75,11 @@ def decisive(evidence: Evidence) -> float:
     return TIED * correlation_time(evidence)
 
 
+def margin(evidence: Evidence) -> float:
+    """The same where residuals are not as large as the noise has it: `decisive`, times their mean square."""
+    return decisive(evidence) * float(np.mean(evidence.r**2))
+
+
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
     """Fall of the summed squared innovations on held-out runs, with a 95 % interval by a block bootstrap."""
     blocks = difference_blocks(before, after)

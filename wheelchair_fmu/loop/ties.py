@@ -1,18 +1,17 @@
-"""Effects that a campaign cannot tell apart: as likely within odds of a hundred to one, or as good on what was held out."""
+"""Effects that a campaign cannot tell apart: as likely within odds of a hundred to one, or as good on what was held out; and
+the search again, beside all others that were found, that tells."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from ..errors import SimulationError
 from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search
 from .evidence import Evidence
 from .fit import Fit
 from .screen import shortlist
-from .statistics import decisive, difference_blocks, resampled_totals
+from .statistics import difference_blocks, margin, resampled_totals
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
@@ -27,9 +26,9 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. In a
     search again, beside all that was found, likelihoods alone tell."""
     leader = _of(r, effect)
-    group, margin = [leader.effect], _margin(leader.fit)
+    group, farthest = [leader.effect], leader.fit.misfit + margin(leader.fit.evidence)
     for c in r.candidates:
-        near = c.fit.misfit - leader.fit.misfit <= margin
+        near = c.fit.misfit <= farthest
         same = not r.again and c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
@@ -73,16 +72,11 @@ def _of(r: Round, effect: str) -> Candidate:
     return next(c for c in r.candidates if c.effect == effect)
 
 
-def overtakes(r: Round, effect: str, final: Fit) -> bool:
-    """Did a search again for one effect of the `final` model find another, with which that explains more by far?"""
+def overtaker(r: Round, effect: str, final: Fit) -> Candidate | None:
+    """What a search again for one effect of the `final` model found, if it is another, with which that explains more by far."""
     ahead = r.winner
-    far = final.misfit - _margin(final)
-    return r.again and ahead is not None and ahead.effect != effect and ahead.fit.misfit < far
-
-
-def _margin(found: Fit) -> float:
-    """What −2 log likelihood has to differ by, as its innovations scatter and last."""
-    return decisive(found.evidence) * float(np.mean(found.evidence.r**2))
+    far = final.misfit - margin(final.evidence)
+    return ahead if r.again and ahead and ahead.effect != effect and ahead.fit.misfit < far else None
 
 
 def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
