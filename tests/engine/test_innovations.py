@@ -71,6 +71,21 @@ def respond(run, source, H, D, n, nx, nq):
     return np.concatenate(out)
 
 
+def test_response_to_other_pushes_is_the_sum_of_those_to_each():
+    rng = np.random.default_rng(2)
+    n, nx, nq, nz = 9, 3, 2, 2
+    run = SimpleNamespace(
+        transition=0.4 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
+        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
+        by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
+    noise = Noise(np.full(nq, 0.1), np.zeros(nq), np.full(nz, 0.1), np.zeros(nz), np.zeros((nx, nx)))
+    change = rng.normal(size=(n, nq))
+    H, D = run.by_state, run.by_push[:, :, :nq]
+    expected = sum(change[i, q] * respond(run, ("push", i, q), H, D, n, nx, nq) for i in range(n) for q in range(nq))
+    found = Whitener(run, [0, 1], noise, np.ones((n, nz), bool)).response(change)
+    np.testing.assert_allclose(found.ravel(), expected, rtol=1e-10, atol=1e-12)
+
+
 def test_spread_is_each_readings_own_standard_deviation():
     rng = np.random.default_rng(1)
     n, nx, nq, nz = 8, 2, 1, 2

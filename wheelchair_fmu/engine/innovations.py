@@ -96,6 +96,12 @@ class Whitener:
         out[~self.present, 0] = np.nan
         return out
 
+    def response(self, change: np.ndarray) -> np.ndarray:
+        """Readings (n, nz) that recorded pushes (n, nq) add if they are larger by `change`, to first order."""
+        pushed, out = np.ascontiguousarray(change, float), np.empty(self.present.shape)
+        _library().wc_respond(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(pushed), _of(out))
+        return out
+
     @cached_property
     def spread(self) -> np.ndarray:
         """(n, nz) one over the standard deviation of each reading round a simulation from the right start: sensor noise,

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
+from .cores import each
 from .evidence import Bench, Evidence
 from .fit import Fit
 from .score import Score
@@ -132,15 +133,17 @@ class Search(Screen):
         starts = self._starts(bench, base, s, least, visible)
         if starts:
             self.say(f"refitting {effect}")
-        begun, ended = [], []
-        for start, here in starts:
+
+        def one_step(start: tuple[dict[str, float], Evidence | None]) -> Fit | None:
             try:
-                begun.append(self.refit((*effects, effect), start, here, rival=rival, most=1))
+                return self.refit((*effects, effect), *start, rival=rival, most=1)
             except SimulationError:
-                continue
+                return None
+
+        begun = [f for f in each(one_step, starts) if f]
         if not begun:
             return None
-        own = w.parameters(effect)
+        own, ended = w.parameters(effect), []
         for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
             signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
             if signs not in others:

@@ -7,13 +7,9 @@ uncertainty (see `innovations`); where the simulation is best started is found o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
-from multiprocessing import parent_process
-from os import cpu_count
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
@@ -24,6 +20,7 @@ from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
 from ..model.variant import Variant
 from ..quantities import Parameter
+from .cores import each
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
@@ -213,7 +210,7 @@ class Bench:
             except SimulationError as error:
                 raise SimulationError(f"run {run.name}: {error}") from error
 
-        return Evidence(tuple(_each(one, runs)), tuple(by))
+        return Evidence(tuple(each(one, runs)), tuple(by))
 
     def again(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
@@ -224,7 +221,7 @@ class Bench:
             r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
             return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
-        return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
+        return Evidence(tuple(each(one, evidence.runs)), evidence.by)
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
@@ -238,7 +235,7 @@ class Bench:
                 return e  # where it cannot start there, it is judged from where it can
             return replace(e, start=start, results=results, predicted=predicted)
 
-        return Evidence(tuple(_each(one, evidence.runs)), evidence.by)
+        return Evidence(tuple(each(one, evidence.runs)), evidence.by)
 
     def _simulated(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Results (n, ny) and readings (n, nz) of a run, without derivatives."""
@@ -275,7 +272,7 @@ class Bench:
         spread = to_state * [sd[n] for n in START]
         offset = to_state @ [prior[n] - start[n] for n in START]
         whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured), self._speeds)
-        S = self._columns(run, simulated, w, by, columns, which)
+        S = self._columns(run, simulated, w, by, columns, which, whitener)
         white = whitener(np.concatenate([(measured - predicted)[:, :, None], S], axis=2), offset)
         k = len(by)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
@@ -312,30 +309,19 @@ class Bench:
             w[:, names.index(name)] = values
         return w
 
-    def _columns(self, run, simulated, w, by, columns, which) -> np.ndarray:
+    def _columns(self, run: Run, simulated: Linearised, w: np.ndarray, by: Sequence[str], columns: Sequence[str],
+                 which: Sequence[int], whitener: Whitener) -> np.ndarray:  # fmt: skip
         """Unwhitened sensitivities (n, nz, len(by) + 6)."""
-        place = {n: i for i, n in enumerate(columns)}
-        out = np.zeros((len(run.time), len(which), len(by) + len(START)))
-        for j, name in enumerate((*by, *START)):
-            if name in run.set:
-                continue
-            if name in self.offsets:
-                out[:, :, j] = [c == self.offsets[name] for c in self._channels(run)]
-                continue
-            out[:, :, j] = (self._by_delay(run, simulated, w, which) if name in self._delays
-                            else simulated.by_parameter[:, which, place[name]])  # fmt: skip
-        return out
-
-    @staticmethod
-    def _by_delay(run: Run, simulated: Linearised, w: np.ndarray, which: list[int]) -> np.ndarray:
-        """Readings by a delay of the record: every push changes by −F' per second of it."""
-        push = -np.gradient(w[:, :4], run.time, axis=0)
-        e, out = np.zeros(simulated.states.shape[1]), np.empty((len(run.time), len(which)))
-        for i in range(len(run.time)):
-            if i:
-                e = (simulated.transition[i - 1] @ e + simulated.push_before[i - 1] @ push[i - 1]
-                     + simulated.push_after[i - 1] @ push[i])  # fmt: skip
-            out[i] = simulated.by_state[i, which] @ e + simulated.by_push[i, which] @ push[i]
+        names = (*by, *START)
+        out = np.zeros((len(run.time), len(which), len(names)))
+        free = [j for j, name in enumerate(names) if name not in run.set]
+        derived = [j for j in free if names[j] in columns]
+        out[:, :, derived] = simulated.by_parameter[:, which][:, :, [columns.index(names[j]) for j in derived]]
+        for j in free:
+            if names[j] in self.offsets:
+                out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
+            elif names[j] in self._delays:  # every push changes by −F' per second of it
+                out[:, :, j] = whitener.response(-np.gradient(w[:, : len(PUSHED)], run.time, axis=0))
         return out
 
     def _noise(self, channels: tuple[str, ...], start: np.ndarray) -> Noise:
@@ -354,17 +340,6 @@ def offsets_of(campaign: Campaign) -> dict[str, str]:
     """Names of the sensor offsets that a campaign has for nuisances, and the channels they are added to."""
     measured = {c for r in campaign.runs for c in r.channels}
     return {f"offset.{c}": c for c in campaign.nuisance if c in measured}
-
-
-def _each(do: Callable[[Any], Any], things: Iterable[Any]) -> list[Any]:
-    """`do` of each thing, on all cores: the work is C's, which other threads do not wait for."""
-    return list(_pool().map(do, things))
-
-
-@cache
-def _pool() -> ThreadPoolExecutor:
-    """All cores, or one where this is one of several processes that share them."""
-    return ThreadPoolExecutor(1 if parent_process() else cpu_count())
 
 
 def block_length(run: Run) -> int:

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 from ..errors import SimulationError
 from .chance import value_beyond
+from .cores import each
 from .evidence import Bench
 from .fit import Fit, Problem
 from .statistics import sandwich
@@ -52,7 +53,8 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
 
     if not se > 0:
         return best, best
-    return end(-1.0), end(1.0)
+    lower, upper = each(end, (-1.0, 1.0))
+    return lower, upper
 
 
 def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SimulationError
+from .cores import each
 from .evidence import Bench, Evidence
 from .fit import Fit, prior_of
 from .models import Models
@@ -83,16 +84,18 @@ class Screen(Models):
         bench, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
         here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
         off, unbent = self._off(bench, base, here), self._unbent(bench, base, names)
-        found = []
-        for effect in light:
-            if self._is_an_offset(effect, here):
-                found += self._by_slopes(effects, self.rival_of(effect, effects, base, None)[0], [effect])[0]
-                continue
+
+        def screened(effect: str) -> Screened:
             own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
             tangent = self._score(here, off, effect, here.S[:, own])
             bent = [] if self.linear(effect) else self._secants(bench, here, base.values, effect)
             secants = [self._score(here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
-            found.append(self._screened([tangent, *secants], here))
+            return self._screened([tangent, *secants], here)
+
+        twins = [e for e in light if self._is_an_offset(e, here)]
+        found = each(screened, [e for e in light if e not in twins])
+        for effect in twins:
+            found += self._by_slopes(effects, self.rival_of(effect, effects, base, None)[0], [effect])[0]
         return found, here
 
     def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
@@ -105,14 +108,17 @@ class Screen(Models):
             except SimulationError:
                 if not at:
                     return []
-        off, found = self._off(bench, base, here), []
-        for effect in effects:
+        off = self._off(bench, base, here)
+
+        def screened(effect: str) -> Screened | None:
             by = [[self._score(at[0][1], off, effect, S) for S in self._secants(bench, e, values, effect)] for values, e in at]
             scores = [score for group in by for score in group]
-            if scores:
-                best = self._screened(scores, here)
-                found.append(replace(best, straight=all(best.score.drop > score.drop for score in by[0])))
-        return found
+            if not scores:
+                return None
+            best = self._screened(scores, here)
+            return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
+
+        return [s for s in each(screened, effects) if s]
 
     def _off(self, bench: Bench, base: Fit, here: Evidence) -> Callable[[np.ndarray], np.ndarray]:
         """Takes what calibration can imitate off any columns."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SimulationError
+from .cores import each
 from .evidence import Bench, Evidence
 from .fit import prior_of
 
@@ -83,7 +84,7 @@ def visible_fall(bench: Bench, known: Evidence, names: Sequence[str], to: Outloo
 
 
 def _ranked(bench: Bench, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
-    return sorted((outlook(bench, known, names, theta) for theta in thetas), key=_misfit)
+    return sorted(each(lambda theta: outlook(bench, known, names, theta), thetas), key=_misfit)
 
 
 def _misfit(o: Outlook) -> tuple[float, tuple[float, ...]]:

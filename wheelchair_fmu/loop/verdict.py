@@ -15,7 +15,7 @@ from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .climb import AT_THE_FLOOR, Climb
-from .diagnose import HOPELESS, Candidate, Round, Search, Step
+from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
@@ -157,9 +157,10 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
     if found and max(base.evidence.rms, held.rms) < AT_THE_FLOOR:
         scores = (s.score for s in generic_search.screen(base, effects, list(generic)))
         return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
-    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0)
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
+    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0,
+                                least=max(PROMISING, HALFWAY * better))  # fmt: skip
     terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
     return left, next(terms, None)
 

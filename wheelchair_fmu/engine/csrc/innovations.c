@@ -151,6 +151,27 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
     }
 }
 
+/* readings: n x nz, what inputs that are larger by `change` (n x nq) add to them. */
+void wc_respond(const filter *f, long n, const double *change, double *readings) {
+    int nx = f->nx, nq = f->nq;
+    double e[MOST] = {0}, next[MOST];
+    for (long i = 0; i < n; i++) {
+        const double *now = change + i * nq, *before = now - nq;
+        for (int r = 0; i && r < nx; r++) {
+            long row = (i - 1) * nx + r;
+            next[r] = 0;
+            for (int k = 0; k < nx; k++) next[r] += f->A[row * nx + k] * e[k];
+            for (int q = 0; q < nq; q++) next[r] += f->B[row * nq + q] * before[q] + f->C[row * nq + q] * now[q];
+        }
+        if (i) memcpy(e, next, sizeof(double) * (size_t)nx);
+        for (long at = i * f->nz; at < (i + 1) * f->nz; at++) {
+            readings[at] = 0;
+            for (int k = 0; k < nx; k++) readings[at] += f->H[at * nx + k] * e[k];
+            for (int q = 0; q < nq; q++) readings[at] += f->D[at * nq + q] * now[q];
+        }
+    }
+}
+
 /* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */
 void wc_spread(const filter *f, long n, double *scale) {
     double P[MOST * MOST], Ph[MOST];

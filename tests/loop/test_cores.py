@@ -1,0 +1,29 @@
+"""Work on all cores."""
+
+from __future__ import annotations
+
+from threading import get_ident
+
+import pytest
+
+from wheelchair_fmu.loop.cores import each
+
+
+def test_results_stand_in_the_order_of_things():
+    assert each(lambda n: n * n, range(20)) == [n * n for n in range(20)]
+
+
+def test_work_within_work_stays_where_it_is():
+    outer = each(lambda n: (get_ident(), set(each(lambda m: get_ident(), range(n)))), range(2, 8))
+    assert all(inner == {here} for here, inner in outer)
+
+
+def test_one_alone_leaves_the_cores_to_what_is_in_it():
+    [(here, inner)] = each(lambda n: (get_ident(), each(lambda m: get_ident(), range(4))), [0])
+    assert here == get_ident()
+    assert here not in inner
+
+
+def test_a_fault_in_one_thing_is_told():
+    with pytest.raises(ZeroDivisionError):
+        each(lambda n: 1 / n, [1, 0, 2])
