@@ -219,6 +219,12 @@ def test_version_help_and_unknown_commands():
         assert wheelchair(*words).exit_code == 2, words
 
 
+@pytest.mark.parametrize("command, unit", [("simulate", "Forward speed [m/s]"), ("paper", "slalom [s]"),
+                                           ("linearize", "R_c [m]")])  # fmt: skip
+def test_help_of_a_command_tells_units(command, unit):
+    assert unit in " ".join(wheelchair(command, "--help").output.split())
+
+
 def test_help_waits_for_no_command():
     script = ("import sys\nfrom wheelchair_fmu.cli.main import COMMANDS, main\nsys.argv = ['wheelchair', '--help']\n"
               "try:\n    main()\nexcept SystemExit:\n    pass\n"

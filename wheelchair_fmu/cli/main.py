@@ -40,7 +40,7 @@ class Commands(Group):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         if cmd_name in COMMANDS and cmd_name not in self.commands:
-            alone = typer.Typer()
+            alone = typer.Typer(rich_markup_mode=None)  # which would take units in brackets for its own
             import_module(f".{cmd_name}", __package__).register(alone)
             self.commands |= typer.main.get_group(alone).commands
         return super().get_command(ctx, cmd_name)
