@@ -159,6 +159,7 @@ class Output(Quantity):
     upper: float = inf
     boolean: bool = False  # written as an inequality; `margin` is the unit of its two sides
     margin: Unit = ONE
+    limit: str = ""  # what has happened where it is true, if the model holds no longer there
 
     def __post_init__(self) -> None:
         super().__post_init__()

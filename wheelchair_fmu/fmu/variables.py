@@ -139,8 +139,8 @@ class Interface:
         # The paper calls its curves linear below 3°; the other laws were fitted to 9°.
         slip = tuple({"linear": 0.0524}.get(law, 0.16) for law in LAWS["tyre"])
         return (
-            Watch((name["load.lifted"],), (0.5,) * len(slip), None, 0.0,
-                  "a wheel has left the ground and the model no longer holds; push or turn less"),
+            *(Watch((name[o.name],), (0.5,) * len(slip), None, 0.0,
+                    f"{o.limit} and the model no longer holds; push or turn less") for o in self.model.outputs if o.limit),
             Watch((name["slip.rl"], name["slip.rr"]), slip, name["chair.u"], 0.3,
                   "the tyre law is not meant for so much slip; push or turn less, or choose another tyre.law"),
         )  # fmt: skip

@@ -21,6 +21,7 @@ from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
+from .limits import beyond
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
 from .workshop import CALIBRATED, Workshop
@@ -107,7 +108,8 @@ def diagnose(
     following = _next(search, verdict, groups, rounds, experiments)
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
     thinned = (campaign.thinned,) if campaign.thinned else ()
-    notes = (*thinned, *search.notes, *search.noise_notes)
+    beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
+    notes = (*thinned, *search.notes, *search.noise_notes, *beyond_limits)
     return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds),
                      tuple(beside.values()), leftover, proposal, base, intervals, search, notes, following,
                      time.monotonic() - began)  # fmt: skip

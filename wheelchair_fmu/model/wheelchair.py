@@ -36,7 +36,7 @@ OUTPUTS = (
     Output("load.fl", N, "vertical load of the left caster", "+load.fr", symbol="N_f"),
     Output("load.fr", N, "vertical load of the right caster", "+load.fl", symbol="N_f", component=1),
     Output("load.lifted", ONE, "true where a wheel has left the ground; the model then no longer holds",
-           symbol="lifted", boolean=True, margin=N),
+           symbol="lifted", boolean=True, margin=N, limit="a wheel has left the ground"),
     Output("caster.fl", RAD, "angle δ_fl of the left caster from straight trailing", "-caster.fr", symbol="delta"),
     Output("caster.fr", RAD, "angle δ_fr of the right caster from straight trailing", "-caster.fl", symbol="delta",
            component=1),

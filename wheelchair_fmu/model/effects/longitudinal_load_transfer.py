@@ -1,4 +1,7 @@
-"""Pushing loads the rear wheels:  ΔN = ± m a_x h / (2 (a + b))  at each wheel, by the height h of the CM."""
+"""Pushing loads the rear wheels:  ΔN = ± m a_x h / (2 (a + b))  at each wheel, by the height h of the CM.
+
+Straight on only rolling resistance feels it, as h (f_f − f_r): h is as sure as what is known of that difference.
+"""
 
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
