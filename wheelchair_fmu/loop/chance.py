@@ -1,5 +1,5 @@
-"""Chances of χ², by `scipy.special`: `scipy.stats` has the same under better names, and takes a quarter of a second to import,
-each time a command starts."""
+"""Chances of χ² and Student's t, by `scipy.special`: `scipy.stats` has the same under better names, and takes a quarter of a
+second to import, each time a command starts."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ def chance_beyond(x: float, degrees: int) -> float:
 def value_beyond(chance: float, degrees: int) -> float:
     """What χ² with so many degrees of freedom exceeds with this chance."""
     return float(special.chdtri(degrees, chance))
+
+
+def student(level: float, degrees: int) -> float:
+    """Standard errors either way within which a value lies at this level, where its error has so many degrees of freedom."""
+    return float(special.stdtrit(degrees, (1 + level) / 2))
 
 
 def power(noncentrality: float, degrees: int, level: float) -> float:

@@ -1,7 +1,8 @@
 """Profile-likelihood intervals: how far a parameter can go before the best of all others cannot make up for it.
 
 Unlike estimate ± 1.96 standard errors they follow a valley that bends, and need not be symmetric (Venzon and Moolgavkar
-1988). The threshold is widened by what correlated residuals do to the variance.
+1988). The threshold is widened by what correlated residuals do to the variance, and by what runs do that would have the
+parameter elsewhere each: no model is exact.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..errors import SimulationError
-from .chance import value_beyond
+from .chance import student, value_beyond
 from .cores import each
 from .evidence import Bench
 from .fit import Fit, Problem
-from .statistics import sandwich
+from .statistics import between_runs, sandwich
 
 LEVEL = 0.95
+NORMAL = value_beyond(1 - LEVEL, 1) ** 0.5  # standard errors, at LEVEL
+RUNS = 4  # from which on they tell how far a parameter differs from one to the other
 FARTHEST = 6.0  # robust standard errors; what is further off is not looked for
 PRECISE = 0.03  # of a standard error
 JUMP = 0.5  # of a standard error, within which no smooth likelihood falls so far
@@ -32,9 +35,8 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     is: there an end is as far off as standard errors have it.
     """
     at = found.names.index(name)
-    se = float(np.sqrt(sandwich(found)[at, at]))
-    quantile = value_beyond(1 - LEVEL, 1)
-    threshold = quantile * se**2 / found.covariance[at, at]
+    half = half_width(found, at)
+    threshold, se = half**2 / found.covariance[at, at], half / NORMAL
     record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
 
     def above(distance: float) -> float:
@@ -49,12 +51,20 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
                 return best + side * reach
             near, far = far, min(1.6 * far, reach)
         distance = float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
-        return best + side * (distance if distance > JUMP * se else min(quantile**0.5 * se, reach))
+        return best + side * (distance if distance > JUMP * se else min(half, reach))
 
     if not se > 0:
         return best, best
     lower, upper = each(end, (-1.0, 1.0))
     return lower, upper
+
+
+def half_width(found: Fit, at: int) -> float:
+    """How far either way, by standard errors, a parameter may be: by residuals that last, or by runs that differ."""
+    lasting, runs = NORMAL * float(np.sqrt(sandwich(found)[at, at])), len(found.evidence.runs)
+    if runs < RUNS:
+        return lasting
+    return max(lasting, student(LEVEL, runs - 1) * float(np.sqrt(between_runs(found)[at, at])))
 
 
 def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:

@@ -11,6 +11,7 @@ from .fit import Fit
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
+ALONE = 1e-6  # of what a run decides, left to the others: it decides alone
 TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 
 
@@ -38,6 +39,20 @@ def sandwich(found: Fit) -> np.ndarray:
     prior = found.prior_slopes**2
     inverse = np.linalg.pinv(S.T @ S + prior, hermitian=True)
     return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
+
+
+def between_runs(found: Fit) -> np.ndarray:
+    """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
+    residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
+    S, r = found.evidence.S, found.evidence.r
+    inverse = np.linalg.pinv(S.T @ S + found.prior_slopes**2, hermitian=True)
+    total = np.zeros_like(inverse)
+    for _, _, part in found.evidence.parts():
+        Q, R = np.linalg.qr(S[part])
+        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ inverse @ R.T)  # what the other runs leave it to decide
+        pull = R.T @ axes @ ((axes.T @ (Q.T @ r[part])) / np.sqrt(np.maximum(size, ALONE)))
+        total += np.outer(pull, pull)
+    return inverse @ total @ inverse
 
 
 def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
