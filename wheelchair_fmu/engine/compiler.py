@@ -39,8 +39,8 @@ def command() -> tuple[str, ...]:
 
 @cache
 def version() -> str:
-    """What the compiler says of itself, for the cache's key."""
-    return _run([*command(), "--version"]).splitlines()[0]
+    """What $CC asks for, and what the compiler says of itself, for the cache's key."""
+    return f"{os.environ.get('CC', '')} {_run([*command(), '--version']).splitlines()[0]}"
 
 
 def compile_shared(

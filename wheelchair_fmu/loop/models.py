@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .evidence import Bench, Evidence, offsets_of
-from .fit import Fit, fit, start_value
+from .fit import Fit, Problem, fit, start_value
 from .noise import QUIETER, colour_of
 from .statistics import TIED, estimates, margin
 from .workshop import Workshop
@@ -41,8 +41,7 @@ class Models:
         nominal = bench.evidence(w.campaign.fit, start, (), tune_start=1)
         nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
         found = fit(bench, names, start)
-        bench.evidence(w.campaign.fit, found.values, (), tune_start=1)
-        found = fit(bench, names, found.values)
+        found = self._restarted(bench, names, found.values, 1)
         held = self.heldout(bench, found.values)
         w.remember(bench)
         return found, held, nominal, nominal_held
@@ -65,12 +64,16 @@ class Models:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
         bench = self.workshop.bench(effects)
         self._without.clear()  # these started elsewhere
-        bench.evidence(self.workshop.campaign.runs, found.values, (), tune_start=2)
-        self.workshop.remember(bench)
-        again = self.refit(effects, found.values)
-        held = self.heldout(bench, again.values)
+        again = self._restarted(bench, self.names(effects), found.values, 2)
+        held = self.heldout(bench, again.values, tune_start=2)
         self.workshop.remember(bench)
         return again, held
+
+    def _restarted(self, bench: Bench, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
+        """A fit from `start`, with every run started where the readings want it there, in so many steps."""
+        problem = Problem(bench, names)
+        values = problem.values(problem.inside(start))
+        return fit(bench, names, values, bench.evidence(self.workshop.campaign.fit, values, names, tune_start=tune_start))
 
     def pruned(self, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
         """Backward: leave out every effect but the last, and those to `keep`, that the others have made needless."""
@@ -88,9 +91,9 @@ class Models:
         value, covariance = estimates(found, self.workshop.parameters(effect))
         return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value) > PLAINLY * TIED
 
-    def heldout(self, bench: Bench, values: Mapping[str, float]) -> Evidence:
-        """Evidence of the held-out runs; only where each starts is estimated on them."""
-        return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=1)
+    def heldout(self, bench: Bench, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
+        """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
+        return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=tune_start)
 
     def recolour(self, evidence: Evidence, *, again: bool = False) -> bool:
         """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect

@@ -31,13 +31,13 @@ typedef struct {
     char *present;            /* n x nz: 0 in a gap */
 } filter;
 
-static void add_row(int m, double factor, const double *restrict from, double *restrict to) {
+static inline void add_row(int m, double factor, const double *restrict from, double *restrict to) {
     if (factor == 0) return;
     for (int c = 0; c < m; c++) to[c] += factor * from[c];
 }
 
 /* to = F from, where both have m columns: F takes s from sample i to i+1, but for fresh noise. */
-static void carry(const filter *f, long i, int m, const double *restrict from, double *restrict to) {
+static inline void carry(const filter *f, long i, int m, const double *restrict from, double *restrict to) {
     int nx = f->nx, nq = f->nq;
     memset(to, 0, sizeof(double) * (size_t)((nx + nq + f->nz) * m));
     for (int r = 0; r < nx; r++) {
@@ -120,10 +120,8 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
     return total;
 }
 
-/* signals: n x nz x m, turned into innovations in place; 0 in gaps, whatever they were.
- * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
-void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
-               double *signals, double *work) {
+static inline void whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
+                          double *signals, double *work) {
     int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
     double *S = work, *next = work + size * m;
     memset(S, 0, sizeof(double) * (size_t)(size * m));
@@ -170,6 +168,14 @@ void wc_respond(const filter *f, long n, const double *change, double *readings)
             for (int q = 0; q < nq; q++) readings[at] += f->D[at * nq + q] * now[q];
         }
     }
+}
+
+/* signals: n x nz x m, turned into innovations in place; 0 in gaps, whatever they were.
+ * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
+void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
+               double *signals, double *work) {
+    if (m == 1) whiten(f, n, gain, scale, start_mean, 1, signals, work); /* what is most asked for: compiled without loops */
+    else whiten(f, n, gain, scale, start_mean, m, signals, work);
 }
 
 /* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */
