@@ -70,6 +70,8 @@ def test_lasting_structure_is_no_noise(sampled):
     ((1.1, 1.127), (1.082, 1.112), True),  # slip of the driven wheels, called a gyro's scale
     ((1.565, 1.565), (1.064, 1.116), False),  # a trail that was hidden: another simulator's casters swing a little otherwise
     ((1.08, 1.05), (1.05, 1.04), False),  # little was left to begin with
+    ((1.05, 1.09), (1.051, 1.088), True),  # an accelerometer off the middle, called load transfer: nothing fell
+    ((1.02, 1.02), (1.019, 1.019), False),  # about all that was left is noise
     ((9.0, 8.0), (1.4, 1.35), True),
     ((9.0, float("nan")), (1.2, float("nan")), False),  # nothing held out
 ])  # fmt: skip

@@ -34,6 +34,8 @@ TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which 
 UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
 A_LITTLE = 1.06  # the same, that two models of one chair may differ by; where more is left, effects that are said to explain
 REST = 0.15  # what calibration left may leave this much of its mean square error above the noise
+HARDLY = 1.04  # the same, where they explain next to nothing: they leave
+NEXT_TO_ALL = 0.9  # of it
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 3.0  # that is no noise where so many samples are alike,
 LASTING_BESIDE = 2.0  # or so many beside effects that were found
@@ -208,9 +210,10 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
 
 
 def insufficient(ladder: Sequence[Step]) -> bool:
-    """Does the model at the top of a staircase leave much, or more than a little of what calibration did?"""
+    """Does the model at the top of a staircase leave much, or more than a little of what calibration did, or next to all?"""
     top, calibrated = ladder[-1].left, ladder[1].left
-    return top > UNEXPLAINED or (top > A_LITTLE and top**2 - 1 > REST * (calibrated**2 - 1))
+    most = next((share for least, share in ((A_LITTLE, REST), (HARDLY, NEXT_TO_ALL)) if top > least), np.inf)
+    return top > UNEXPLAINED or top**2 - 1 > most * (calibrated**2 - 1)
 
 
 def _structured(left: Evidence) -> bool:
