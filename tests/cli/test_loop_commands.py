@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 
@@ -64,6 +65,14 @@ def test_add_writes_a_variant_that_everything_reads(tmp_path):
     assert better.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
     again = json.loads(run("compare", SAMPLE, "--variant", str(better), "--json").stdout)
     assert again["rms"]["holdout"] < 1.05
+
+
+def test_add_says_what_it_estimated_with_units(tmp_path):
+    said = run("add", "rolling_resistance_asymmetry", SAMPLE, "-o", str(tmp_path / "better.toml")).output
+    size = re.search(r"^effect.rolling_resistance_asymmetry.D = (\S+) ± (\S+) N$", said, re.MULTILINE)
+    assert size and float(size[1]) == pytest.approx(1.6, abs=3 * float(size[2]))
+    written = tomllib.loads((tmp_path / "better.toml").read_text())["standard_errors"]
+    assert written["effect.rolling_resistance_asymmetry.D"] == pytest.approx(float(size[2]), abs=0.0005)
 
 
 @pytest.mark.parametrize(("words", "code", "sentence"), [

@@ -9,6 +9,8 @@ import typer
 
 from ..errors import unknown
 from ..loop.improve import add as add_effect
+from ..loop.statistics import standard_errors
+from ..report.words import value_text
 from .files import print_json
 from .group import Progress, console, working
 from .settings import catalogue, subject
@@ -42,7 +44,7 @@ def add(
         print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output)})
         return
     console().print(staircase_table(better.ladder))
-    for name in better.fit.names:
-        console().print(f"{name} = {better.fit.values[name]:.5g} ± {better.fit.se(name):.2g}")
+    for name, se in standard_errors(better.fit).items():
+        console().print(f"{name} = {value_text(better.fit.values[name], se, better.records[name].unit)}")
     for file in files:
         print(file)

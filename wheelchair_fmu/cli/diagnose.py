@@ -119,7 +119,8 @@ def _ranking(content: dict[str, Any]) -> Table:
         figures = (f"{row['p']:.1g}", f"{row['power']:.2f}", f"{row['lr']:.0f}", row["verdict"])
         for i, (name, v) in enumerate(row["parameters"].items()):
             se = f"{v['se']:.2g}" if v["se"] is not None else "?"
-            own = (name, f"{v['estimate']:.3g} ± {se} {v['unit']}", f"{v['smallest_interesting']:g}")
+            size = f"{v['estimate']:.3g} ± {se} {v['unit']}".removesuffix(" 1")
+            own = (name, size, f"{v['smallest_interesting']:g}")
             table.add_row("" if i else row["effect"], *own, *(("",) * 4 if i else figures))
     return table
 

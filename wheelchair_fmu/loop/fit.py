@@ -41,10 +41,6 @@ class Fit:
     misfit: float  # −2 log likelihood and prior
     prior_slopes: np.ndarray
 
-    def se(self, name: str) -> float:
-        i = self.names.index(name)
-        return float(np.sqrt(self.covariance[i, i]))
-
 
 @dataclass(frozen=True)
 class Prior:

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.variant import Variant
+from ..quantities import Parameter
 from .diagnose import Search, Step, begin
 from .evidence import Evidence
 from .fit import Fit
+from .statistics import standard_errors
 from .verdict import Diagnosis
 from .workshop import Workshop
 
 
 @dataclass(frozen=True)
 class Improved:
-    """A better variant, the fit it comes from, and the staircase that led there."""
+    """A better variant, the fit it comes from, what its numbers are by name, and the staircase that led there."""
 
     variant: Variant
     fit: Fit
+    records: Mapping[str, Parameter]
     ladder: tuple[Step, ...]
 
 
@@ -38,7 +41,7 @@ def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = 
         base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
         on = (*on, one)
         ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
-    return Improved(improved(chair, on, base, campaign), base, tuple(ladder))
+    return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder))
 
 
 def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect: str) -> tuple[Fit, Evidence]:
@@ -51,8 +54,8 @@ def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect
 
 def improved(chair: Variant, effects: Sequence[str], found: Fit, campaign: Campaign) -> Variant:
     """The chair with these effects and the estimates, their standard errors and where they come from."""
-    errors = {name: found.se(name) for name in found.names}
-    notes = {"standard_errors": errors, "origin": {"campaign": campaign.name, "fingerprint": campaign.fingerprint}}
+    origin = {"campaign": campaign.name, "fingerprint": campaign.fingerprint}
+    notes = {"standard_errors": standard_errors(found), "origin": origin}
     values = {n: v for n, v in found.values.items() if not n.startswith("offset.")}
     return replace(chair.with_effects(effects), values={**chair.values, **campaign.known, **values}, notes=notes)
 

@@ -41,6 +41,11 @@ def sandwich(found: Fit) -> np.ndarray:
     return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
 
 
+def standard_errors(found: Fit) -> dict[str, float]:
+    """Of all that a fit estimated, by name, as `sandwich` has them."""
+    return dict(zip(found.names, map(float, np.sqrt(np.diag(sandwich(found)))), strict=True))
+
+
 def between_runs(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
     residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
