@@ -38,9 +38,9 @@ class Models:
         bench = w.bench()
         names = self.names(())
         start = {n: start_value(bench, bench.records[n]) for n in names}
-        nominal = bench.evidence(w.campaign.fit, start, (), tune_start=1)
+        nominal = bench.evidence(w.campaign.fit, start, names, tune_start=1)
         nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
-        found = fit(bench, names, start)
+        found = fit(bench, names, start, nominal)
         found = self._restarted(bench, names, found.values, 1)
         held = self.heldout(bench, found.values)
         w.remember(bench)

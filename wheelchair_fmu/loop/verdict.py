@@ -37,8 +37,7 @@ REST = 0.15  # what calibration left may leave this much of its mean square erro
 HARDLY = 1.04  # the same, where they explain next to nothing: they leave
 NEXT_TO_ALL = 0.9  # of it
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
-LASTING = 3.0  # that is no noise where so many samples are alike,
-LASTING_BESIDE = 2.0  # or so many beside effects that were found
+LASTING = 2.0  # that is no noise where so many samples are alike
 
 
 @dataclass(frozen=True)
@@ -197,7 +196,7 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
              ladder: Sequence[Step], left: Evidence) -> str:  # fmt: skip
     if proposal is not None or ladder[-1].left > UNEXPLAINED:
         return "outside"
-    if effects and insufficient(ladder) and correlation_time(left) > LASTING_BESIDE:
+    if effects and insufficient(ladder) and correlation_time(left) > LASTING:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
