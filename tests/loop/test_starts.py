@@ -10,6 +10,7 @@ import pytest
 from wheelchair_fmu.loop import starts
 from wheelchair_fmu.loop.fit import Problem, fit
 from wheelchair_fmu.loop.starts import most_promising, outlook, visible_fall
+from wheelchair_fmu.loop.statistics import standard_errors
 from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.variant import Variant
 
@@ -40,7 +41,7 @@ def test_a_step_leads_where_a_fit_of_a_linear_effect_ends(shop, calibrated):
     known = bench.evidence(shop.campaign.fit, nearly, names)
     to = outlook(bench, known, names, [nearly[n] for n in names])
 
-    assert to.reached[-1] == pytest.approx(whole.values[DRAG], abs=0.2 * whole.se(DRAG))
+    assert to.reached[-1] == pytest.approx(whole.values[DRAG], abs=0.2 * standard_errors(whole)[DRAG])
     assert to.misfit == pytest.approx(Problem(bench, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
     after = whole.evidence.table()
     fall = max(rms - after[run][c] for run, row in known.table().items() for c, rms in row.items())

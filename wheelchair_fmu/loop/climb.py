@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
+from .diagnose import AT_THE_FLOOR, VISIBLE, Candidate, Round, Search, Step, begin, first_steps
 from .fit import Fit
 from .joint import together
 from .ties import beside, overtaker
 
 MOST_EFFECTS = 4
 MOST_STEPS = 8  # that put one in, or one in the place of another
-AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 

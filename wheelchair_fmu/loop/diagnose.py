@@ -30,6 +30,8 @@ BEYOND = 10.0  # or they say little of it, and it may do so many times what they
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
 SURELY = 0.8  # of δ, below which an effect is small
+AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain,
+AS_LARGE = 0.95  # and of δ, what an effect must reach to be worth a name all the same
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
@@ -72,7 +74,8 @@ class Candidate:
     visible: float  # largest fall of a channel's RMS in a run
     gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
     heldout: Evidence | None
-    small: bool
+    small: bool  # surely
+    large: bool  # enough, by its estimate, to be named
     lawful: bool
 
     @property
@@ -85,7 +88,7 @@ class Candidate:
     @property
     def found(self) -> bool:
         """Proven, and large enough to matter."""
-        return self.proven and not self.small
+        return self.proven and self.large
 
 
 @dataclass(frozen=True)
@@ -102,12 +105,12 @@ class Round:
 
     @property
     def winner(self) -> Candidate | None:
-        """The best candidate found, unless one that is surely small explains the data better by far."""
+        """The best candidate found, unless one that is not large explains the data better by far."""
         best = next((c for c in self.candidates if c.found), None)
         if best is None:
             return None
         far = best.drop + decisive(best.fit.evidence)
-        better = (c for c in self.candidates if c.small and c.lawful and c.drop > far)
+        better = (c for c in self.candidates if not c.large and c.lawful and c.drop > far)
         return None if any(better) else best
 
     @property
@@ -230,6 +233,7 @@ class Search(Screen):
             gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
             heldout=held.brief() if held is not None else None,
             small=_small(along, spread),
+            large=bool(np.any(np.abs(along) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY))),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )
 
@@ -280,6 +284,11 @@ def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
     against = [s.delta - 2 * one for one in alone] if both else []
     multiples = (f * d for d in (s.delta, *alone, *against) for f in SIZES if f > 0 or both)
     return [np.clip(size, lower, upper) for size in (expected, *multiples)]
+
+
+def _at_the_floor(fitted: Evidence, held: Evidence | None) -> bool:
+    """Does a model leave nothing to explain, on fitted and on held-out runs?"""
+    return fitted.rms < AT_THE_FLOOR and (held is None or not held.runs or held.rms < AT_THE_FLOOR)
 
 
 def _small(along: np.ndarray, variance: np.ndarray) -> bool:

@@ -110,7 +110,8 @@ def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], s
         before, after = (search.heldout(w.bench(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
         found = replace(s.fit, evidence=w.bench(more).restarted(s.fit.evidence, s.fit.values))
         judged = search.judge(s.without, before, found, after, s.effect, w.parameters(s.effect), len(scores))
-        judged = replace(judged, small=search.small(stages[-1].fit, s.effect))
+        small = search.small(stages[-1].fit, s.effect)
+        judged = replace(judged, small=small, large=not small)
         rounds.append(Round(effects, s.without, before, tuple(scores), (judged,)))
         effects = more
     return rounds

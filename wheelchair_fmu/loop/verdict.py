@@ -14,8 +14,8 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
-from .climb import AT_THE_FLOOR, Climb
-from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step
+from .climb import Climb
+from .diagnose import AT_THE_FLOOR, HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
@@ -36,6 +36,7 @@ A_LITTLE = 1.06  # the same, that two models of one chair may differ by; where m
 REST = 0.15  # what calibration left may leave this much of its mean square error above the noise
 HARDLY = 1.04  # the same, where they explain next to nothing: they leave
 NEXT_TO_ALL = 0.9  # of it
+FORETOLD_BADLY, OF_WHAT_WAS = 1.2, 0.2  # the same two on held-out runs alone, to which nothing was fitted
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 2.0  # that is no noise where so many samples are alike
 
@@ -210,7 +211,9 @@ def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequ
 
 def insufficient(ladder: Sequence[Step]) -> bool:
     """Does the model at the top of a staircase leave much, or more than a little of what calibration did, or next to all?"""
-    top, calibrated = ladder[-1].left, ladder[1].left
+    top, calibrated, held = ladder[-1].left, ladder[1].left, ladder[-1].heldout
+    if held > FORETOLD_BADLY and held**2 - 1 > OF_WHAT_WAS * (ladder[1].heldout ** 2 - 1):
+        return True
     most = next((share for least, share in ((A_LITTLE, REST), (HARDLY, NEXT_TO_ALL)) if top > least), np.inf)
     return top > UNEXPLAINED or top**2 - 1 > most * (calibrated**2 - 1)
 
