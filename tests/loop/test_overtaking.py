@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop import ties
+from wheelchair_fmu.loop.climb import Climb
 from wheelchair_fmu.loop.evidence import Evidence
 from wheelchair_fmu.loop.fit import Fit
 from wheelchair_fmu.loop.ties import beside, overtaker, tied
@@ -111,3 +112,25 @@ def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_fou
     lawful = [Some(**vars(one(e, m)), lawful=True, found=e == "slope") for e, m in
               (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))]  # fmt: skip
     assert tied(Some(candidates=lawful, again=True), "gain") == ("gain", "inertia")
+
+
+@pytest.mark.parametrize(("rms", "stays"), [(1.0, True), (1.2, True), (1.3, False)])
+def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(monkeypatch, rms, stays):
+    def settled(effects, fit):
+        workshop.starts["spin"] = {"start.u": 1.0}
+        return Some(evidence=Some(rms=rms)), "held with it"
+
+    workshop = Some(starts={"spin": {"start.u": 0.0}})
+    climb = object.__new__(Climb)
+    climb.__dict__ |= {"search": Some(workshop=workshop, settled=settled), "effects": ("drag",),
+                       "base": Some(evidence=Some(rms=1.15)),
+                       "rounds": [Some(effects=("drag",))], "held": "held", "helping": {"toe"},
+                       "ladder": ["nominal", "calibrated", "+drag"]}  # fmt: skip
+    monkeypatch.setattr(Climb, "_step", lambda self: self.ladder.append("+toe"))
+    monkeypatch.setattr(Climb, "_prune", lambda self: None)
+    assert climb._put_in(Some(effect="toe", fit=None)) == stays
+    assert climb.effects == (("drag", "toe") if stays else ("drag",))
+    assert climb.ladder == ["nominal", "calibrated", "+drag", *(["+toe"] if stays else [])]
+    assert climb.held == ("held with it" if stays else "held")
+    assert workshop.starts["spin"]["start.u"] == (1.0 if stays else 0.0)
+    assert climb.helping == ({"toe"} if stays else set())

@@ -12,6 +12,7 @@ from .ties import beside, overtaker
 
 MOST_EFFECTS = 4
 MOST_STEPS = 8  # that put one in, or one in the place of another
+RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 
@@ -45,18 +46,24 @@ class Climb:
         overtake, as long as anything is found."""
         for _ in range(MOST_STEPS):
             best = self._found() if len(self.effects) - len(self.already) < MOST_EFFECTS else None
-            if best is not None:
-                self._put_in(best)
-            elif not self._overtaken():
-                return
+            if not (best and self._put_in(best)) and not self._overtaken():
+                break
         self.beside = {effect: self._beside(effect) for effect in self.effects[len(self.already) :]}
 
-    def _put_in(self, best: Candidate) -> None:
-        """The model with what the last round found, and without what that makes needless."""
-        self.effects = (*self.rounds[-1].effects, best.effect)
-        self.base, self.held = self.search.settled(self.effects, best.fit)
+    def _put_in(self, best: Candidate) -> bool:
+        """The model with what the last round found, and without what that makes needless; as before, if the error rises once
+        runs start where this model wants them."""
+        workshop, effects = self.search.workshop, (*self.rounds[-1].effects, best.effect)
+        before = dict(workshop.starts)
+        base, held = self.search.settled(effects, best.fit)
+        if base.evidence.rms > RISEN * self.base.evidence.rms:
+            workshop.starts, self.ladder = before, self.ladder[: 2 + len(self.effects)]
+            self.helping.discard(best.effect)
+            return False
+        self.effects, self.base, self.held = effects, base, held
         self._step()
         self._prune()
+        return True
 
     def _prune(self) -> None:
         """The model without what its last effect makes needless."""
