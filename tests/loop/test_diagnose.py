@@ -18,7 +18,7 @@ from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.diagnose import Round, Search, Step, begin
 from wheelchair_fmu.loop.interval import half_width
 from wheelchair_fmu.loop.ranking import as_json
-from wheelchair_fmu.loop.statistics import sandwich
+from wheelchair_fmu.loop.statistics import sandwich, size_seen
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.generic import library, terms
@@ -94,6 +94,13 @@ def test_an_effect_is_named_by_its_size_and_by_what_there_is_to_explain(sampled,
     base = replace(found, evidence=Some(runs=(), rms=left, fall_to=lambda after: 0.1))
     judged = search.judge(base, Some(runs=(1,), rms=left), found, None, DRAG.split(".")[1], [DRAG], 30)
     assert judged.large == large
+
+
+def test_the_size_of_several_parameters_is_what_the_data_see_of_it():
+    alike, apart = np.eye(2) * 1e-4, np.array([[1.0, -1.0], [-1.0, 1.0]]) * 100
+    assert size_seen(np.array([0.9, 0.0]), alike) == pytest.approx(0.9)
+    assert size_seen(np.array([0.6, 0.6]), alike) == pytest.approx(0.6 * np.sqrt(2))
+    assert size_seen(np.array([0.7, 0.5]), alike + apart) == pytest.approx(1.2)  # only the sum shows
 
 
 def test_an_effect_is_judged_from_its_own_starts(tmp_path):

@@ -17,7 +17,7 @@ from .fit import Fit
 from .score import Score
 from .screen import BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
-from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions
+from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
 from .timing import late
 
 SIGNIFICANT = 0.05
@@ -214,7 +214,8 @@ class Search(Screen):
         """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         one_sided = np.array([self.records[n].lower == 0 for n in names])
-        along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
+        in_deltas = estimate / delta, covariance / np.outer(delta, delta)
+        along, spread = seen_directions(*in_deltas)
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
         p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
@@ -233,7 +234,7 @@ class Search(Screen):
             gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
             heldout=held.brief() if held is not None else None,
             small=_small(along, spread),
-            large=bool(np.any(np.abs(along) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY))),
+            large=size_seen(*in_deltas) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )
 

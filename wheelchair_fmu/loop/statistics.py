@@ -68,10 +68,23 @@ def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]
 
 def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sizes and variances, in units of δ, along the directions that the data can see at all (one at least)."""
+    axes, spread = _seen_axes(covariance)
+    return axes.T @ size, spread
+
+
+def _seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Those directions (k, m), and the variances along them."""
     spread, axes = np.linalg.eigh(covariance)
     spread = np.maximum(spread, 1e-12)
     seen = (spread < 1 / SEEN) | (spread == spread.min())
-    return axes[:, seen].T @ size, spread[seen]
+    return axes[:, seen], spread[seen]
+
+
+def size_seen(size: np.ndarray, covariance: np.ndarray) -> float:
+    """How large an effect of this size, in units of δ, is along the directions that the data can see, beside δ of the one
+    parameter that shows most in these: for left and right camber, of which only the sum shows, (right + left) / δ."""
+    seen = _seen_axes(covariance)[0]
+    return float(np.linalg.norm(seen.T @ size) / np.linalg.norm(seen, axis=1).max())
 
 
 def correlation_time(evidence: Evidence) -> float:
