@@ -216,6 +216,7 @@ class Search(Screen):
         one_sided = np.array([self.records[n].lower == 0 for n in names])
         in_deltas = estimate / delta, covariance / np.outer(delta, delta)
         along, spread = seen_directions(*in_deltas)
+        small = _small(along, spread)
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
         p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
@@ -233,8 +234,8 @@ class Search(Screen):
             visible=base.evidence.fall_to(found.evidence),
             gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
             heldout=held.brief() if held is not None else None,
-            small=_small(along, spread),
-            large=size_seen(*in_deltas) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY),
+            small=small,
+            large=not small and size_seen(*in_deltas) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )
 
