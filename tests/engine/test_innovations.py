@@ -11,14 +11,19 @@ import pytest
 from wheelchair_fmu.engine.innovations import Noise, Whitener
 
 
+def drawn(rng, n, nx, ns, keeps):
+    """A run of n samples with nx states, four pushes and ns sensors, whose derivatives are drawn at random."""
+    return SimpleNamespace(
+        transition=keeps * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
+        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, ns, nx)),
+        by_push=rng.normal(size=(n, ns, 4)))  # fmt: skip
+
+
 @pytest.mark.parametrize("colour", [0.0, 0.8])
 def test_innovations_are_generalised_least_squares(colour):
     rng = np.random.default_rng(0)
     n, nx, nq, nz = 12, 3, 2, 2
-    run = SimpleNamespace(
-        transition=0.3 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
-        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, 3, nx)),
-        by_push=rng.normal(size=(n, 3, 4)))  # fmt: skip
+    run = drawn(rng, n, nx, 3, 0.3)
     noise = Noise(np.array([0.3, 0.5]), np.full(nq, colour), np.array([0.2, 0.4]), np.full(nz, colour),
                   np.diag([0.1, 0.0, 0.2]) ** 2)  # fmt: skip
     which = [0, 2]
@@ -74,10 +79,7 @@ def respond(run, source, H, D, n, nx, nq):
 def test_response_to_other_pushes_is_the_sum_of_those_to_each():
     rng = np.random.default_rng(2)
     n, nx, nq, nz = 9, 3, 2, 2
-    run = SimpleNamespace(
-        transition=0.4 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
-        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
-        by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
+    run = drawn(rng, n, nx, nz, 0.4)
     noise = Noise(np.full(nq, 0.1), np.zeros(nq), np.full(nz, 0.1), np.zeros(nz), np.zeros((nx, nx)))
     change = rng.normal(size=(n, nq))
     H, D = run.by_state, run.by_push[:, :, :nq]
@@ -89,10 +91,7 @@ def test_response_to_other_pushes_is_the_sum_of_those_to_each():
 def test_spread_is_each_readings_own_standard_deviation():
     rng = np.random.default_rng(1)
     n, nx, nq, nz = 8, 2, 1, 2
-    run = SimpleNamespace(
-        transition=0.5 * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
-        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, nz, nx)),
-        by_push=rng.normal(size=(n, nz, 4)))  # fmt: skip
+    run = drawn(rng, n, nx, nz, 0.5)
     noise = Noise(np.array([0.3]), np.zeros(1), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.2]) ** 2)
     V, _ = dense(run, [0, 1], replace(noise, start=0 * noise.start), n, nx, nq, nz, np.zeros(nx))
     spread = Whitener(run, [0, 1], noise, np.ones((n, nz), bool)).spread

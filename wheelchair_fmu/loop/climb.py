@@ -47,7 +47,7 @@ class Climb:
         for _ in range(MOST_STEPS):
             best = self._found() if len(self.effects) - len(self.already) < MOST_EFFECTS else None
             if not (best and self._put_in(best)) and not self._overtaken():
-                break
+                return  # which has looked beside all
         self.beside = {effect: self._beside(effect) for effect in self.effects[len(self.already) :]}
 
     def _put_in(self, best: Candidate) -> bool:

@@ -235,7 +235,7 @@ class Search(Screen):
             gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
             heldout=held.brief() if held is not None else None,
             small=small,
-            large=not small and size_seen(*in_deltas) >= (AS_LARGE if _at_the_floor(base.evidence, base_held) else SURELY),
+            large=not small and size_seen(*in_deltas) >= (AS_LARGE if at_the_floor(base.evidence, base_held) else SURELY),
             lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
         )
 
@@ -288,7 +288,7 @@ def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
     return [np.clip(size, lower, upper) for size in (expected, *multiples)]
 
 
-def _at_the_floor(fitted: Evidence, held: Evidence | None) -> bool:
+def at_the_floor(fitted: Evidence, held: Evidence | None) -> bool:
     """Does a model leave nothing to explain, on fitted and on held-out runs?"""
     return fitted.rms < AT_THE_FLOOR and (held is None or not held.runs or held.rms < AT_THE_FLOOR)
 

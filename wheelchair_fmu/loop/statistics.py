@@ -36,9 +36,14 @@ def cosines(ones: Sequence[Score], others: Sequence[Score]) -> np.ndarray:
 def sandwich(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates that allows for correlated residuals."""
     S, r = found.evidence.S, found.evidence.r
-    prior = found.prior_slopes**2
-    inverse = np.linalg.pinv(S.T @ S + prior, hermitian=True)
-    return inverse @ (robust_variance(found.evidence, S, r) + prior) @ inverse
+    inverse = _inverse(found)
+    return inverse @ (robust_variance(found.evidence, S, r) + found.prior_slopes**2) @ inverse
+
+
+def _inverse(found: Fit) -> np.ndarray:
+    """Of Sᵀ S (k, k), and the prior's."""
+    S = found.evidence.S
+    return np.linalg.pinv(S.T @ S + found.prior_slopes**2, hermitian=True)
 
 
 def standard_errors(found: Fit) -> dict[str, float]:
@@ -50,7 +55,7 @@ def between_runs(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
     residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
     S, r = found.evidence.S, found.evidence.r
-    inverse = np.linalg.pinv(S.T @ S + found.prior_slopes**2, hermitian=True)
+    inverse = _inverse(found)
     total = np.zeros_like(inverse)
     for _, _, part in found.evidence.parts():
         Q, R = np.linalg.qr(S[part])

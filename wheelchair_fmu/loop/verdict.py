@@ -15,7 +15,7 @@ from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .climb import Climb
-from .diagnose import AT_THE_FLOOR, HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step
+from .diagnose import AT_THE_FLOOR, HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
@@ -158,7 +158,7 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
         plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
-    if found and max(base.evidence.rms, held.rms) < AT_THE_FLOOR:
+    if found and at_the_floor(base.evidence, held):
         scores = (s.score for s in generic_search.screen(base, effects, list(generic)))
         return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
