@@ -31,6 +31,13 @@ def put(row, column, text):
     return change
 
 
+def put_twice(row, column, text):
+    def change(cells):
+        cells[row][column] = cells[row + 1][column] = text
+
+    return change
+
+
 # --- campaign.toml ---------------------------------------------------------------------------------------------------
 
 
@@ -212,12 +219,15 @@ CELL_FAULTS = [
     ("implausible push", put(9, 2, "2500"),
      "warning: run a.csv line 10 column 'F_rr [N]': F_rr reaches 2500 N, above any plausible 2000 N; "
      "check its unit (is it lbf or N.m?)"),
-    ("implausible speed", put(9, 3, "-16"),
+    ("implausible speed", put_twice(9, 3, "-16"),
      "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reaches -16 m/s, "
      "below any plausible -15 m/s; check its unit (is it km/h?)"),
-    ("implausible yaw rate", put(9, 5, "57.3"),
+    ("implausible yaw rate", put_twice(9, 5, "57.3"),
      "warning: run a.csv line 10 column 'yaw_rate [rad/s]': yaw_rate reaches 57.3 rad/s, "
      "above any plausible 20 rad/s; check its unit (is it deg/s?)"),
+    ("a reading that stands alone", put(9, 3, "-16"),
+     "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reads -16 m/s at 0.08 s, alone between "
+     "readings that agree, and is left out there; check the sensor and its cable; no chair moves so"),
 ]  # fmt: skip
 
 

@@ -6,30 +6,8 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import check, read
-from wheelchair_fmu.campaign.noise import estimate
 
 from .small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
-
-
-@pytest.mark.parametrize("sd", [1e-3, 0.05, 2.0])
-def test_estimate_within_ten_percent_on_a_smooth_signal(sd):
-    t = np.arange(2000) * 0.01
-    smooth = 3 * np.sin(2 * np.pi * 0.5 * t) + 0.1 * t**2
-    noisy = smooth + sd * np.random.default_rng(1).standard_normal(t.size)
-    noisy[700:720] = np.nan
-    noisy[1000] += 50.0
-    assert estimate([noisy]) == pytest.approx(sd, rel=0.1)
-
-
-def test_estimate_of_a_coarse_converter():
-    t = np.arange(3000) * 0.01
-    assert estimate([np.round(np.sin(0.2 * t), 1)]) == pytest.approx(0.1 / np.sqrt(12), rel=0.5)
-
-
-def test_nothing_to_estimate_from():
-    assert estimate([]) is None
-    assert estimate([np.arange(5.0)]) is None
-    assert estimate([np.ones(100)]) is None
 
 
 def test_missing_noise_is_estimated_and_said(campaign):

@@ -19,6 +19,7 @@ from .binding import Bindings, bind
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, Channel
 from .document import Document, Entry, number
 from .formats import open_table
+from .series import spikes, without
 
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
 _FIRST = 10  # samples from which the starting speed is taken
@@ -48,6 +49,7 @@ class Draft:
     values: Mapping[str, np.ndarray]
     constants: tuple[str, ...]
     gaps: Mapping[str, tuple[Gap, ...]]
+    spikes: Mapping[str, Mapping[int, float]]  # left out of `values`: by channel, readings by their rows of the cut run
 
     def slim(self) -> Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
@@ -144,11 +146,16 @@ def _converted(doc: Document, entry: Entry, table: Table, bindings: Bindings, ro
     given = constants(entry)
     values |= {name: np.full(len(kept), value) for name, value in given.items()}
     values = to_sae(values, doc.axes)
+    spiked = {}
+    for name in CHANNEL_NAMES:
+        if name in values and name not in given and (places := spikes(values[name])).size:
+            spiked[name] = dict(zip(places.tolist(), values[name][places].tolist(), strict=True))
+            values[name] = without(values[name], places)
     gaps = {}
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps)
+    return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps, spiked)
 
 
 def _cut(entry: Entry, time: np.ndarray | None, length: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,38 +12,9 @@ from ..units import UnitError, quantity
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .document import Document, number
 from .draft import Draft
+from .series import estimate
 
 NAMES = (*CHANNEL_NAMES, "F_rl", "F_rr", "M_rl", "M_rr")  # what [noise] may name
-
-_THIRD = np.sqrt(1.0 + 9.0 + 9.0 + 1.0)  # third differences of white noise: their sd in units of its sd
-_MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
-_ENOUGH = 8  # differences
-
-
-def estimate(series: Iterable[np.ndarray]) -> float | None:
-    """Standard deviation of the noise in one channel, from all its runs, each (n,) with NaN in gaps.
-
-    Third differences remove any motion that is smooth over four samples; their median absolute deviation is
-    not moved by the few samples where it is not (a hand that strikes the rim). White noise is assumed: coloured
-    noise comes out too small. None where there is nothing to estimate from: too few samples, or all the same.
-    """
-    series = list(series)
-    differences = np.concatenate([np.diff(s, 3) for s in series]) if series else np.empty(0)
-    differences = differences[np.isfinite(differences)]
-    if differences.size < _ENOUGH:
-        return None
-    sd = _MAD * float(np.median(np.abs(differences))) / _THIRD
-    if sd == 0.0:  # a coarse converter: most neighbours are equal
-        sd = float(np.sqrt(np.mean(differences**2))) / _THIRD
-    sd = max(sd, _quantum(series) / np.sqrt(12.0))
-    return sd or None
-
-
-def _quantum(series: list[np.ndarray]) -> float:
-    """The smallest step between two different values: what the converter resolves."""
-    values = np.unique(np.concatenate(series))
-    steps = np.diff(values[np.isfinite(values)])
-    return float(steps.min()) if steps.size else 0.0
 
 
 @dataclass(frozen=True)

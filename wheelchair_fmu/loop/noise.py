@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from ..campaign.noise import estimate
+from ..campaign.series import estimate
 from .evidence import PUSHED, Colour, Evidence
 
 LAGS = 15

@@ -35,9 +35,7 @@ def _extent(draft: Draft) -> str:
 def no_push(draft: Draft) -> Iterator[Fault]:
     for force, torque in PUSHES.items():
         if force not in draft.values and torque not in draft.values:
-            cure = (
-                f"add a column '{force} [N]', name it in [columns], or write constant = {{ {force} = 0.0 }} in the run"
-            )
+            cure = f"add a column '{force} [N]', name it in [columns], or write constant = {{ {force} = 0.0 }} in the run"
             yield run_fault(draft.file, f"no push force {force}", cure, 1)
 
 
@@ -97,6 +95,20 @@ def implausible(draft: Draft) -> Iterator[Fault]:
                 yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), WARNING)
 
 
+def spike(draft: Draft) -> Iterator[Fault]:
+    for name, found in draft.spikes.items():
+        usual = float(np.nanmedian(draft.values[name]))
+        i = max(found, key=lambda row: abs(found[row] - usual))
+        when = "" if draft.time is None else f" at {draft.time[i]:.6g} s"
+        farthest = f"{found[i]:.4g} {BY_NAME[name].unit.name}{when}"
+        if len(found) == 1:
+            fact = f"{name} reads {farthest}, alone between readings that agree, and is left out there"
+        else:
+            fact = f"{name} has {len(found)} readings that stand alone and are left out, the farthest {farthest}"
+        cure = "check the sensor and its cable; no chair moves so"
+        yield run_fault(draft.file, fact, cure, draft.line(i), draft.header(name), WARNING)
+
+
 def constant_replaces(draft: Draft) -> Iterator[Fault]:
     for name in draft.constants:
         if name in draft.bindings.found:
@@ -130,6 +142,6 @@ def start_speed_differs(draft: Draft) -> Iterator[Fault]:
 
 
 RUN_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, no_push, nothing_measured, input_gap, empty_column, stuck, implausible, constant_replaces,
+    too_short, no_push, nothing_measured, input_gap, empty_column, stuck, implausible, spike, constant_replaces,
     absent_column, no_start_speed, start_speed_differs,
 )  # fmt: skip

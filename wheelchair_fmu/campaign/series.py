@@ -1,0 +1,70 @@
+"""What a series of readings shows by itself: how large its noise is, and which readings stand alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+_THIRD = np.sqrt(1.0 + 9.0 + 9.0 + 1.0)  # third differences of white noise: their sd in units of its sd
+_MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
+_ENOUGH = 8  # differences
+FAR = 12.0  # standard deviations of the noise from either neighbour,
+ALONE = 3.0  # and times what the four neighbours differ from one to the next
+RARE = 0.01  # of all samples, and
+FEW = 3  # of a run; what is more frequent is how this sensor reads
+
+
+def estimate(series: Iterable[np.ndarray]) -> float | None:
+    """Standard deviation of the noise in one channel, from all its runs, each (n,) with NaN in gaps.
+
+    Third differences remove any motion that is smooth over four samples; their median absolute deviation is
+    not moved by the few samples where it is not (a hand that strikes the rim). White noise is assumed: coloured
+    noise comes out too small. None where there is nothing to estimate from: too few samples, or all the same.
+    """
+    series = list(series)
+    differences = np.concatenate([np.diff(s, 3) for s in series]) if series else np.empty(0)
+    sd = _scatter(differences[np.isfinite(differences)])
+    return None if sd is None else max(sd, _quantum(series) / np.sqrt(12.0)) or None
+
+
+def _scatter(third: np.ndarray) -> float | None:
+    """The same from third differences, all finite."""
+    if third.size < _ENOUGH:
+        return None
+    sd = _MAD * float(np.median(np.abs(third))) / _THIRD
+    return sd or float(np.sqrt(np.mean(third**2))) / _THIRD  # a coarse converter: most neighbours are equal
+
+
+def _quantum(series: list[np.ndarray]) -> float:
+    """The smallest step between two different values: what the converter resolves."""
+    values = np.unique(np.concatenate(series))
+    steps = np.diff(values[np.isfinite(values)])
+    return float(steps.min()) if steps.size else 0.0
+
+
+def spikes(series: np.ndarray) -> np.ndarray:
+    """Places of readings in a channel (n,), which may have gaps, that are far off between neighbours that agree, as loose
+    contacts and lost bits make them.
+
+    No chair moves so. A push may: a hand that strikes the rim is over within a sample of a slow logger.
+    """
+    places = np.flatnonzero(np.isfinite(series))
+    values = series[places]
+    noise = _scatter(np.diff(values, 3))
+    if not noise:
+        return places[:0]
+    step = np.diff(np.pad(values, 2, mode="reflect"))  # beyond an end as before it
+    rise, fall = step[1:-2], step[2:-1]
+    at = np.flatnonzero(((rise < 0) != (fall < 0)) & (np.abs(rise) > FAR * noise) & (np.abs(fall) > FAR * noise))
+    off = np.minimum(np.abs(rise[at]), np.abs(fall[at]))
+    around = np.maximum.reduce([np.abs(step[at]), np.abs(rise[at] + fall[at]), np.abs(step[at + 3])])
+    found = places[at[off > ALONE * around]]
+    return found if len(found) <= max(FEW, RARE * len(values)) else found[:0]
+
+
+def without(series: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The series with gaps in these places."""
+    rest = series.copy()
+    rest[places] = np.nan
+    return rest
