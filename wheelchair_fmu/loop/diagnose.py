@@ -15,7 +15,7 @@ from .cores import each
 from .evidence import Bench, Evidence
 from .fit import Fit
 from .score import Score
-from .screen import BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
+from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
 from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
 from .timing import late
@@ -30,8 +30,7 @@ BEYOND = 10.0  # or they say little of it, and it may do so many times what they
 SAME = 1.002  # ratio of two RMS errors that do not differ
 NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
 SURELY = 0.8  # of δ, below which an effect is small
-AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain,
-AS_LARGE = 0.95  # and of δ, what an effect must reach to be worth a name all the same
+AS_LARGE = 0.95  # the same, where a model without it leaves nothing to explain
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of

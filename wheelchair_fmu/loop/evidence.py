@@ -316,7 +316,8 @@ class Bench:
         out = np.zeros((len(run.time), len(which), len(names)))
         free = [j for j, name in enumerate(names) if name not in run.set]
         derived = [j for j in free if names[j] in columns]
-        out[:, :, derived] = simulated.by_parameter[:, which][:, :, [columns.index(names[j]) for j in derived]]
+        at = [columns.index(names[j]) for j in derived]
+        out[:, :, derived] = simulated.by_parameter[:, np.array(which)[:, None], at]
         for j in free:
             if names[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]

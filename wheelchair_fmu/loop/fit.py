@@ -25,6 +25,7 @@ SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wr
 MOST = 8  # linearisations
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
+WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
 PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
 AT_BOUND = 1e-3  # of a parameter's scale
 REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
@@ -180,7 +181,8 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
         if fall < max(enough, behind / MOST):
             theta, here = to, there
             break
-        further = _taken(problem, theta, here, to) or _by_likelihood(problem, theta, here)
+        shrinks = (1.0, 0.5, 0.25) if fall > WORTH_HALVING else (1.0,)
+        further = _taken(problem, theta, here, to, shrinks) or _by_likelihood(problem, theta, here)
         if further is None:
             break
         theta, here = further
@@ -188,13 +190,14 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 
-def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray) -> tuple[np.ndarray, Evidence] | None:
-    """The step from `theta`, or the half or quarter of it that is more likely once all is linearised anew.
+def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray,
+           shrinks: Sequence[float] = (1.0, 0.5, 0.25)) -> tuple[np.ndarray, Evidence] | None:  # fmt: skip
+    """The step from `theta`, or as much of it, the first of `shrinks`, that is more likely once all is linearised anew.
 
     A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
     """
     before = problem.misfit(here, theta)
-    for shrink in (1.0, 0.5, 0.25):
+    for shrink in shrinks:
         trial = theta + shrink * (to - theta)
         try:
             found = problem.linearised(trial)

@@ -24,6 +24,7 @@ LITTLE = 100.0  # expected fall, above which an effect is refitted however small
 FAR = 1.1  # mean square innovation of a model that slopes are not to be trusted at
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 SLIGHTLY = 0.1  # the same, where it costs little to look at both
+AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
 PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected test
 
 
@@ -140,7 +141,10 @@ class Screen(Models):
 
     @staticmethod
     def straightened(bench: Bench, base: Fit, least: float) -> list[dict[str, float]]:
-        """Calibrated values as the campaign has them, if a fit has bent them by `least` standard deviations."""
+        """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
+        deviations."""
+        if base.evidence.rms < AT_THE_FLOOR:
+            return []
         prior, values = prior_of(bench, base.names), np.array([base.values[n] for n in base.names])
         off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
         straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)

@@ -149,13 +149,14 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
     wider = search.workshop.widened(generic)
     generic_search = Search(wider, search.say)
     found = effects[len(rounds[0].effects) :]
-    if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
-        first = rounds[0]
+    first = rounds[0]
+    plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
+    enough = len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR)
+    if enough and plainly < _room(base.evidence):  # does one term do alone what these were to do, and plainly more?
         promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
                                      visible=PLAINLY_VISIBLE, rival=base.misfit, least=HOPELESS * promised)  # fmt: skip
         lone = next((c for c in alone.candidates if _clear(c)), None)
-        plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
     if found and at_the_floor(base.evidence, held):
@@ -167,6 +168,11 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
                                 least=max(PROMISING, HALFWAY * better))  # fmt: skip
     terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
     return left, next(terms, None)
+
+
+def _room(left: Evidence) -> float:
+    """How far squares may fall from what is left: to the noise's, and by chance three standard deviations of these more."""
+    return float(left.r @ left.r) - len(left.r) + 3 * float(np.sqrt(2 * len(left.r)))
 
 
 def _clear(c: Candidate) -> bool:

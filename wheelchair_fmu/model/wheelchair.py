@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import casadi as cs
@@ -106,7 +107,13 @@ def adds_state(choice: Choice, effect: Effect) -> bool:
     """Does this effect bring an unknown of its own, or need one: what it reads before it is known?"""
     if not any(symbol in FORESEEN for c in effect.contributions for symbol in reads(c.law)):
         return bool(effect.rows)
-    return assemble(choice, [effect]).x.numel() > assemble(choice).x.numel()
+    return assemble(choice, [effect]).x.numel() > _states(choice)
+
+
+@cache
+def _states(choice: Choice) -> int:
+    """How many states a model has without effects."""
+    return assemble(choice).x.numel()
 
 
 def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
