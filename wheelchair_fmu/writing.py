@@ -13,13 +13,17 @@ from uuid import uuid4
 def written(path: Path) -> Iterator[Path]:
     """A path to write to, with the same ending; what is there becomes `path` if all goes well.
 
-    Several threads and processes may write the same path; the last one stands. Raises OSError where the folder cannot be
-    made or written.
+    Several threads and processes may write the same path; the last one stands. Raises OSError, naming `path`, where the
+    folder cannot be made or written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{os.getpid()}-{uuid4().hex[:6]}-{path.name}")
     try:
         yield beside
         beside.replace(path)
+    except OSError as error:
+        if error.filename == str(beside):  # nobody asked for that one
+            error.filename, error.filename2 = str(path), None
+        raise
     finally:
         beside.unlink(missing_ok=True)
