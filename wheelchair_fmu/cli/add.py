@@ -41,8 +41,11 @@ def add(
     files = write_improved(output, better.variant, better.ladder)
     if as_json:
         steps = [step.as_json() for step in better.ladder]
-        print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output)})
+        print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output),
+                    "notes": list(better.notes)})  # fmt: skip
         return
+    for note in better.notes:
+        console().print(f"note: {note}")
     console().print(staircase_table(better.ladder))
     for name, se in standard_errors(better.fit).items():
         console().print(f"{name} = {value_text(better.fit.values[name], se, better.records[name].unit)}")

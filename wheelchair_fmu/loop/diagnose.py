@@ -19,6 +19,7 @@ from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, s
 from .starts import Outlook, most_promising, outlook, visible_fall
 from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
 from .timing import late
+from .wiring import wiring
 
 SIGNIFICANT = 0.05
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
@@ -301,17 +302,21 @@ def _small(along: np.ndarray, variance: np.ndarray) -> bool:
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
     """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
 
-    Runs whose pushes belong to another time are left out, if others are there to be fitted.
+    Channels that are not what they are called are left out; so are runs whose pushes belong to another time, if others are
+    there to be fitted.
     """
     say("calibrating")
-    base, held, ladder = first_steps(search)
     w = search.workshop
-    shifted = {**late(w.bench(), base.evidence, base.values), **late(w.bench(), held, base.values)}
+    columns = wiring(w.bench(), w.given)
+    if columns.wrong:
+        w.leave_out(channels=columns.wrong)
+    base, held, ladder = first_steps(search)
+    shifted = {**late(w.bench(), base.evidence, base.values), **late(w.bench(), held, base.values)} if columns.trusted else {}
     spared = any(r.name not in shifted for r in w.campaign.fit)
     if shifted and spared:
         w.leave_out(shifted)
         base, held, ladder = first_steps(search)
-    search.notes = [_late(run, seconds, spared) for run, seconds in shifted.items()]
+    search.notes = [*columns.notes, *(_late(run, seconds, spared) for run, seconds in shifted.items())]
     return first_steps(search) if search.recolour(base.evidence) else (base, held, ladder)
 
 

@@ -237,6 +237,11 @@ class Bench:
 
         return Evidence(tuple(each(one, evidence.runs)), evidence.by)
 
+    def readings(self, run: Run, values: Mapping[str, float],
+                 start: Mapping[str, float]) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:  # fmt: skip
+        """The channels of a run, what was measured (n, nz), less the sensors' offsets, and what is simulated (n, nz)."""
+        return self._channels(run), self._measured(run, values), self._simulated(run, values, start)[1]
+
     def _simulated(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Results (n, ny) and readings (n, nz) of a run, without derivatives."""
         given, w = self._given(run, values, start)

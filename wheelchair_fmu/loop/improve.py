@@ -19,12 +19,14 @@ from .workshop import Workshop
 
 @dataclass(frozen=True)
 class Improved:
-    """A better variant, the fit it comes from, what its numbers are by name, and the staircase that led there."""
+    """A better variant, the fit it comes from, what its numbers are by name, the staircase that led there, and what was found
+    odd in the recordings."""
 
     variant: Variant
     fit: Fit
     records: Mapping[str, Parameter]
     ladder: tuple[Step, ...]
+    notes: tuple[str, ...]
 
 
 def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (),
@@ -41,7 +43,8 @@ def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = 
         base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
         on = (*on, one)
         ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
-    return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder))
+    notes = (*search.notes, *search.noise_notes)
+    return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder), notes)
 
 
 def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect: str) -> tuple[Fit, Evidence]:
