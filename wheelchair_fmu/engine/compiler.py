@@ -79,5 +79,6 @@ def _run(words: list[str]) -> str:
     except OSError as error:
         raise BuildError(f"cannot run the C compiler {words[0]!r}: {error.strerror}; set CC to one that runs") from error
     if done.returncode:
-        raise BuildError(f"the C compiler failed: {shlex.join(words)}\n{done.stderr.strip()}")
+        said = "\n".join(filter(None, (shlex.join(words), done.stderr.strip())))
+        raise BuildError(f"the C compiler failed; set CC to another, or unset it and `pip install ziglang`: {said}")
     return done.stdout
