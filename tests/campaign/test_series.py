@@ -98,3 +98,10 @@ def test_a_spike_is_left_out_of_its_channel_and_of_no_other(campaign):
     assert "at 0.5 s, alone between readings that agree, and is left out there" in said[0]
     assert "a_y has 2 readings that stand alone and are left out, the farthest -" in said[1]
     assert len(said) == 2
+
+
+def test_in_a_coarse_recording_nothing_stands_alone(campaign):
+    data = motion()
+    data[:, 0] *= 6.0
+    data[50, 5] += 4.0
+    assert not np.isnan(read(campaign(files={"a.csv": csv_text(SI, rows(data))})).runs[0].channels["yaw_rate"]).any()

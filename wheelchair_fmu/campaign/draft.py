@@ -21,6 +21,7 @@ from .document import Document, Entry, number
 from .formats import open_table
 from .series import spikes, without
 
+COARSE = 0.05  # s: the yaw motion of a chair is over in less
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
 _FIRST = 10  # samples from which the starting speed is taken
 
@@ -146,16 +147,21 @@ def _converted(doc: Document, entry: Entry, table: Table, bindings: Bindings, ro
     given = constants(entry)
     values |= {name: np.full(len(kept), value) for name, value in given.items()}
     values = to_sae(values, doc.axes)
-    spiked = {}
-    for name in CHANNEL_NAMES:
-        if name in values and name not in given and (places := spikes(values[name])).size:
-            spiked[name] = dict(zip(places.tolist(), values[name][places].tolist(), strict=True))
-            values[name] = without(values[name], places)
+    spiked = _spikes(time, {c: values[c] for c in CHANNEL_NAMES if c in values and c not in given})
+    values |= {c: without(values[c], list(found)) for c, found in spiked.items()}
     gaps = {}
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
     return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps, spiked)
+
+
+def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:
+    """As in a draft; none in a coarse recording, where what is short may be over within a sample."""
+    if time is None or len(time) < 2 or float(np.median(np.diff(time))) > COARSE:
+        return {}
+    places = {c: spikes(series) for c, series in channels.items()}
+    return {c: dict(zip(at.tolist(), channels[c][at].tolist(), strict=True)) for c, at in places.items() if at.size}
 
 
 def _cut(entry: Entry, time: np.ndarray | None, length: int) -> np.ndarray:

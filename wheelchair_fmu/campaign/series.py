@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def spikes(series: np.ndarray) -> np.ndarray:
     return found if len(found) <= max(FEW, RARE * len(values)) else found[:0]
 
 
-def without(series: np.ndarray, places: np.ndarray) -> np.ndarray:
+def without(series: np.ndarray, places: Sequence[int]) -> np.ndarray:
     """The series with gaps in these places."""
     rest = series.copy()
     rest[places] = np.nan

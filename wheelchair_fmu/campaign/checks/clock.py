@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import SHOWN, WARNING, Fault, run_fault
-from ..draft import Draft
+from ..draft import COARSE, Draft
 
-COARSE = 0.05  # s: the yaw motion of a chair is over in less
 _UNEVEN = 0.5  # share of the usual step by which one may differ
 
 

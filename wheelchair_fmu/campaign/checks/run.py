@@ -99,8 +99,8 @@ def spike(draft: Draft) -> Iterator[Fault]:
     for name, found in draft.spikes.items():
         usual = float(np.nanmedian(draft.values[name]))
         i = max(found, key=lambda row: abs(found[row] - usual))
-        when = "" if draft.time is None else f" at {draft.time[i]:.6g} s"
-        farthest = f"{found[i]:.4g} {BY_NAME[name].unit.name}{when}"
+        assert draft.time is not None  # without it nobody looks for any
+        farthest = f"{found[i]:.4g} {BY_NAME[name].unit.name} at {draft.time[i]:.6g} s"
         if len(found) == 1:
             fact = f"{name} reads {farthest}, alone between readings that agree, and is left out there"
         else:
