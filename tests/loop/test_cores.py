@@ -13,6 +13,18 @@ def test_results_stand_in_the_order_of_things():
     assert each(lambda n: n * n, range(20)) == [n * n for n in range(20)]
 
 
+def test_the_largest_are_begun_first_and_results_stand_in_order():
+    begun = []
+
+    def do(n: int) -> int:
+        begun.append(n)
+        return -n
+
+    assert each(do, range(40), size=lambda n: n % 10) == [-n for n in range(40)]
+    assert set(begun[:2]) <= {9, 19, 29, 39}
+    assert set(begun[-2:]) <= {0, 10, 20, 30}
+
+
 def test_work_within_work_stays_where_it_is():
     outer = each(lambda n: (get_ident(), set(each(lambda m: get_ident(), range(n)))), range(2, 8))
     assert all(inner == {here} for here, inner in outer)

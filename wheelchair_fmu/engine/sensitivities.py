@@ -52,6 +52,7 @@ class Sensitivities:
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
         self.simulator = Simulator(variant, self.columns or None)
+        self.simulator.model = self.model  # which takes as long to assemble as ten runs
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
         self.results = tuple(o.name for o in self.model.outputs)

@@ -141,7 +141,8 @@ class Evidence:
     @cached_property
     def rms(self) -> float:
         """Whitened RMS error over all runs and channels: 1.0 is the noise floor."""
-        e = np.concatenate([e.e[np.isfinite(e.e)] for e in self.runs] or [np.empty(0)])
+        errors = each(lambda e: e.e, self.runs)
+        e = np.concatenate([e[np.isfinite(e)] for e in errors] or [np.empty(0)])
         return float(np.sqrt(e @ e / len(e))) if len(e) else float("nan")
 
     def parts(self) -> Iterator[tuple[RunEvidence, np.ndarray, slice]]:
@@ -150,6 +151,26 @@ class Evidence:
         for e in self.runs:
             good = np.isfinite(e.r)
             yield e, good, slice(at, at := at + int(good.sum()))
+
+    @cached_property
+    def samples(self) -> list[np.ndarray]:
+        """Which sample of its run each innovation belongs to, run by run."""
+        return [np.nonzero(good)[0] for _, good, _ in self.parts()]
+
+    @cached_property
+    def cells(self) -> np.ndarray:
+        """(N,) which channel of which run each innovation belongs to, numbered through."""
+        width = max((len(e.channels) for e in self.runs), default=0)
+        numbers = [np.nonzero(good)[1] + width * i for i, (_, good, _) in enumerate(self.parts())]
+        return np.concatenate(numbers or [np.empty(0, int)])
+
+    def cell_rms(self, r: np.ndarray) -> np.ndarray:
+        """RMS of residuals (N,) in each cell; 0 where there are none."""
+        return np.sqrt(np.bincount(self.cells, r * r) / np.maximum(np.bincount(self.cells), 1))
+
+    @cached_property
+    def own_cell_rms(self) -> np.ndarray:
+        return self.cell_rms(self.r)
 
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
@@ -210,7 +231,7 @@ class Bench:
             except SimulationError as error:
                 raise SimulationError(f"run {run.name}: {error}") from error
 
-        return Evidence(tuple(each(one, runs)), tuple(by))
+        return Evidence(tuple(each(one, runs, lambda run: len(run.time))), tuple(by))
 
     def again(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
@@ -221,7 +242,7 @@ class Bench:
             r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
             return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
-        return Evidence(tuple(each(one, evidence.runs)), evidence.by)
+        return Evidence(tuple(each(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
@@ -235,7 +256,7 @@ class Bench:
                 return e  # where it cannot start there, it is judged from where it can
             return replace(e, start=start, results=results, predicted=predicted)
 
-        return Evidence(tuple(each(one, evidence.runs)), evidence.by)
+        return Evidence(tuple(each(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
     def readings(self, run: Run, values: Mapping[str, float],
                  start: Mapping[str, float]) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:  # fmt: skip

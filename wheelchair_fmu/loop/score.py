@@ -46,11 +46,10 @@ def projector(Z: np.ndarray, prior_slopes: np.ndarray):
 
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
     """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
-    total = np.zeros((s.shape[1], s.shape[1]))
-    for e, good, part in evidence.parts():
-        terms = np.zeros((*e.r.shape, s.shape[1]))
-        terms[good] = s[part] * r[part, None]
-        total += _long_run_variance(terms.sum(axis=1), max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
+    total, terms = np.zeros((s.shape[1], s.shape[1])), s * r[:, None]
+    for (e, _, part), sample in zip(evidence.parts(), evidence.samples, strict=True):
+        q = np.stack([np.bincount(sample, column, minlength=len(e.r)) for column in terms[part].T], axis=1)
+        total += _long_run_variance(q, max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
     return total
 
 
@@ -60,17 +59,6 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
     sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), q, np.zeros((width - 1, q.shape[1]))]), axis=0)
     moving = sums[width:] - sums[:-width]
     return moving.T @ moving / width
-
-
-def largest_fall(evidence: Evidence, before: np.ndarray, after: np.ndarray) -> float:
-    """Of the RMS of residuals (N,), over the channels of every run."""
-    most = 0.0
-    for e, good, part in evidence.parts():
-        channel = np.nonzero(good)[1]
-        count = np.maximum(np.bincount(channel, minlength=e.r.shape[1]), 1)
-        sizes = [np.sqrt(np.bincount(channel, weights=r[part] ** 2, minlength=e.r.shape[1]) / count) for r in (before, after)]
-        most = max(most, float((sizes[0] - sizes[1]).max(initial=0)))
-    return most
 
 
 def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
@@ -105,6 +93,6 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
         drop = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
-    visible = largest_fall(evidence, r, r - direction)
+    visible = float((evidence.own_cell_rms - evidence.cell_rms(r - direction)).max(initial=0))
     return Score(effect, tuple(names), estimate, se, p, drop, seen_at_delta, visible, hidden,
                  direction / length if length > 0 else direction)  # fmt: skip
