@@ -27,7 +27,7 @@ def fit(misfit):
 
 
 def one(effect, misfit):
-    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit)
+    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=None)
 
 
 @pytest.mark.parametrize(("ahead", "again", "expected"), [
@@ -112,6 +112,20 @@ def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_fou
     lawful = [Some(**vars(one(e, m)), lawful=True, found=e == "slope") for e, m in
               (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))]  # fmt: skip
     assert tied(Some(candidates=lawful, again=True), "gain") == ("gain", "inertia")
+
+
+@pytest.mark.parametrize(("behind", "ahead", "se", "is_tied"), [
+    (9.0, -300.0, 60.0, True),  # as likely on fitted runs
+    (12.0, 5.0, 2.0, True),  # and on all runs together
+    (20.0, 5.0, 2.0, False),
+    (40.0, 5.0, 60.0, True),  # nobody can tell on held-out runs
+    (60.0, 5.0, 60.0, False),  # but it explains too little
+    (40.0, -300.0, 60.0, False),
+])  # fmt: skip
+def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, behind, ahead, se, is_tied):
+    monkeypatch.setattr(ties, "_ahead_on_heldout", lambda one, other: (ahead, se) if one is not other else (0.0, 0.0))
+    candidates = [Some(**vars(one(e, m)), lawful=True, found=True) for e, m in (("drag", 0.0), ("speed", behind))]
+    assert tied(Some(candidates=candidates, again=False), "drag") == (("drag", "speed") if is_tied else ("drag",))
 
 
 @pytest.mark.parametrize(("rms", "stays"), [(1.0, True), (1.2, True), (1.3, False)])

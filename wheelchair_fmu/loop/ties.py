@@ -23,13 +23,14 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 
 
 def tied(r: Round, effect: str) -> tuple[str, ...]:
-    """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. In a
-    search again, beside all that was found, likelihoods alone tell."""
+    """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. What
+    predicts held-out runs better is so much likelier. In a search again, beside all that was found, fitted runs alone tell."""
     leader = _of(r, effect)
     group, farthest = [leader.effect], leader.fit.misfit + margin(leader.fit.evidence)
     for c in r.candidates:
-        near = c.fit.misfit <= farthest
-        same = not r.again and c.found and c.drop >= NEARLY * leader.drop and _same_on_heldout(leader, c)
+        ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
+        near = c.fit.misfit - max(0.0, ahead) <= farthest
+        same = abs(ahead) < se and c.found and c.drop >= NEARLY * leader.drop
         if c is not leader and c.lawful and (near or same):
             group.append(c.effect)
     return tuple(group)
@@ -79,9 +80,10 @@ def overtaker(r: Round, effect: str, final: Fit) -> Candidate | None:
     return ahead if r.again and ahead and ahead.effect != effect and ahead.fit.misfit < far else None
 
 
-def _same_on_heldout(one: Candidate, other: Candidate) -> bool:
-    """Do both predict the held-out runs equally well, but for the bootstrap's standard error?"""
+def _ahead_on_heldout(one: Candidate, other: Candidate) -> tuple[float, float]:
+    """By how much one predicts the held-out runs better than the other, in −2 log likelihood, and the bootstrap's standard
+    error of that; 0 where none were held out."""
     if one.heldout is None or other.heldout is None or not one.heldout.runs:
-        return False
-    blocks = difference_blocks(one.heldout, other.heldout)
-    return abs(float(blocks.sum())) < float(resampled_totals(blocks).std())
+        return 0.0, 0.0
+    blocks = difference_blocks(other.heldout, one.heldout)
+    return float(blocks.sum()), float(resampled_totals(blocks).std())
