@@ -47,8 +47,10 @@ def test_axes_are_named_where_all_that_they_turn_is_turned(sample):
     assert len(r.notes) == 1 and "check `axes`" in r.notes[0]
 
 
-@pytest.mark.parametrize(("factor", "words"), [(180 / np.pi, "times what the model reads, and is left out; is it in deg/s?"),
-                                               (np.pi / 180, "does its header say deg/s of what is not?")])  # fmt: skip
+@pytest.mark.parametrize(("factor", "words"), [
+    (180 / np.pi, "times what the model reads, and is left out; see whether it is in deg/s"),
+    (np.pi / 180, "see whether its header says deg/s of what is not"),
+])  # fmt: skip
 def test_another_unit_is_named(sample, factor, words):
     r = found(wired(sample, yaw_rate=factor))
     assert r.wrong == ("yaw_rate",)
@@ -64,7 +66,7 @@ def test_exchanged_wheels_are_left_out(sample):
 def test_exchanged_pushes_are_named_and_nothing_is_trusted(sample):
     r = found(exchanged(sample, "inputs", "push.F_rl", "push.F_rr"))
     assert r.wrong == () and not r.trusted
-    assert "are the columns of F_rl and F_rr exchanged?" in r.notes[0]
+    assert "see whether the columns of F_rl and F_rr are exchanged" in r.notes[0]
 
 
 def test_nothing_is_left_out_where_nothing_would_be_left(sample):

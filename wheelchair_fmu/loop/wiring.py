@@ -51,8 +51,8 @@ def _exchanged_pushes(factors: Mapping[str, float]) -> Wiring | None:
     odd = [k for c, k in factors.items() if c == DIFFERENCE or BY_NAME[c].iso_sign < 0]
     if DIFFERENCE not in factors or len(odd) < 2 or not all(_near(k, -1.0) for k in odd):
         return None
-    note = ("the chair turns the other way than its pushes have it, so no verdict can be trusted; are the columns of F_rl "
-            "and F_rr exchanged?")  # fmt: skip
+    note = ("the chair turns the other way than its pushes have it, so no verdict can be trusted; see whether the "
+            "columns of F_rl and F_rr are exchanged")  # fmt: skip
     return Wiring((), (note,), False)
 
 
@@ -71,9 +71,9 @@ def _channels(factors: Mapping[str, float]) -> Wiring:
     for c, k in factors.items():
         if c != DIFFERENCE and _in_other_unit(c, k):
             unit = UNITS[BY_NAME[c].unit.name][1]
+            cure = f"whether it is in {unit}" if abs(k) > 1 else f"whether its header says {unit} of what is not"
             wrong.append(c)
-            notes.append(f"{c} is about {abs(k):.2g} times what the model reads, and is left out; "
-                         + (f"is it in {unit}?" if abs(k) > 1 else f"does its header say {unit} of what is not?"))  # fmt: skip
+            notes.append(f"{c} is about {abs(k):.2g} times what the model reads, and is left out; see {cure}")
     return Wiring(tuple(wrong), tuple(notes))
 
 
