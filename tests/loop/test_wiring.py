@@ -76,6 +76,15 @@ def test_nothing_is_left_out_where_nothing_would_be_left(sample):
     assert r.notes[-1] == "nothing else was measured, so no verdict can be trusted"
 
 
+def test_a_run_in_which_nothing_else_was_measured_is_left_out(sample):
+    first, *others = wired(sample, yaw_rate=-1.0).runs
+    search = Search(Workshop(replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)),
+                             Variant()))  # fmt: skip
+    begin(search, lambda words: None)
+    assert search.notes[0].startswith("yaw_rate has the other sign")
+    assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in others]
+
+
 def test_a_missing_effect_and_a_poor_guess_are_no_wrong_column(sample):
     assert found(sample) == Wiring()
     assert found(replace(sample, known={**sample.known, "chair.I_z": 2 * sample.known["chair.I_z"]})) == Wiring()

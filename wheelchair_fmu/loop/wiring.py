@@ -41,7 +41,7 @@ def wiring(bench: Bench, values: Mapping[str, float]) -> Wiring:
     except SimulationError:
         return Wiring()  # which the fit will say
     found = _exchanged_pushes(factors) or _channels(factors)
-    if any(set(run.channels) <= set(found.wrong) for run in bench.campaign.runs):
+    if found.wrong and all(set(run.channels) <= set(found.wrong) for run in bench.campaign.fit):
         return Wiring((), (*found.notes, "nothing else was measured, so no verdict can be trusted"), False)
     return found
 

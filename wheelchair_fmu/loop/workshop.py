@@ -65,10 +65,10 @@ class Workshop:
         return bench
 
     def leave_out(self, runs: Container[str] = (), channels: Container[str] = ()) -> None:
-        """Go on without these runs, and without these channels in the others."""
-        kept = (replace(r, channels={c: v for c, v in r.channels.items() if c not in channels})
-                for r in self.campaign.runs if r.name not in runs)  # fmt: skip
-        self.campaign = replace(self.campaign, runs=tuple(kept))
+        """Go on without these runs, without these channels in the others, and without what has no other channel."""
+        kept = [replace(r, channels={c: v for c, v in r.channels.items() if c not in channels})
+                for r in self.campaign.runs if r.name not in runs]  # fmt: skip
+        self.campaign = replace(self.campaign, runs=tuple(r for r in kept if r.channels or not channels))
         self._benches.clear()
 
     def remember(self, bench: Bench) -> None:
