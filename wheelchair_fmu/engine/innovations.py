@@ -82,13 +82,13 @@ class Whitener:
     def _filter(self) -> _Filter:
         return _Filter(*self._size, **{name: a.ctypes.data for name, a in self._arrays.items()})
 
-    def __call__(self, signals: np.ndarray, start_mean: np.ndarray) -> np.ndarray:
-        """Innovations (n, nz, m) of signals (n, nz, m).
+    def __call__(self, signals: np.ndarray, start_mean: np.ndarray, *, in_place: bool = False) -> np.ndarray:
+        """Innovations (n, nz, m) of signals (n, nz, m), which they may replace.
 
         The first signal is the residual, measured less simulated, and comes out NaN in gaps; the others are
         sensitivities, 0 there. `start_mean` (nx,) is where the true start is expected, less the simulated one.
         """
-        out = np.array(signals, float, order="C")
+        out = np.asarray(signals, float, order="C") if in_place else np.array(signals, float, order="C")
         m = out.shape[2]
         mean, work = np.ascontiguousarray(start_mean, float), np.empty(2 * self._gain.shape[2] * m)
         _library().wc_whiten(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(self._gain), _of(self._scale),

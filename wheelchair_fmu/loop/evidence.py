@@ -153,11 +153,6 @@ class Evidence:
             yield e, good, slice(at, at := at + int(good.sum()))
 
     @cached_property
-    def samples(self) -> list[np.ndarray]:
-        """Which sample of its run each innovation belongs to, run by run."""
-        return [np.nonzero(good)[0] for _, good, _ in self.parts()]
-
-    @cached_property
     def cells(self) -> np.ndarray:
         """(N,) which channel of which run each innovation belongs to, numbered through."""
         width = max((len(e.channels) for e in self.runs), default=0)
@@ -298,9 +293,11 @@ class Bench:
         spread = to_state * [sd[n] for n in START]
         offset = to_state @ [prior[n] - start[n] for n in START]
         whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured), self._speeds)
-        S = self._columns(run, simulated, w, by, columns, which, whitener)
-        white = whitener(np.concatenate([(measured - predicted)[:, :, None], S], axis=2), offset)
         k = len(by)
+        signals = np.zeros((len(run.time), len(channels), 1 + k + len(START)))
+        signals[:, :, 0] = measured - predicted
+        self._fill_columns(signals[:, :, 1:], run, simulated, w, by, columns, which, whitener)
+        white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
         return RunEvidence(run, channels, r[:, :, 0], S, start_S, start,
                            simulated.results, predicted, measured, whitener, offset)  # fmt: skip
@@ -335,11 +332,10 @@ class Bench:
             w[:, names.index(name)] = values
         return w
 
-    def _columns(self, run: Run, simulated: Linearised, w: np.ndarray, by: Sequence[str], columns: Sequence[str],
-                 which: Sequence[int], whitener: Whitener) -> np.ndarray:  # fmt: skip
-        """Unwhitened sensitivities (n, nz, len(by) + 6)."""
+    def _fill_columns(self, out: np.ndarray, run: Run, simulated: Linearised, w: np.ndarray, by: Sequence[str],
+                      columns: Sequence[str], which: Sequence[int], whitener: Whitener) -> None:  # fmt: skip
+        """Unwhitened sensitivities into zeros (n, nz, len(by) + 6)."""
         names = (*by, *START)
-        out = np.zeros((len(run.time), len(which), len(names)))
         free = [j for j, name in enumerate(names) if name not in run.set]
         derived = [j for j in free if names[j] in columns]
         at = [columns.index(names[j]) for j in derived]
@@ -349,7 +345,6 @@ class Bench:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
             elif names[j] in self._delays:  # every push changes by −F' per second of it
                 out[:, :, j] = whitener.response(-np.gradient(w[:, : len(PUSHED)], run.time, axis=0))
-        return out
 
     def _noise(self, channels: tuple[str, ...], start: np.ndarray) -> Noise:
         sd, ar = self.colour.sd, self.colour.ar

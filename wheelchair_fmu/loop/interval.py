@@ -8,6 +8,7 @@ parameter elsewhere each: no model is exact.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
@@ -39,18 +40,20 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     threshold, se = half**2 / found.covariance[at, at], half / NORMAL
     record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
 
-    def above(distance: float) -> float:
-        return misfit(best + distance) - found.misfit - threshold
+    @cache
+    def beyond(off: float) -> float:
+        """Above 0 where the interval has ended. The root makes of a parabola a straight line, on which ends are soon found."""
+        return float(np.sqrt(max(0.0, misfit(best + off) - found.misfit) / threshold)) - 1
 
     def end(side: float) -> float:
         bound = record.upper if side > 0 else record.lower
         reach = min(abs(bound - best), FARTHEST * se)
         near, far = 0.0, min(2.2 * se, reach)
-        while above(side * far) < 0:
+        while beyond(side * far) < 0:
             if far >= reach:
                 return best + side * reach
             near, far = far, min(1.6 * far, reach)
-        distance = float(brentq(lambda d: above(side * d) if d else -threshold, near, far, xtol=PRECISE * se))
+        distance = float(brentq(lambda d: beyond(side * d) if d else -1.0, near, far, xtol=PRECISE * se))
         return best + side * (distance if distance > JUMP * se else min(half, reach))
 
     if not se > 0:

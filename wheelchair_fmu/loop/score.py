@@ -47,7 +47,8 @@ def projector(Z: np.ndarray, prior_slopes: np.ndarray):
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
     """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
     total, terms = np.zeros((s.shape[1], s.shape[1])), s * r[:, None]
-    for (e, _, part), sample in zip(evidence.parts(), evidence.samples, strict=True):
+    for e, good, part in evidence.parts():
+        sample = np.nonzero(good)[0]
         q = np.stack([np.bincount(sample, column, minlength=len(e.r)) for column in terms[part].T], axis=1)
         total += _long_run_variance(q, max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
     return total
