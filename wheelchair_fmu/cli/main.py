@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -10,6 +11,8 @@ import typer
 from .. import __version__
 from ..errors import unknown
 from .group import Group
+
+COLLECTED = 100_000  # objects: to look through all of them as often as is usual takes 3 % of a diagnosis
 
 # Modules, each with `register(app)`, and what they are for.
 COMMANDS = {
@@ -76,6 +79,7 @@ def wheelchair(
 
 def main() -> None:
     """Run the command line and exit with its code."""
+    gc.set_threshold(COLLECTED)
     app(prog_name="wheelchair")
 
 

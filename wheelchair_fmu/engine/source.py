@@ -10,6 +10,7 @@ from pathlib import Path
 import casadi as cs
 
 from . import rodas
+from .inverses import dividing_once
 from .kernel import NAMES, Kernel
 from .tangent import NAMES as TANGENT_NAMES
 from .tangent import Tangent
@@ -97,7 +98,7 @@ def _generated(functions: dict[str, cs.Function], names: Sequence[str], prefix: 
     # Not a header: the functions are seen by the record that follows and by nobody else.
     generator = cs.CodeGenerator(f"{prefix}.c", {"with_header": False})
     for name in names:
-        generator.add(_renamed(functions[name], f"{prefix}_{name}"))
+        generator.add(dividing_once(functions[name], f"{prefix}_{name}"))
     with tempfile.TemporaryDirectory() as folder:
         return _unchecked(Path(generator.generate(folder + "/")).read_text())
 
@@ -106,8 +107,3 @@ def _unchecked(text: str) -> str:
     """Functions whose arguments and results are all there: CasADi asks for each number anew, which takes compilers a third of
     their time."""
     return re.sub(r"if \(res\[\d+\]!=0\) ", "", re.sub(r"(arg\[\d+\])\? (\1\[\d+\]) : 0", r"\2", text))
-
-
-def _renamed(function: cs.Function, name: str) -> cs.Function:
-    inputs = function.sx_in()
-    return cs.Function(name, inputs, function.call(inputs))
