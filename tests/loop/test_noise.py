@@ -20,11 +20,12 @@ def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
     return noise
 
 
-def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000):
-    """`colour_of` one run whose only channel has AR(1) noise on a smooth error as large as the noise, by a filter for white
-    noise of the `stated` size."""
+def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000, times: float = 1.0,
+             hertz: float = 0.3):  # fmt: skip
+    """`colour_of` one run whose only channel has AR(1) noise on a smooth error so many times as large as the noise, by a filter
+    for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)
-    smooth = sigma * np.sin(2 * np.pi * 0.3 * np.arange(n) * 0.01)
+    smooth = times * sigma * np.sin(2 * np.pi * hertz * np.arange(n) * 0.01)
     run = SimpleNamespace(channels={"yaw_rate": noise + smooth}, inputs={})
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
@@ -42,6 +43,21 @@ def test_colour_is_seen(seed):
     colour, notes = coloured(0.006, 0.9, 0.006, seed)
     assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.01)
     assert not notes, "its size is as stated"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_a_missing_effect_leaves_is_no_slow_noise(seed):
+    """An error of strokes looks within fifteen samples as very slow noise, five times as large, does."""
+    colour, notes = coloured(0.006, 0.9, 0.006, seed, times=10.0, hertz=1.0)
+    assert colour.sd["yaw_rate"] == 0.006 and not notes
+    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.03)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_coloured_noise_that_is_larger_than_stated_is_seen(seed):
+    colour, notes = coloured(0.012, 0.9, 0.006, seed)
+    assert colour.sd["yaw_rate"] == pytest.approx(0.012, rel=0.2) and notes
+    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.02)
 
 
 def test_a_wrong_size_is_said():

@@ -18,7 +18,8 @@ LAGS = 15
 WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
 QUIETER = 0.75  # mean square error below which noise was taken for too large, once what was missing is in the model
 STEADY = 0.6  # an AR(1) coefficient of pushes below this may as well be noise that was stated too large
-TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept
+TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept,
+SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 
 
 def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
@@ -35,7 +36,8 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
         else:
             sigma, phi = _fit_structure(_structure(evidence, channel))
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
-        trusted = 1 / TRUSTED < ratio < TRUSTED
+        slow = phi > SLOW and ratio > 1 and (1 - phi) * ratio**2 < 1  # what is slow may as well be what the model lacks
+        trusted = slow or 1 / TRUSTED < ratio < TRUSTED
         if phi > WHITE:
             # data tell σ² (1 − φ), the change from one sample to the next, far better than they tell either of the two
             ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
