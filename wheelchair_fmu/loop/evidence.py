@@ -153,15 +153,17 @@ class Evidence:
             yield e, good, slice(at, at := at + int(good.sum()))
 
     @cached_property
-    def cells(self) -> np.ndarray:
-        """(N,) which channel of which run each innovation belongs to, numbered through."""
+    def cells(self) -> tuple[np.ndarray, np.ndarray]:
+        """(N,) which channel of which run each innovation belongs to, numbered through, and how many each of these has."""
         width = max((len(e.channels) for e in self.runs), default=0)
         numbers = [np.nonzero(good)[1] + width * i for i, (_, good, _) in enumerate(self.parts())]
-        return np.concatenate(numbers or [np.empty(0, int)])
+        cells = np.concatenate(numbers or [np.empty(0, int)])
+        return cells, np.maximum(np.bincount(cells), 1)
 
     def cell_rms(self, r: np.ndarray) -> np.ndarray:
         """RMS of residuals (N,) in each cell; 0 where there are none."""
-        return np.sqrt(np.bincount(self.cells, r * r) / np.maximum(np.bincount(self.cells), 1))
+        cells, count = self.cells
+        return np.sqrt(np.bincount(cells, r * r) / count)
 
     @cached_property
     def own_cell_rms(self) -> np.ndarray:

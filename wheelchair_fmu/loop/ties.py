@@ -28,10 +28,12 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     leader = _of(r, effect)
     group, farthest = [leader.effect], leader.fit.misfit + margin(leader.fit.evidence)
     for c in r.candidates:
+        if c is leader or not c.lawful:
+            continue
         ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
         near = c.fit.misfit - max(0.0, ahead) <= farthest
         same = abs(ahead) < se and c.found and c.drop >= NEARLY * leader.drop
-        if c is not leader and c.lawful and (near or same):
+        if near or same:
             group.append(c.effect)
     return tuple(group)
 

@@ -15,13 +15,14 @@ from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .climb import Climb
-from .diagnose import AT_THE_FLOOR, HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
+from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
 from .evidence import Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
 from .limits import beyond
+from .screen import AT_THE_FLOOR
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
 from .workshop import CALIBRATED, Workshop
@@ -151,8 +152,8 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
     found = effects[len(rounds[0].effects) :]
     first = rounds[0]
     plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
-    enough = len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR)
-    if enough and plainly < _room(base.evidence):  # does one term do alone what these were to do, and plainly more?
+    asked = len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR)
+    if asked and plainly < _room(base.evidence):  # does one term do alone what these were to do, and plainly more?
         promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
         alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
                                      visible=PLAINLY_VISIBLE, rival=base.misfit, least=HOPELESS * promised)  # fmt: skip
