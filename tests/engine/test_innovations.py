@@ -14,9 +14,9 @@ from wheelchair_fmu.engine.innovations import Noise, Whitener
 def drawn(rng, n, nx, ns, keeps):
     """A run of n samples with nx states, four pushes and ns sensors, whose derivatives are drawn at random."""
     return SimpleNamespace(
-        transition=keeps * rng.normal(size=(n - 1, nx, nx)), push_before=rng.normal(size=(n - 1, nx, 4)),
-        push_after=rng.normal(size=(n - 1, nx, 4)), by_state=rng.normal(size=(n, ns, nx)),
-        by_push=rng.normal(size=(n, ns, 4)))  # fmt: skip
+        time=0.01 * np.arange(n), transition=keeps * rng.normal(size=(n - 1, nx, nx)),
+        push_before=rng.normal(size=(n - 1, nx, 4)), push_after=rng.normal(size=(n - 1, nx, 4)),
+        by_state=rng.normal(size=(n, ns, nx)), by_push=rng.normal(size=(n, ns, 4)))  # fmt: skip
 
 
 @pytest.mark.parametrize("colour", [0.0, 0.8])
@@ -96,3 +96,48 @@ def test_spread_is_each_readings_own_standard_deviation():
     V, _ = dense(run, [0, 1], replace(noise, start=0 * noise.start), n, nx, nq, nz, np.zeros(nx))
     spread = Whitener(run, [0, 1], noise, np.ones((n, nz), bool)).spread
     np.testing.assert_allclose(spread.ravel(), 1 / np.sqrt(np.diag(V)), rtol=1e-10)
+
+
+def test_colour_is_by_time_where_rows_belong_to_several_loggers():
+    """Readings of two loggers, 0.01 s and 0.025 s apart, have noise that forgets with time, not with rows."""
+    rng = np.random.default_rng(3)
+    mine, other = 0.01 * np.arange(15), 0.003 + 0.025 * np.arange(6)
+    time = np.sort(np.concatenate((mine, other)))
+    n, nx = len(time), 2
+    run = drawn(rng, n, nx, 2, 0.3)
+    run.time = time
+    present = np.stack([np.isin(time, mine), np.isin(time, other)], axis=1)
+    noise = Noise(np.zeros(1), np.zeros(1), np.array([0.2, 0.4]), np.array([0.7, 0.5]), np.diag([0.1, 0.2]) ** 2)
+    signal = np.where(present, rng.normal(size=(n, 2)), np.nan)[:, :, None]
+    white = Whitener(run, [0, 1], noise, present)(signal, np.zeros(nx))[present][:, 0]
+
+    V = np.zeros((2 * n, 2 * n))
+    for k in range(nx):
+        response = respond(run, ("start", k), run.by_state, run.by_push[:, :, :1], n, nx, 1)
+        V += noise.start[k, k] * np.outer(response, response)
+    apart = np.abs(np.subtract.outer(time, time))
+    for z, (sd, phi, step) in enumerate(((0.2, 0.7, 0.01), (0.4, 0.5, 0.025))):
+        V[z::2, z::2] += sd**2 * phi ** (apart / step)
+    keep = present.ravel()
+    flat = signal.ravel()[keep]
+    assert white @ white == pytest.approx(flat @ np.linalg.solve(V[np.ix_(keep, keep)], flat), rel=1e-8)
+
+
+@pytest.mark.parametrize("phi", [0.0, 0.8])
+def test_noise_of_a_push_moves_the_chair_alike_however_many_rows_lie_between_its_samples(phi):
+    """A chair of 1 kg, a push at 100 Hz with noise of 1 N, readings in between: variance of its speed after 4 s."""
+
+    def speed_variance(time: np.ndarray) -> float:
+        n, gaps = len(time), np.diff(time)
+        half = np.zeros((n - 1, 1, 4))
+        half[:, 0, 0] = gaps / 2  # a straight line between two samples
+        run = SimpleNamespace(time=time, transition=np.ones((n - 1, 1, 1)), push_before=half, push_after=half,
+                              by_state=np.ones((n, 1, 1)), by_push=np.zeros((n, 1, 4)))  # fmt: skip
+        noise = Noise(np.ones(1), np.full(1, phi), np.full(1, 1e-9), np.zeros(1), np.zeros((1, 1)), np.full(1, 0.01))
+        return float(Whitener(run, [0], noise, np.ones((n, 1), bool)).spread[-1, 0] ** -2)
+
+    own = 0.01 * np.arange(401)
+    rng = np.random.default_rng(4)
+    many = np.sort(np.concatenate((own, rng.uniform(0, 4, 800))))
+    assert speed_variance(many) == pytest.approx(speed_variance(own), rel=0.05)
+    assert speed_variance(own) == pytest.approx(4 * 0.01 * (1 + phi) / (1 - phi), rel=0.05)

@@ -12,8 +12,8 @@ from .axes import to_sae
 from .channels import BY_NAME, CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
 from .reading import check, fingerprint, read
-from .records import Campaign, Run
+from .records import Baseline, Campaign, Clock, Run
 from .windows import pieces, windows
 
-__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Campaign", "Channel", "Fault", "Run", "check", "fingerprint", "pieces", "read",
-           "read_smartwheel", "to_sae", "windows"]  # fmt: skip
+__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Baseline", "Campaign", "Channel", "Clock", "Fault", "Run", "check", "fingerprint",
+           "pieces", "read", "read_smartwheel", "to_sae", "windows"]  # fmt: skip

@@ -2,12 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from ..faults import Fault
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The clock of one device in one run: whose `channels` (by name) and `inputs` (by FMU name) it stamps, and the standard
+    deviation, in s, of what may be left of its offset."""
+
+    device: str
+    channels: frozenset[str]
+    inputs: frozenset[str]
+    sd: float
+
+
+@dataclass(frozen=True, eq=False)
+class Baseline:
+    """What a record of pushes may still hold that no hand gave: `shapes` (n, m) at the run's times, and the covariance (m, m)
+    of how much of each there is, in the input's unit. `input` is its FMU name."""
+
+    input: str
+    shapes: np.ndarray
+    covariance: np.ndarray
+
+    @cached_property
+    def independent(self) -> np.ndarray:
+        """(n, m) combinations of the shapes whose sizes are independent, each with a standard deviation of 1."""
+        size, directions = np.linalg.eigh(self.covariance)
+        return np.asarray(self.shapes @ (directions * np.sqrt(np.maximum(size, 0.0))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,6 +48,10 @@ class Run:
     first sample in m/s, from the file or else from the first wheel speeds, None where neither tells.
     `set` holds dotted parameters that differ from the campaign's in this run; where it says how the run starts
     (`start.psi`, ...), that is not estimated.
+
+    Where several devices recorded the run, `time` has the times of all their samples, and a channel is NaN at those of the
+    others; inputs are straight lines between their own samples. `clocks` and `baselines` are what is uncertain of it;
+    `input_steps` are the times between an input's own samples, in s, where they are not those of `time`.
     """
 
     name: str
@@ -30,6 +63,9 @@ class Run:
     time: np.ndarray
     inputs: dict[str, np.ndarray]
     channels: dict[str, np.ndarray]
+    clocks: tuple[Clock, ...] = ()
+    baselines: tuple[Baseline, ...] = ()
+    input_steps: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

@@ -77,14 +77,16 @@ def _cut(run: Run, start: int, stop: int) -> Run:
     inputs, channels = ({name: v[part] for name, v in series.items()} for series in (run.inputs, run.channels))
     known = {name: value for name, value in run.set.items() if not start or not name.startswith(STARTS)}
     known |= {} if heading is None else {HEADING: heading}
+    baselines = tuple(replace(b, shapes=b.shapes[part]) for b in run.baselines)
     return replace(run, name=f"{run.name}@{run.time[start]:.6g}s", u0=_speed(channels) if start else run.u0, set=known,
-                   time=run.time[part], inputs=inputs, channels=channels)  # fmt: skip
+                   time=run.time[part], inputs=inputs, channels=channels, baselines=baselines)  # fmt: skip
 
 
 def _own(run: Run) -> Run:
     """The same with its samples copied, so that the recording it was cut from can be forgotten."""
     inputs, channels = ({name: v.copy() for name, v in series.items()} for series in (run.inputs, run.channels))
-    return replace(run, time=run.time.copy(), inputs=inputs, channels=channels)
+    baselines = tuple(replace(b, shapes=b.shapes.copy()) for b in run.baselines)
+    return replace(run, time=run.time.copy(), inputs=inputs, channels=channels, baselines=baselines)
 
 
 def _calmest(run: Run, start: int, stop: int) -> int:

@@ -102,7 +102,7 @@ def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float],
             for e in islice(evidence, len(parts)):
                 given = {**measured.known, **values, **{n: e.start[n] for n in START}}
                 given = {n: v for n, v in given.items() if n in fmu.parameters}
-                predicted = run_campaign_run(fmu, bench.on_time(e.run, values), given)
+                predicted = run_campaign_run(fmu, bench.on_time(e.run, values, e.start), given)
                 found.append(errors_of(e, predicted, REGIMES, results))
             yield together(name, found)
 

@@ -32,13 +32,17 @@ class _Filter(ctypes.Structure):
 @dataclass(frozen=True)
 class Noise:
     """What is known of the noise: standard deviations of pushes (nq,) and readings (nz,), the AR(1) coefficients of each
-    (nq,) and (nz,), and the covariance of the start (nx, nx)."""
+    (nq,) and (nz,), from one of its own samples to the next, and the covariance of the start (nx, nx).
+
+    `push_step` (nq,) is the time between samples of each recorded push, in s; without it, that of the run.
+    """
 
     pushes: np.ndarray
     push_colour: np.ndarray
     readings: np.ndarray
     colour: np.ndarray
     start: np.ndarray
+    push_step: np.ndarray | None = None
 
 
 @cache
@@ -49,22 +53,27 @@ def _library() -> ctypes.CDLL:
 
 
 class Whitener:
-    """The filter of one run: `run` its linearisation, `which` the places of its readings that were measured,
-    `present` (n, nz) False in gaps. `logdet` is Σ log of the innovations' variances.
+    """The filter of one run: `run` its linearisation, `which` the places of its readings that were measured, `pushes` those of
+    the recorded pushes, the first if not given; `present` (n, nz) False in gaps. `logdet` is Σ log of the innovations'
+    variances.
 
     Readings about the moment a chair comes to rest, which no slope foretells (`kinks`; see wc_drop_kinks in innovations.c),
     tell nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
     """
 
-    def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray, speeds: Sequence[int] = ()):
+    def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray, speeds: Sequence[int] = (),
+                 pushes: Sequence[int] | None = None):  # fmt: skip
         self.present, self.noise = present, noise
         n, nz = present.shape
         nx, nq = run.transition.shape[1], len(noise.pushes)
         if nx + nq + nz > MOST:
             raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
-        arrays = {"A": run.transition, "B": run.push_before[:, :, :nq], "C": run.push_after[:, :, :nq],
-                  "H": run.by_state[:, which], "D": run.by_push[:, which, :nq],
-                  "input_sd": noise.pushes, "input_phi": noise.push_colour, "sd": noise.readings, "phi": noise.colour,
+        push_sd, push_phi = _by_push(run.time, noise)
+        at = list(range(nq) if pushes is None else pushes)
+        arrays = {"A": run.transition, "B": run.push_before[:, :, at], "C": run.push_after[:, :, at],
+                  "H": run.by_state[:, which], "D": run.by_push[:, which][:, :, at],
+                  "input_sd": push_sd, "input_phi": push_phi, "sd": noise.readings,
+                  "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
                   "start_cov": noise.start}  # fmt: skip
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self._arrays["present"] = np.ascontiguousarray(present, np.int8)
@@ -111,6 +120,37 @@ class Whitener:
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
+
+
+def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:
+    """Usual time (nz,) between the samples of each reading, from times (n,) and where each is `present` (n, nz)."""
+    usual = float(np.median(np.diff(time)))
+    own = (time[there] for there in present.T)
+    return np.array([float(np.median(np.diff(t))) if len(t) > 1 else usual for t in own])
+
+
+def _by_interval(time: np.ndarray, colour: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """AR(1) coefficients (n−1, m) over each interval between rows, from those over each series' own step (m,).
+
+    Rows belong to several loggers, so most intervals are shorter than a series' own step.
+    """
+    return np.where(colour > 0, np.maximum(colour, 1e-300) ** (np.diff(time)[:, None] / step), 0.0)
+
+
+def _by_push(time: np.ndarray, noise: Noise) -> tuple[np.ndarray, np.ndarray]:
+    """Standard deviations (n, nq) of recorded pushes at each row, and their coefficients (n−1, nq) over each interval.
+
+    What noise adds to the chair's momentum must not depend on how many rows lie between two samples of a push. In a time T
+    that has a variance of σ² T h (1 + φ)/(1 − φ) for rows h apart, so σ goes with the rows' distance.
+    """
+    gaps = np.diff(time)
+    around = np.concatenate((gaps[:1], (gaps[1:] + gaps[:-1]) / 2, gaps[-1:]))
+    usual = np.full(len(noise.pushes), float(np.median(gaps)))
+    own = usual if noise.push_step is None else noise.push_step
+    phi = _by_interval(time, noise.push_colour, own)
+    there = np.maximum(noise.push_colour, 0.0) ** (around[:, None] / own)
+    lasting = own * (1 + noise.push_colour) / (1 - noise.push_colour)
+    return noise.pushes * np.sqrt(lasting / (around[:, None] * (1 + there) / (1 - there))), phi
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

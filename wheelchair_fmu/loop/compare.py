@@ -65,7 +65,7 @@ class Comparison:
 def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str],
               results: Sequence[str]) -> RunErrors:  # fmt: skip
     """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
-    there = np.stack([predicted[c] for c in evidence.channels], axis=1) if predicted is not None else evidence.predicted
+    there = evidence.predicted if predicted is None else evidence.on_rows(predicted)
     where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
     pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
     if pushes:

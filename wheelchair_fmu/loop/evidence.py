@@ -14,18 +14,19 @@ from functools import cached_property
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
-from ..campaign.channels import PUSHES
+from ..campaign.channels import BY_FMU_NAME, PUSHES
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
 from ..model.variant import Variant
 from ..quantities import Parameter
 from .cores import each
+from .local import Marginal, felt, locals_of, read, slope
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
-PUSHED = tuple(PUSHES)  # records of pushes that carry noise
+FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 TELLS = {"start.x": "x", "start.y": "y", "start.psi": "yaw", "start.u": "u", "start.psi_dot": "yaw_rate"}  # by channel
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
@@ -60,7 +61,7 @@ class Weighed:
 @dataclass(frozen=True)
 class RunEvidence:
     """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k) by parameters and start_S
-    (n, nz, 6) by the start, and the filter that they went through."""
+    (n, nz, 6 + l) by the start and by what else is uncertain of this run only, and the filter that they went through."""
 
     run: Run
     channels: tuple[str, ...]
@@ -71,8 +72,8 @@ class RunEvidence:
     results: np.ndarray  # (n, ny) all outputs of the simulation
     predicted: np.ndarray  # (n, nz) simulated readings
     measured: np.ndarray  # (n, nz), less offsets
-    whitener: Whitener | Weighed
-    offset: np.ndarray  # (nx,) where the true start is expected, less the simulated one
+    whitener: Marginal | Weighed
+    offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
 
     def brief(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
@@ -90,6 +91,10 @@ class RunEvidence:
     def e(self) -> np.ndarray:
         """(n, nz) the simulation's own `errors`."""
         return self.errors(self.predicted)
+
+    def on_rows(self, simulated: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Simulated channels (n,) by name as readings (n, nz), each for when its device's samples were taken."""
+        return read(self.run, self.channels, np.stack([simulated[c] for c in self.channels], axis=1), self.start)
 
     def errors(self, predicted: np.ndarray) -> np.ndarray:
         """(n, nz) whitened: measured less `predicted`, in standard deviations; NaN in gaps.
@@ -208,6 +213,7 @@ class Bench:
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
+        self._inputs = [i.name for i in self.sensitivities.model.inputs]
         self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
@@ -236,6 +242,7 @@ class Bench:
         def one(e: RunEvidence) -> RunEvidence:
             results, predicted = self._simulated(e.run, values, e.start)
             measured = self._measured(e.run, values)
+            assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
             r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
             return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
@@ -264,41 +271,51 @@ class Bench:
         """Results (n, ny) and readings (n, nz) of a run, without derivatives."""
         given, w = self._given(run, values, start)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
-        return results, results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
+        predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
+        return results, read(run, self._channels(run), predicted, start)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         e = self._one(run, values, by)
         for _ in range(rounds):
-            better, sd = self._better_start(e), start_sd(run)
-            if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in START):
+            better, sd = self._better_start(e), uncertain(run)
+            if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
             e = self._one(run, values, by)
         return e
 
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
-        """The start given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
+        """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
         good = np.isfinite(e.r)
-        prior, sd = prior_start(e.run, self.known(e.run)), start_sd(e.run)
-        step = np.array([sd[n] ** 2 for n in START]) * (e.start_S[good].T @ e.r[good])
-        return {n: prior[n] + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(START, step, strict=True)}
+        prior, sd = prior_start(e.run, self.known(e.run)), uncertain(e.run)
+        step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
+        return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
     def _one(self, run: Run, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
-        channels, which = self._channels(run), self._which(run)
+        channels, which, pushes = self._channels(run), self._which(run), pushes_of(run)
         start = self.starts[run.name]
         given, w = self._given(run, values, start)
         columns = [n for n in (*by, *START) if n not in self._delays and n not in self.offsets]
         simulated = self.sensitivities.run(run.time, w, given, columns, tolerance=TOLERANCE)
-        measured, predicted = self._measured(run, values), simulated.readings[:, which]
+        measured = self._measured(run, values)
+        predicted = read(run, channels, simulated.readings[:, which], start)
         prior, sd = prior_start(run, self.known(run)), start_sd(run)
         to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
         spread = to_state * [sd[n] for n in START]
-        offset = to_state @ [prior[n] - start[n] for n in START]
-        whitener = Whitener(simulated, which, self._noise(channels, spread @ spread.T), np.isfinite(measured), self._speeds)
-        k = len(by)
-        signals = np.zeros((len(run.time), len(channels), 1 + k + len(START)))
+        noise = self._noise(run, channels, pushes, spread @ spread.T)
+        there = [self._inputs.index(n) for n in pushes]
+        filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there)
+        constants = locals_of(run)
+        by_constant = [slope(c, run, channels, predicted, pushes, filter_) for c in constants]
+        k, m = len(by), len(START)
+        signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
         signals[:, :, 0] = measured - predicted
-        self._fill_columns(signals[:, :, 1:], run, simulated, w, by, columns, which, whitener)
+        self._fill_columns(signals[:, :, 1 : 1 + k + m], run, simulated, w[:, there], by, columns, which, filter_)
+        for j, column in enumerate(by_constant):
+            signals[:, :, 1 + k + m + j] = column
+        whitener = Marginal(filter_, signals[:, :, 1 + k + m :] * [c.sd for c in constants])
+        offset = np.concatenate((to_state @ [prior[n] - start[n] for n in START],
+                                 [-start.get(c.name, 0.0) / c.sd for c in constants]))  # fmt: skip
         white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
         return RunEvidence(run, channels, r[:, :, 0], S, start_S, start,
@@ -316,27 +333,29 @@ class Bench:
 
     def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Parameters (np,) and inputs (n, nw) of a run; what the run itself sets stands."""
-        given = {**self.variant.values, **self.known(run), **values, **run.set, **start}
-        return self.variant.vector(given), self.inputs(self.on_time(run, values))
+        given = {**self.variant.values, **self.known(run), **values, **run.set, **{n: start[n] for n in START}}
+        return self.variant.vector(given), self.inputs(self.on_time(run, values, start))
 
-    def on_time(self, run: Run, values: Mapping[str, float]) -> Run:
-        """The run with its pushes when the chair felt them: a record that is early is read that much later."""
+    def on_time(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> Run:
+        """The run with its pushes as and when the chair felt them: a record that is early is read that much later, and what
+        `start` has of clocks and baselines is taken out."""
         given = {**self.variant.values, **self.known(run), **values, **run.set}
         delay = sum(given.get(d, 0.0) for d in self._delays)
-        inputs = {n: np.interp(run.time - delay, run.time, v) for n, v in run.inputs.items()} if delay else run.inputs
+        inputs = felt(run, start)
+        inputs = {n: np.interp(run.time - delay, run.time, v) for n, v in inputs.items()} if delay else inputs
         return replace(run, inputs=inputs, set={n: v for n, v in run.set.items() if n not in self._delays})
 
     def inputs(self, run: Run) -> np.ndarray:
         """Recorded inputs (n, nw)."""
-        names = [i.name for i in self.sensitivities.model.inputs]
+        names = self._inputs
         w = np.tile([i.start for i in self.sensitivities.model.inputs], (len(run.time), 1))
         for name, values in run.inputs.items():
             w[:, names.index(name)] = values
         return w
 
-    def _fill_columns(self, out: np.ndarray, run: Run, simulated: Linearised, w: np.ndarray, by: Sequence[str],
+    def _fill_columns(self, out: np.ndarray, run: Run, simulated: Linearised, pushed: np.ndarray, by: Sequence[str],
                       columns: Sequence[str], which: Sequence[int], whitener: Whitener) -> None:  # fmt: skip
-        """Unwhitened sensitivities into zeros (n, nz, len(by) + 6)."""
+        """Unwhitened sensitivities into zeros (n, nz, len(by) + 6). `pushed` (n, nq) are the recorded pushes."""
         names = (*by, *START)
         free = [j for j, name in enumerate(names) if name not in run.set]
         derived = [j for j in free if names[j] in columns]
@@ -346,12 +365,15 @@ class Bench:
             if names[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
             elif names[j] in self._delays:  # every push changes by −F' per second of it
-                out[:, :, j] = whitener.response(-np.gradient(w[:, : len(PUSHED)], run.time, axis=0))
+                out[:, :, j] = whitener.response(-np.gradient(pushed, run.time, axis=0))
 
-    def _noise(self, channels: tuple[str, ...], start: np.ndarray) -> Noise:
+    def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
         sd, ar = self.colour.sd, self.colour.ar
-        pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in names] for names in (PUSHED, channels))
-        return Noise(*np.array(pushes).T, *np.array(readings).T, start)
+        names = [BY_FMU_NAME[n].name for n in pushes]
+        of_pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in some] for some in (names, channels))
+        usual = float(np.median(np.diff(run.time)))
+        step = np.array([run.input_steps.get(n, usual) for n in pushes])
+        return Noise(*np.array(of_pushes).T, *np.array(readings).T, start, step)
 
     def with_colour(self, colour: Colour) -> Bench:
         """The same bench with other noise; starts found so far are kept."""
@@ -364,6 +386,17 @@ def offsets_of(campaign: Campaign) -> dict[str, str]:
     """Names of the sensor offsets that a campaign has for nuisances, and the channels they are added to."""
     measured = {c for r in campaign.runs for c in r.channels}
     return {f"offset.{c}": c for c in campaign.nuisance if c in measured}
+
+
+def pushes_of(run: Run) -> tuple[str, ...]:
+    """FMU names of the pushes that a filter has noise for: forces, and torques where they were recorded."""
+    names = FORCES if not any(BY_NAME[n].fmu in run.inputs for n in TORQUES) else (*FORCES, *TORQUES)
+    return tuple(BY_NAME[n].fmu for n in names)
+
+
+def uncertain(run: Run) -> dict[str, float]:
+    """Standard deviations of what is estimated of a run for itself: its start, then its clocks and baselines."""
+    return {**start_sd(run), **{c.name: c.sd for c in locals_of(run)}}
 
 
 def block_length(run: Run) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq, least_squares
 
 from ..campaign.series import estimate
-from .evidence import PUSHED, Colour, Evidence
+from .evidence import FORCES, Colour, Evidence
 
 LAGS = 15
 WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
@@ -45,7 +45,7 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
             sd[channel] = sigma
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
                          "the data's own is used")  # fmt: skip
-    pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in PUSHED}
+    pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in FORCES}
     return Colour(sd, ar | {side: phi for side, phi in pushes.items() if phi > STEADY}), notes
 
 

@@ -2,7 +2,8 @@
  *
  * Deviations from a simulated run obey
  *     e(i+1) = A(i) e(i) + B(i) q(i) + C(i) q(i+1),    z(i) = H(i) e(i) + D(i) q(i) + a(i),
- * with q the noise of the recorded inputs and a that of the readings, an AR(1) process each. The filter
+ * with q the noise of the recorded inputs and a that of the readings, an AR(1) process each, whose coefficients may
+ * differ from interval to interval, as samples of several loggers are not evenly spaced. The filter
  * turns z into independent innovations of variance 1; being linear it does the same to any signal that
  * may hide in z, so residuals and sensitivities go through alike.
  * Its gains depend on the variances only: they are designed once and applied to as many signals as come.
@@ -25,8 +26,8 @@ typedef struct {
     int nx, nq, nz;
     const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
     const double *H, *D;      /* n x nz x nx, n x nz x nq */
-    const double *input_sd, *input_phi; /* nq: standard deviation and AR(1) coefficient of each input */
-    const double *sd, *phi;             /* nz: the same of each reading */
+    const double *input_sd, *input_phi; /* n x nq, n-1 x nq: standard deviation of each input, its AR(1) coefficient to the next */
+    const double *sd, *phi;             /* nz, n-1 x nz: the same of each reading */
     const double *start_cov;  /* nx x nx */
     char *present;            /* n x nz: 0 in a gap */
 } filter;
@@ -44,11 +45,13 @@ static inline void carry(const filter *f, long i, int m, const double *restrict 
         for (int k = 0; k < nx; k++) add_row(m, f->A[(i * nx + r) * nx + k], from + k * m, to + r * m);
         for (int q = 0; q < nq; q++) {
             long at = (i * nx + r) * nq + q;
-            add_row(m, f->B[at] + f->C[at] * f->input_phi[q], from + (nx + q) * m, to + r * m);
+            add_row(m, f->B[at] + f->C[at] * f->input_phi[i * nq + q], from + (nx + q) * m, to + r * m);
         }
     }
-    for (int q = 0; q < nq; q++) add_row(m, f->input_phi[q], from + (nx + q) * m, to + (nx + q) * m);
-    for (int z = nx + nq; z < nx + nq + f->nz; z++) add_row(m, f->phi[z - nx - nq], from + z * m, to + z * m);
+    for (int q = 0; q < nq; q++) add_row(m, f->input_phi[i * nq + q], from + (nx + q) * m, to + (nx + q) * m);
+    for (int z = nx + nq; z < nx + nq + f->nz; z++) {
+        add_row(m, f->phi[i * f->nz + z - nx - nq], from + z * m, to + z * m);
+    }
 }
 
 static void transpose(int n, const double *from, double *to) {
@@ -65,14 +68,16 @@ static void predict(const filter *f, long i, double *P) {
     transpose(n, T, U);
     carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
     for (int q = 0; q < nq; q++) { /* fresh noise of the inputs at i+1 */
-        double G[MOST] = {0}, variance = (1 - f->input_phi[q] * f->input_phi[q]) * f->input_sd[q] * f->input_sd[q];
+        double G[MOST] = {0}, phi = f->input_phi[i * nq + q], sd = f->input_sd[(i + 1) * nq + q];
+        double variance = (1 - phi * phi) * sd * sd;
         for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + q];
         G[nx + q] = 1;
         for (int r = 0; r < nx + nq; r++) add_row(nx + nq, variance * G[r], G, P + r * n);
     }
     for (int z = 0; z < f->nz; z++) {
         int k = nx + nq + z;
-        P[k * n + k] += (1 - f->phi[z] * f->phi[z]) * f->sd[z] * f->sd[z];
+        double phi = f->phi[i * f->nz + z];
+        P[k * n + k] += (1 - phi * phi) * f->sd[z] * f->sd[z];
     }
 }
 

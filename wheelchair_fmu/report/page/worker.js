@@ -115,9 +115,9 @@ class Kernel {
   /** Calls `act` with the addresses of a filter's record, whose matrices are put into memory, and of its `present`. */
   withFilter(filter, startCov, act) {
     this.reset();
-    const { system, noise, present, nz } = filter, nx = this.states, nq = noise.pushes.length;
+    const { system, noise, present, nz } = filter, nx = this.states, nq = PUSHED.length;
     if (nx + nq + nz > MOST) throw new Error(`${nx} states, ${nq} pushes and ${nz} readings are more than ${MOST}`);
-    const arrays = [system.A, system.B, system.C, system.H, system.D, noise.pushes, noise.push_ar, noise.sd, noise.ar, startCov];
+    const arrays = [system.A, system.B, system.C, system.H, system.D, noise.push_sd, noise.push_ar, noise.sd, noise.ar, startCov];
     const flags = this.doubles(Math.ceil(present.length / 8));
     new Uint8Array(this.wasm.memory.buffer, flags, present.length).set(present);
     return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]), flags);
@@ -128,7 +128,7 @@ class Kernel {
 class Whitener {
   constructor(kernel, system, noise, present, n, startCov, dt) {
     Object.assign(this, { kernel, system, noise, present, n, startCov, nz: noise.sd.length });
-    this.size = kernel.states + noise.pushes.length + this.nz;
+    this.size = kernel.states + PUSHED.length + this.nz;
     kernel.withFilter(this, startCov, (record, flags) => {
       kernel.wasm.wc_page_drop_kinks(record, n, dt);
       this.present = new Uint8Array(kernel.wasm.memory.buffer, flags, present.length).slice();
@@ -165,6 +165,34 @@ class Whitener {
 function usualStep(time) {
   const steps = Float64Array.from(time.slice(1), (t, i) => t - time[i]).sort(), half = steps.length >> 1;
   return steps.length % 2 ? steps[half] : (steps[half - 1] + steps[half]) / 2;
+}
+
+/** The same between the samples of a channel that has gaps. */
+function ownStep(time, series) {
+  const own = time.filter((_, i) => !Number.isNaN(series[i]));
+  return usualStep(own.length > 1 ? own : time);
+}
+
+/** AR(1) coefficients (n - 1, m) over each interval, from those over each series' own step, as engine/innovations.py. */
+function byInterval(time, coefficients, steps) {
+  const m = coefficients.length, out = new Float64Array((time.length - 1) * m);
+  for (let i = 0; i + 1 < time.length; i++)
+    for (let c = 0; c < m; c++) out[i * m + c] = coefficients[c] > 0 ? coefficients[c] ** ((time[i + 1] - time[i]) / steps[c]) : 0;
+  return out;
+}
+
+/** Standard deviations (n, nq) of the recorded pushes and their coefficients (n - 1, nq), as engine/innovations.py. */
+function noiseOfPushes(time) {
+  const n = time.length, nq = PUSHED.length, own = usualStep(time), gap = (i) => time[i + 1] - time[i];
+  const ar = PUSHED.map((c) => campaign.noise.ar[c] ?? 0), push_sd = new Float64Array(n * nq);
+  for (let i = 0; i < n; i++) {
+    const around = i === 0 ? gap(0) : i === n - 1 ? gap(n - 2) : (gap(i - 1) + gap(i)) / 2;
+    PUSHED.forEach((c, q) => {
+      const there = ar[q] ** (around / own), lasting = (own * (1 + ar[q])) / (1 - ar[q]);
+      push_sd[i * nq + q] = (campaign.noise.sd[c] ?? 0) * Math.sqrt(lasting / ((around * (1 + there)) / (1 - there)));
+    });
+  }
+  return { push_sd, push_ar: byInterval(time, ar, PUSHED.map(() => own)) };
 }
 
 function interpolated(time, series, delay) {
@@ -213,11 +241,11 @@ function frame(kernel, index, values) {
   const place = which.map((s) => kernel.outputs.indexOf(kernel.sensors[s]));
   const measured = new Float64Array(n * nz), offsets = names.map((name) => values[`offset.${name}`] ?? 0);
   names.forEach((name, z) => { for (let i = 0; i < n; i++) measured[i * nz + z] = run.channels[name][i] - offsets[z]; });
+  const coefficients = names.map((c) => campaign.noise.ar[c] ?? 0), steps = names.map((c) => ownStep(run.time, run.channels[c]));
   const noise = {
-    pushes: Float64Array.from(PUSHED, (c) => campaign.noise.sd[c] ?? 0),
-    push_ar: Float64Array.from(PUSHED, (c) => campaign.noise.ar[c] ?? 0),
+    ...noiseOfPushes(run.time),
     sd: Float64Array.from(names, (c) => campaign.noise.sd[c]),
-    ar: Float64Array.from(names, (c) => campaign.noise.ar[c] ?? 0),
+    ar: byInterval(run.time, coefficients, steps),
   };
   const present = Uint8Array.from(measured, (v) => (Number.isNaN(v) ? 0 : 1));
   return { kernel, run, names, nz, n, which, place, measured, noise, present, offsets };
@@ -240,7 +268,7 @@ function readings({ kernel, n, nz, place }, y) {
 function linearised(f, values, start) {
   const { kernel, run, n, nz, which } = f, nx = kernel.states, k = campaign.start.length, ns = kernel.sensors.length;
   const s = kernel.linearise(...given(f, values, start), campaign.tolerance);
-  const every = [...Array(nx).keys()], nq = f.noise.pushes.length;
+  const every = [...Array(nx).keys()], nq = PUSHED.length;
   const system = {
     A: s.transition,
     B: part(s.push_before, n - 1, nx, PUSHES, every, nq),
