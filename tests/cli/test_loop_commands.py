@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -118,3 +119,17 @@ def test_a_law_must_be_arithmetic():
     for text, why in (("u.__class__", "Attribute is not allowed"), ("open(u)", "no function 'open'"), ("u +", "no expression")):
         with pytest.raises(UsageError, match=why):
             law(text)
+
+
+def test_a_run_in_which_the_chair_stands_is_left_out(tmp_path):
+    folder = tmp_path / "campaign"
+    shutil.copytree(SAMPLE, folder)
+    file = folder / "runs" / "straight-strokes.csv"
+    header, *rows = file.read_text(encoding="utf-8").splitlines()
+    still = [",".join([row.partition(",")[0], *["0"] * header.count(",")]) for row in rows]
+    file.write_text("\n".join([header, *still]) + "\n", encoding="utf-8")
+    assert run("check", str(folder)).exit_code == 0
+    done = run("compare", str(folder), "--json")
+    assert done.exit_code == 0 and done.stderr.count("says nothing and is left out") == 1
+    told = json.loads(done.stdout)
+    assert "straight-strokes" not in [r["run"] for r in told["runs"]] and len(told["runs"]) == 9

@@ -19,7 +19,7 @@ from .binding import Bindings, bind
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, Channel
 from .document import Document, Entry, number
 from .formats import open_table
-from .series import spikes, without
+from .series import spikes, tells, without
 
 COARSE = 0.05  # s: the yaw motion of a chair is over in less
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
@@ -68,6 +68,16 @@ class Draft:
     @property
     def channels(self) -> dict[str, np.ndarray]:
         return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
+
+    @property
+    def measured(self) -> dict[str, np.ndarray]:
+        """The channels that say something: not those that are empty or stuck."""
+        return {name: s for name, s in self.channels.items() if name in self.constants or tells(s)}
+
+    @property
+    def silent(self) -> bool:
+        """Does the run say nothing, although it has channels? The chair stood still, or nothing was recorded."""
+        return bool(self.channels) and not self.measured
 
     @property
     def logged(self) -> dict[str, np.ndarray]:

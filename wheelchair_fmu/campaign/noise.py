@@ -53,7 +53,7 @@ def gather(doc: Document, drafts: Sequence[Draft]) -> Noise:
         elif name in INPUT_NAMES:
             if logged or name in ("F_rl", "F_rr"):
                 sd[name] = 0.0  # nobody pushed, and the file knows it exactly
-        elif any(np.isfinite(d.values[name]).any() for d in drafts if name in d.values):
+        elif any(name in d.measured for d in drafts):
             missing.append(name)
     return Noise(sd, seen, frozenset(estimated), tuple(missing), nuisance_sd, (*faults, *more))
 

@@ -8,8 +8,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..errors import CampaignError
 from ..faults import ERROR, Fault, once
 from .axes import SAE
@@ -73,7 +71,8 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
     doc, noise = assembly.doc, assembly.noise
     name = doc.table("campaign").get("name")
     nuisance = {key: value for key, value in doc.table("nuisance").items() if value is not False}
-    names = _unique([Path(draft.file).name.partition(".")[0] for draft in assembly.drafts])
+    drafts = [draft for draft in assembly.drafts if not draft.silent]
+    names = _unique([Path(draft.file).name.partition(".")[0] for draft in drafts])
     return Campaign(
         name=name if isinstance(name, str) else doc.folder.resolve().name,
         path=doc.path,
@@ -84,7 +83,7 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
         noise_estimated=noise.estimated,
         nuisance=tuple(channel for channel in CHANNEL_NAMES if channel in nuisance),
         nuisance_sd=noise.nuisance_sd,
-        runs=tuple(_run(draft, name) for draft, name in zip(assembly.drafts, names, strict=True)),
+        runs=tuple(_run(draft, name) for draft, name in zip(drafts, names, strict=True)),
         fingerprint=_fingerprint(doc),
         warnings=warnings,
     )
@@ -93,7 +92,6 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
 def _run(draft: Draft, name: str) -> Run:
     entry: Entry = draft.entry
     assert draft.time is not None  # a file without time is an error, so no campaign is made
-    measured = {c: series for c, series in draft.channels.items() if _tells(series) or c in draft.constants}
     return Run(
         name=name,
         file=draft.doc.folder / entry.file,
@@ -103,14 +101,8 @@ def _run(draft: Draft, name: str) -> Run:
         set=_numbers(dict(flatten(entry.table("set")))),
         time=draft.time,
         inputs={BY_NAME[c].fmu: series for c, series in draft.inputs.items()},
-        channels=measured,
+        channels=draft.measured,
     )
-
-
-def _tells(series: np.ndarray) -> bool:
-    """Does a sensor's record say anything: is there more in it than gaps, or one value over and over?"""
-    finite = series[np.isfinite(series)]
-    return finite.size == 1 or (finite.size > 1 and bool(finite.min() < finite.max()))
 
 
 def _numbers(table: Mapping[str, Any]) -> dict[str, float]:

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-_THIRD = np.sqrt(1.0 + 9.0 + 9.0 + 1.0)  # third differences of white noise: their sd in units of its sd
 _MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
 _ENOUGH = 8  # differences
+_FOUR = 4  # neighbours of which a third difference is taken
+EVEN = 1.5  # times the usual distance of neighbours, above which there is a gap between them
 FAR = 12.0  # standard deviations of the noise from either neighbour,
 ALONE = 3.0  # and times what the four neighbours differ from one to the next
 RARE = 0.01  # of all samples, and
@@ -18,22 +19,40 @@ FEW = 3  # of a run; what is more frequent is how this sensor reads
 def estimate(series: Iterable[np.ndarray]) -> float | None:
     """Standard deviation of the noise in one channel, from all its runs, each (n,) with NaN in gaps.
 
-    Third differences remove any motion that is smooth over four samples; their median absolute deviation is
-    not moved by the few samples where it is not (a hand that strikes the rim). White noise is assumed: coloured
-    noise comes out too small. None where there is nothing to estimate from: too few samples, or all the same.
+    Third differences remove any motion that is smooth over four readings; their median absolute deviation is
+    not moved by the few readings where it is not (a hand that strikes the rim). White noise is assumed: coloured
+    noise comes out too small. None where there is nothing to estimate from: too few readings, or all the same.
     """
     series = list(series)
-    differences = np.concatenate([np.diff(s, 3) for s in series]) if series else np.empty(0)
-    sd = _scatter(differences[np.isfinite(differences)])
+    sd = _scatter(np.concatenate([third_differences(s) for s in series]) if series else np.empty(0))
     return None if sd is None else max(sd, _quantum(series) / np.sqrt(12.0)) or None
 
 
+def third_differences(series: np.ndarray) -> np.ndarray:
+    """Of four neighbouring readings each, with the noise's own standard deviation if it is white.
+
+    A slow sensor has its readings in every second or third row, not always as far apart: each four are weighted so that no
+    parabola through them shows. There are none across gaps.
+    """
+    places = np.flatnonzero(np.isfinite(series))
+    if len(places) < _FOUR:
+        return np.empty(0)
+    step = np.diff(places).astype(float)
+    first = np.diff(series[places]) / step
+    a, b, c = step[:-2], step[1:-1], step[2:]
+    second = np.diff(first) / (step[:-1] + step[1:])
+    third = np.diff(second) / (a + b + c)
+    weights = 1 / (a * (a + b) * (a + b + c)), 1 / (a * b * (b + c)), 1 / ((a + b) * b * c), 1 / ((a + b + c) * (b + c) * c)
+    close = np.maximum.reduce([a, b, c]) <= EVEN * np.median(step)
+    return (third / np.sqrt(sum(w**2 for w in weights)))[close]
+
+
 def _scatter(third: np.ndarray) -> float | None:
-    """The same from third differences, all finite."""
+    """The same from third differences."""
     if third.size < _ENOUGH:
         return None
-    sd = _MAD * float(np.median(np.abs(third))) / _THIRD
-    return sd or float(np.sqrt(np.mean(third**2))) / _THIRD  # a coarse converter: most neighbours are equal
+    sd = _MAD * float(np.median(np.abs(third)))
+    return sd or float(np.sqrt(np.mean(third**2)))  # a coarse converter: most neighbours are equal
 
 
 def _quantum(series: list[np.ndarray]) -> float:
@@ -41,6 +60,12 @@ def _quantum(series: list[np.ndarray]) -> float:
     values = np.unique(np.concatenate(series))
     steps = np.diff(values[np.isfinite(values)])
     return float(steps.min()) if steps.size else 0.0
+
+
+def tells(series: np.ndarray) -> bool:
+    """Does a sensor's record say anything: is there more in it than gaps, or one value over and over?"""
+    finite = series[np.isfinite(series)]
+    return finite.size == 1 or (finite.size > 1 and bool(finite.min() < finite.max()))
 
 
 def spikes(series: np.ndarray) -> np.ndarray:
@@ -51,7 +76,7 @@ def spikes(series: np.ndarray) -> np.ndarray:
     """
     places = np.flatnonzero(np.isfinite(series))
     values = series[places]
-    noise = _scatter(np.diff(values, 3))
+    noise = _scatter(third_differences(values))
     if not noise:
         return places[:0]
     step = np.diff(np.pad(values, 2, mode="reflect"))  # beyond an end as before it

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from ...faults import WARNING, Fault
+from ...faults import ERROR, WARNING, Fault
 from ..binding import absent_fault
 from ..channels import BY_NAME
 from ..document import Document
@@ -30,6 +30,18 @@ def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
         if all(name in d.bindings.absent and name not in d.bindings.found and name not in d.values for d in drafts):
             headers = dict.fromkeys(header for draft in drafts for header in draft.table.headers)
             yield absent_fault(all_.doc, name, list(headers))
+
+
+def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
+    """Runs that say nothing are left out, and that may leave none of a role."""
+    for role, severity, lack in (("fit", ERROR, "there is nothing to learn from"),
+                                 ("holdout", WARNING, "no effect can be proven on data it has not seen")):  # fmt: skip
+        entries = [entry for entry in all_.doc.entries if entry.text("role") == role]
+        silent = [draft for draft in all_.drafts if draft.silent and draft.entry.text("role") == role]
+        if entries and len(silent) == len(entries):
+            fact = f"no channel changes in any run with the role {role!r}, so {lack}"
+            cure = f"give role = {role!r} to a run in which the chair moves"
+            yield all_.doc.fault("run", fact, cure, severity=severity)
 
 
 def bad_noise(all_: Assembly) -> Iterator[Fault]:
@@ -68,5 +80,5 @@ def noise_against_data(all_: Assembly) -> Iterator[Fault]:
 
 
 CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
-    column_in_no_run, bad_noise, noise_unknown, noise_estimated, noise_against_data,
+    column_in_no_run, nobody_speaks, bad_noise, noise_unknown, noise_estimated, noise_against_data,
 )  # fmt: skip

@@ -58,20 +58,27 @@ def input_gap(draft: Draft) -> Iterator[Fault]:
             yield run_fault(draft.file, fact, cure, draft.line(gap.start), draft.header(name))
 
 
+def silent(draft: Draft) -> Iterator[Fault]:
+    """Its own sentence, in place of one for each channel and for the speed."""
+    if draft.silent:
+        fact = "no channel changes in this run (the chair stood still, or the logger held), so it says nothing and is left out"
+        yield run_fault(draft.file, fact, "remove the run, or record it again", severity=WARNING)
+
+
 def empty_column(draft: Draft) -> Iterator[Fault]:
     for name, series in draft.logged.items():
         if len(series) and np.isnan(series).all():
             if name in draft.inputs:
                 cure = f"remove it and write constant = {{ {name} = 0.0 }} in the run, or give the values"
                 yield run_fault(draft.file, f"the input {name} holds only gaps", cure, column=draft.header(name))
-            else:
+            elif not draft.silent:
                 fact = f"{name} holds only gaps and is left out"
                 yield run_fault(draft.file, fact, "remove the column", column=draft.header(name), severity=WARNING)
 
 
 def stuck(draft: Draft) -> Iterator[Fault]:
     """Pushes may stand still: nobody may have pushed."""
-    for name, series in draft.logged.items():
+    for name, series in ({} if draft.silent else draft.logged).items():
         if name not in draft.inputs and np.isfinite(series).sum() > 1 and np.nanmin(series) == np.nanmax(series):
             fact = f"{name} never changes from {np.nanmin(series):.6g} {BY_NAME[name].unit.name} and is left out"
             cure = "check the sensor, or remove the column"
@@ -125,7 +132,7 @@ def absent_column(draft: Draft) -> Iterator[Fault]:
 
 
 def no_start_speed(draft: Draft) -> Iterator[Fault]:
-    if draft.entry.data.get("u0") is None:
+    if draft.entry.data.get("u0") is None and not draft.silent:
         if draft.first_speed is None:
             fact, cure = "no u0 and no speed measured to take it from", "write u0 = ... in m/s in the run"
         else:
@@ -135,13 +142,13 @@ def no_start_speed(draft: Draft) -> Iterator[Fault]:
 
 
 def start_speed_differs(draft: Draft) -> Iterator[Fault]:
-    stated, measured = draft.entry.number("u0"), draft.first_speed
+    stated, measured = draft.entry.number("u0"), None if draft.silent else draft.first_speed
     if stated is not None and measured is not None and abs(stated - measured) > max(0.3, 0.5 * abs(measured)):
         fact = f"u0 = {stated:g} m/s, but the first measured speeds are {measured:.3g} m/s"
         yield run_fault(draft.file, fact, "correct u0, or the unit of the speeds", severity=WARNING)
 
 
 RUN_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, no_push, nothing_measured, input_gap, empty_column, stuck, implausible, spike, constant_replaces,
+    too_short, no_push, nothing_measured, input_gap, silent, empty_column, stuck, implausible, spike, constant_replaces,
     absent_column, no_start_speed, start_speed_differs,
 )  # fmt: skip
