@@ -76,3 +76,20 @@ def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
     colour, notes = colour_of(evidence, {"F_rl": stated, "F_rr": 0.0}, Colour({"F_rl": stated, "F_rr": 0.0}))
     assert not notes and set(colour.ar) == ({"F_rl"} if expected else set())
     assert colour.ar.get("F_rl") == (expected and pytest.approx(expected, abs=0.02))
+
+
+@pytest.mark.parametrize("every", [(2,), (3, 3, 4)], ids=["every second row", "30 Hz on a grid of 100 Hz"])
+@pytest.mark.parametrize(("phi", "stated"), [(0.0, 0.6), (0.0, 0.006), (0.9, 0.006), (0.9, 0.0012)])
+def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
+    """Its coefficient is from row to row, as the filter goes, in gaps and beside them."""
+    noise = ar1(0.006, phi, 1, 12000)
+    readings = np.full(noise.shape, np.nan)
+    places = np.concatenate(([0], np.cumsum(np.tile(every, 12000 // sum(every) - 1))))
+    readings[places] = noise[places]
+    r = readings[:, None] / stated
+    run = SimpleNamespace(channels={"yaw_rate": readings}, inputs={})
+    one = SimpleNamespace(run=run, channels=("yaw_rate",), predicted=np.zeros(r.shape), r=r, e=r)
+    colour, notes = colour_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, Colour({"yaw_rate": stated}))
+    assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
+    assert colour.ar.get("yaw_rate", 0.0) == pytest.approx(phi, abs=0.02)
+    assert bool(notes) == (stated != 0.006)

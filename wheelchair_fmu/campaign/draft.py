@@ -19,7 +19,8 @@ from .binding import Bindings, bind
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, Channel
 from .document import Document, Entry, number
 from .formats import open_table
-from .series import spikes, tells, without
+from .resampled import Resampled, resampled
+from .series import only, spikes, tells, without
 
 COARSE = 0.05  # s: the yaw motion of a chair is over in less
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
@@ -50,12 +51,13 @@ class Draft:
     values: Mapping[str, np.ndarray]
     constants: tuple[str, ...]
     gaps: Mapping[str, tuple[Gap, ...]]
+    resampled: Mapping[str, Resampled]  # by channel, whose repeats are left out of `values`
     spikes: Mapping[str, Mapping[int, float]]  # left out of `values`: by channel, readings by their rows of the cut run
 
     def slim(self) -> Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
         return replace(self, table=FrameTable(self.file, self.table.headers, pd.DataFrame()), rows=Rows({}, None),
-                       whole_time=None, kept=np.empty(0, int))  # fmt: skip
+                       whole_time=None, kept=np.empty(0, int), resampled={})  # fmt: skip
 
     @property
     def file(self) -> str:
@@ -157,13 +159,16 @@ def _converted(doc: Document, entry: Entry, table: Table, bindings: Bindings, ro
     given = constants(entry)
     values |= {name: np.full(len(kept), value) for name, value in given.items()}
     values = to_sae(values, doc.axes)
-    spiked = _spikes(time, {c: values[c] for c in CHANNEL_NAMES if c in values and c not in given})
+    measured = [c for c in CHANNEL_NAMES if c in values and c not in given]
+    slower = {c: how for c in measured if (how := resampled(values[c]))}
+    values |= {c: only(values[c], how.places) for c, how in slower.items()}
+    spiked = _spikes(time, {c: values[c] for c in measured})
     values |= {c: without(values[c], list(found)) for c, found in spiked.items()}
     gaps = {}
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps, spiked)
+    return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps, slower, spiked)
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

@@ -88,7 +88,12 @@ def spikes(series: np.ndarray) -> np.ndarray:
     return found if len(found) <= max(FEW, RARE * len(values)) else found[:0]
 
 
-def without(series: np.ndarray, places: Sequence[int]) -> np.ndarray:
+def only(series: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """The series with gaps everywhere but in these places."""
+    return without(series, np.setdiff1d(np.arange(len(series)), places, assume_unique=True))
+
+
+def without(series: np.ndarray, places: Sequence[int] | np.ndarray) -> np.ndarray:
     """The series with gaps in these places."""
     rest = series.copy()
     rest[places] = np.nan

@@ -96,7 +96,11 @@ def _calmest(run: Run, start: int, stop: int) -> int:
         return start
     width = max(1, int(CALM / float(np.median(np.diff(time)))))
     until = int(np.searchsorted(time, time[0] + NEAR))
-    turning = np.abs(np.nan_to_num(rate[start : start + until + width], nan=np.inf))
+    turning = np.abs(rate[start : start + until + width])
+    good = np.isfinite(turning)
+    if not good.any():
+        return start
+    turning = np.interp(np.arange(len(turning)), np.flatnonzero(good), turning[good])
     return start + int(np.argmin(np.convolve(turning, np.ones(width), "valid")[:until]))
 
 

@@ -6,7 +6,7 @@ d(i + k) − d(i) is 2σ²(1 − φ^k) for AR(1) noise, plus about c k² of what
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from scipy.optimize import brentq, least_squares
@@ -15,10 +15,11 @@ from ..campaign.series import estimate
 from .evidence import FORCES, Colour, Evidence
 
 LAGS = 15
-WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
+WHITE = 0.2  # an AR(1) coefficient, from reading to reading as the next ones, below this is not worth a state
 QUIETER = 0.75  # mean square error below which noise was taken for too large, once what was missing is in the model
 STEADY = 0.6  # an AR(1) coefficient of pushes below this may as well be noise that was stated too large
 TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept,
+SELDOM = 0.05  # of the readings of the most usual lag, below which a lag of a slow sensor is by chance
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 
 
@@ -31,16 +32,20 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
     """
     sd, ar, notes = dict(stated), {}, []
     for channel in dict.fromkeys(c for e in evidence.runs for c in e.channels):
+        residuals = _residuals(evidence, channel)
+        apart = _apart(residuals)
         if _white(evidence, channel, lowest):
             sigma, phi = taken.sd[channel], taken.ar.get(channel, 0.0)
         else:
-            sigma, phi = _fit_structure(_structure(evidence, channel))
+            sigma, phi = _fit_structure(*_structure(residuals, LAGS * apart))
+        phi **= apart  # from reading to reading
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
         slow = phi > SLOW and ratio > 1 and (1 - phi) * ratio**2 < 1  # what is slow may as well be what the model lacks
         trusted = slow or 1 / TRUSTED < ratio < TRUSTED
         if phi > WHITE:
             # data tell σ² (1 − φ), the change from one sample to the next, far better than they tell either of the two
-            ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
+            phi = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
+            ar[channel] = phi ** (1 / apart)
         if not trusted:
             sd[channel] = sigma
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
@@ -62,36 +67,48 @@ def _white(evidence: Evidence, channel: str, lowest: float) -> bool:
     """Do innovations change from one sample to the next as white noise of unit size does, whatever is slow in them, and are
     errors no smaller than `lowest`?"""
     where = [(e, e.channels.index(channel)) for e in evidence.runs if channel in e.channels]
-    change = float(np.nanmean(np.concatenate([np.diff(e.r[:, i]) for e, i in where]) ** 2)) / 2
+    change = float(np.mean(np.concatenate([np.diff(_there(e.r[:, i])) for e, i in where]) ** 2)) / 2
     level = float(np.nanmean(np.concatenate([e.e[:, i] for e, i in where]) ** 2))
     return 1 / TRUSTED**2 < change < TRUSTED**2 and level >= lowest
 
 
-def _structure(evidence: Evidence, channel: str) -> np.ndarray:
-    """Mean square change of the residual over 1 … LAGS samples."""
-    sums, counts = np.zeros(LAGS), np.zeros(LAGS)
-    for e in evidence.runs:
-        if channel not in e.channels:
-            continue
-        i = e.channels.index(channel)
-        d = e.run.channels[channel] - e.predicted[:, i]
-        for k in range(1, min(LAGS, len(d) - 1) + 1):
-            change = d[k:] - d[:-k]
-            change = change[np.isfinite(change)]
+def _there(values: np.ndarray) -> np.ndarray:
+    return values[np.isfinite(values)]
+
+
+def _residuals(evidence: Evidence, channel: str) -> list[np.ndarray]:
+    return [e.run.channels[channel] - e.predicted[:, e.channels.index(channel)] for e in evidence.runs if channel in e.channels]
+
+
+def _apart(residuals: Iterable[np.ndarray]) -> int:
+    """Rows from one reading to the next: a slow sensor has them in every second or third row only."""
+    apart = np.concatenate([np.diff(np.flatnonzero(np.isfinite(d))) for d in residuals])
+    return int(np.median(apart)) if apart.size else 1
+
+
+def _structure(residuals: Sequence[np.ndarray], most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lags in rows, up to `most`, and the residuals' mean square change over each that there is.
+
+    The coefficient fitted to it is from row to row, as the filter goes, whether there is a reading in each row or not.
+    """
+    sums, counts = np.zeros(most), np.zeros(most)
+    for d in residuals:
+        for k in range(1, min(most, len(d) - 1) + 1):
+            change = _there(d[k:] - d[:-k])
             sums[k - 1] += float(change @ change)
             counts[k - 1] += len(change)
-    return sums / np.maximum(counts, 1)
+    usual = counts > SELDOM * counts.max(initial=0)
+    return np.flatnonzero(usual) + 1, sums[usual] / counts[usual]
 
 
-def _fit_structure(D: np.ndarray) -> tuple[float, float]:
-    """(σ, φ) from the mean square changes D (LAGS,)."""
-    k = np.arange(1, len(D) + 1)
+def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
+    """(σ, φ) from the mean square changes D (m,) over k (m,) rows."""
     scale = max(float(D[0]), 1e-300)
 
     def off(q: np.ndarray) -> np.ndarray:
         model = 2 * np.exp(q[0]) * (1 - q[1] ** k) + np.exp(q[2]) * k**2
         return np.log(model * scale / np.maximum(D, 1e-300))
 
-    best = min((least_squares(off, (np.log(0.5 / (1 - phi)), phi, -8.0), bounds=([-20, 0, -30], [20, 0.995, 5]))
+    best = min((least_squares(off, (np.log(0.5 / (1 - phi ** k[0])), phi, -8.0), bounds=([-20, 0, -30], [20, 0.995, 5]))
                 for phi in (0.05, 0.5, 0.9)), key=lambda s: s.cost)  # fmt: skip
     return float(np.sqrt(np.exp(best.x[0]) * scale)), float(best.x[1])

@@ -9,6 +9,7 @@ import numpy as np
 from ...faults import WARNING, Fault, run_fault
 from ..channels import BY_NAME, PUSHES, TIME
 from ..draft import Draft
+from ..resampled import REPEATED
 
 FEWEST = 10  # samples of a run
 
@@ -102,6 +103,19 @@ def implausible(draft: Draft) -> Iterator[Fault]:
                 yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), WARNING)
 
 
+def resampled(draft: Draft) -> Iterator[Fault]:
+    for name, found in draft.resampled.items():
+        low, high = np.floor(found.rows + 0.05), np.ceil(found.rows - 0.05)
+        rows = f"{low:g} rows" if low == high else f"{low:g} or {high:g} rows"
+        seen = "changes only every" if found.how == REPEATED else "changes its slope only every"
+        rate = ""
+        if draft.time is not None and (step := float(np.median(np.diff(draft.time)))) > 0:
+            rate = f"at about {1 / (found.rows * step):.3g} Hz "
+        fact = f"{name} {seen} {rows}: it was sampled {rate}and {found.how}; what is no reading is left out"
+        cure = "leave its cells empty in rows without a new reading"
+        yield run_fault(draft.file, fact, cure, column=draft.header(name), severity=WARNING)
+
+
 def spike(draft: Draft) -> Iterator[Fault]:
     for name, found in draft.spikes.items():
         usual = float(np.nanmedian(draft.values[name]))
@@ -149,6 +163,6 @@ def start_speed_differs(draft: Draft) -> Iterator[Fault]:
 
 
 RUN_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, no_push, nothing_measured, input_gap, silent, empty_column, stuck, implausible, spike, constant_replaces,
-    absent_column, no_start_speed, start_speed_differs,
+    too_short, no_push, nothing_measured, input_gap, silent, empty_column, stuck, implausible, resampled, spike,
+    constant_replaces, absent_column, no_start_speed, start_speed_differs,
 )  # fmt: skip
