@@ -26,7 +26,7 @@ def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 40
     for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)
     smooth = times * sigma * np.sin(2 * np.pi * hertz * np.arange(n) * 0.01)
-    run = SimpleNamespace(channels={"yaw_rate": noise + smooth}, inputs={})
+    run = SimpleNamespace(time=0.01 * np.arange(n), channels={"yaw_rate": noise + smooth}, inputs={})
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=predicted, r=r, e=r)])
@@ -81,15 +81,17 @@ def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
 @pytest.mark.parametrize("every", [(2,), (3, 3, 4)], ids=["every second row", "30 Hz on a grid of 100 Hz"])
 @pytest.mark.parametrize(("phi", "stated"), [(0.0, 0.6), (0.0, 0.006), (0.9, 0.006), (0.9, 0.0012)])
 def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
-    """Its coefficient is from row to row, as the filter goes, in gaps and beside them."""
+    """Its coefficient is from one of its readings to the next, which the filter brings to its rows by their times."""
     noise = ar1(0.006, phi, 1, 12000)
     readings = np.full(noise.shape, np.nan)
     places = np.concatenate(([0], np.cumsum(np.tile(every, 12000 // sum(every) - 1))))
     readings[places] = noise[places]
     r = readings[:, None] / stated
-    run = SimpleNamespace(channels={"yaw_rate": readings}, inputs={})
+    time = 0.01 * np.arange(len(noise))
+    run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={})
     one = SimpleNamespace(run=run, channels=("yaw_rate",), predicted=np.zeros(r.shape), r=r, e=r)
     colour, notes = colour_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, Colour({"yaw_rate": stated}))
     assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
-    assert colour.ar.get("yaw_rate", 0.0) == pytest.approx(phi, abs=0.02)
+    step = float(np.median(np.diff(time[places])))
+    assert colour.ar.get("yaw_rate", 0.0) == pytest.approx(phi ** (step / 0.01), abs=0.03)
     assert bool(notes) == (stated != 0.006)

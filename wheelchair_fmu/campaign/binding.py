@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ..faults import WARNING, Fault, run_fault, suggestion
 from ..units import UnitError, factor, same_dimension, split
-from .channels import BY_NAME, TIME, Channel
+from .channels import BY_NAME, SOURCES, TIME, Channel
+from .devices import Device
 from .document import Document, number
 
 
@@ -30,18 +31,20 @@ class Wanted:
     unit: str | None = None
     radius: float | None = None
     renamed: bool = False
+    sign: float = 1.0
 
 
-def wanted(doc: Document, name: str) -> Wanted:
+def wanted(device: Device, name: str) -> Wanted:
     """The entry of [columns] for a channel; wrong types read as absent and are reported by a check."""
-    entry: Any = doc.table("columns").get(name)
+    entry: Any = device.columns.get(name)
     if isinstance(entry, str):
         return Wanted(entry.strip(), renamed=True)
     if isinstance(entry, Mapping):
         column, unit, radius = entry.get("column"), entry.get("unit"), number(entry.get("radius"))
         renamed = isinstance(column, str)
         header = column.strip() if isinstance(column, str) else name
-        return Wanted(header, unit if isinstance(unit, str) else None, radius, renamed)
+        sign = -1.0 if (number(entry.get("sign")) or 1.0) < 0 else 1.0
+        return Wanted(header, unit if isinstance(unit, str) else None, radius, renamed, sign)
     return Wanted(name)
 
 
@@ -54,13 +57,14 @@ class Bindings:
     absent: tuple[str, ...]
 
 
-def bind(doc: Document, file: str, headers: Sequence[str]) -> Bindings:
-    """Matches a table's headers to time, channels and inputs."""
+def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[str] = ()) -> Bindings:
+    """Matches a table's headers to time, channels and inputs, and to what channels are made from; `taken` are headers that
+    somebody else reads."""
     found: dict[str, Binding] = {}
     faults: list[Fault] = list(_twice(file, headers))
     absent: list[str] = []
-    for channel in (TIME, *BY_NAME.values()):
-        want = wanted(doc, channel.name)
+    for channel in (TIME, *BY_NAME.values(), *SOURCES):
+        want = wanted(device, channel.name)
         matches = _matches(headers, want.header)
         if not matches and want.renamed:
             absent.append(channel.name)
@@ -70,11 +74,11 @@ def bind(doc: Document, file: str, headers: Sequence[str]) -> Bindings:
             cure = f"remove one, or choose one by its whole header in [columns] {channel.name}"
             faults.append(run_fault(file, f"{channel.name} could be {both}", cure, 1))
         if matches:
-            binding, met = _scaled(doc, file, channel, want, headers[matches[0]], matches[0])
+            binding, met = _scaled(device, file, channel, want, headers[matches[0]], matches[0])
             found[channel.name] = binding
             faults += met
     used = {binding.index for binding in found.values()}
-    extra = [repr(header) for i, header in enumerate(headers) if i not in used and header]
+    extra = [repr(header) for i, header in enumerate(headers) if i not in used and header and header not in taken]
     if extra:
         what = f"column{'s' * (len(extra) > 1)} {', '.join(extra)} not used"
         faults.append(run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING))
@@ -95,7 +99,7 @@ def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
 
 
 def _scaled(
-    doc: Document, file: str, channel: Channel, want: Wanted, header: str, index: int
+    device: Device, file: str, channel: Channel, want: Wanted, header: str, index: int
 ) -> tuple[Binding, list[Fault]]:
     """The binding with its factor to SI; 1 where there is none, and then a fault."""
     own, asked = split(header)[1], split(want.header)[1]
@@ -113,18 +117,18 @@ def _scaled(
         fact = f"[columns] gives a radius, but {unit!r} needs none"
         faults.append(run_fault(file, fact, "remove the radius, or correct the unit", 1, header, WARNING))
     try:
-        return Binding(channel, index, header, _factor(doc, channel, unit, want.radius)), faults
+        return Binding(channel, index, header, want.sign * _factor(device, channel, unit, want.radius)), faults
     except UnitError as error:
         faults.append(run_fault(file, error.fact, error.cure, 1, header))
         return Binding(channel, index, header, 1.0), faults
 
 
-def _factor(doc: Document, channel: Channel, unit: str, radius: float | None) -> float:
-    """To SI; where the unit is of a turning wheel, through the radius in [columns], else through [wheel] R."""
+def _factor(device: Device, channel: Channel, unit: str, radius: float | None) -> float:
+    """To SI; where the unit is of a turning wheel, through the radius in [columns], else of the device, or [wheel] R."""
     rotary = channel.rotary
     if rotary is None or not same_dimension(unit, rotary.name):
         return factor(unit, channel.unit.name)
-    radius = radius if radius is not None else number(doc.table("wheel").get("R"))
+    radius = radius if radius is not None else device.radius
     if radius is None or radius <= 0:
         fact = f"{channel.name} is given in {unit}, which needs the wheel's radius to become {channel.unit.name}"
         cure = f"write [columns] {channel.name} = {{ column = ..., radius = ... }} or [wheel] R, in m"
@@ -132,8 +136,9 @@ def _factor(doc: Document, channel: Channel, unit: str, radius: float | None) ->
     return factor(unit, rotary.name) * radius**channel.rotary_power
 
 
-def absent_fault(doc: Document, name: str, headers: Sequence[str]) -> Fault:
+def absent_fault(doc: Document, device: Device, name: str, headers: Sequence[str]) -> Fault:
     """A column that [columns] names and no run has."""
-    header = wanted(doc, name).header
-    fact = f"no run has the column {header!r} that [columns] gives for {name}"
-    return doc.fault(f"columns.{name}", fact, suggestion(header, [h for h in headers if h]))
+    header = wanted(device, name).header
+    of = f" of {device.name}" if device.name else ""
+    fact = f"no run has the column {header!r} that [columns]{of} gives for {name}"
+    return doc.fault(f"{device.path}.{name}", fact, suggestion(header, [h for h in headers if h]), device.place)

@@ -71,6 +71,13 @@ INPUTS: tuple[Channel, ...] = tuple(
     channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair
 )
 
+# What a file may hold that channels are made from: the turn of a wheel, by which its ripple goes too.
+SOURCES: tuple[Channel, ...] = tuple(
+    Channel(f"wheel_angle_{side}", RAD, "", f"angle of the {word} rear wheel, rising forward; its speed is made from it",
+            -1e6, 1e6, wrong_unit="deg")
+    for side, word in (("l", "left"), ("r", "right"))
+)  # fmt: skip
+
 BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + INPUTS}
 BY_FMU_NAME: dict[str, Channel] = {channel.fmu: channel for channel in CHANNELS + INPUTS}
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)

@@ -13,13 +13,7 @@ from typing import Any
 from ..faults import ERROR, Fault, not_utf8
 
 FILE = "campaign.toml"
-PARAMETER_TABLES = ("chair", "tyre", "resistance", "wheel", "caster", "floor", "effect")
-OTHER_TABLES = ("campaign", "columns", "noise", "nuisance", "prior", "run")
-CAMPAIGN_KEYS = ("name", "axes", "description", "source")
-RUN_KEYS: dict[str, str] = {
-    "file": "text", "manoeuvre": "text", "role": "text", "u0": "number", "set": "table", "from": "number",
-    "to": "number", "constant": "table", "format": "text", "side": "text", "radius": "number",
-}  # fmt: skip
+REPEATED = ("run", "recording")  # written [[run]], each a list
 Lines = dict[tuple[str, int | None], int]
 
 
@@ -42,7 +36,7 @@ def flatten(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
 
 @dataclass(frozen=True)
 class Entry:
-    """One [[run]]. `place` counts from 0."""
+    """One [[run]], or another table of a list. `place` counts from 0."""
 
     place: int
     data: Mapping[str, Any]
@@ -91,11 +85,17 @@ class Document:
         return tuple(Entry(i, run) for i, run in enumerate(runs) if isinstance(run, Mapping))
 
     @property
+    def recordings(self) -> tuple[Mapping[str, Any], ...]:
+        """The tables [[recording]]; what is no table reads as an empty one."""
+        found = self.data.get("recording")
+        return tuple(r if isinstance(r, Mapping) else {} for r in (found if isinstance(found, list) else []))
+
+    @property
     def axes(self) -> str:
         value = self.table("campaign").get("axes")
         return value if isinstance(value, str) else ""
 
-    def parameters(self, names: tuple[str, ...] = PARAMETER_TABLES) -> dict[str, Any]:
+    def parameters(self, names: tuple[str, ...]) -> dict[str, Any]:
         """Dotted parameter names and their values as written."""
         found = dict(flatten({name: self.table(name) for name in names}))
         if "g" in self.data:
@@ -152,20 +152,23 @@ _KEY = re.compile(r"""\s*((?:"[^"]*"|'[^']*'|[\w-]+)(?:\s*\.\s*(?:"[^"]*"|'[^']*
 
 
 def _lines(text: str) -> Lines:
-    """Line of every table and key: (dotted name, place of its run or None) → line, counted from 1."""
+    """Line of every table and key: (dotted name, place in its list or None) → line, counted from 1."""
     lines: Lines = {}
-    table, runs = "", -1
+    table, last = "", dict.fromkeys(REPEATED, -1)
     for i, row in enumerate(text.split("\n"), start=1):
         if header := _HEADER.match(row):
             table = re.sub(r"[\"'\s]", "", header[2])
-            runs += table == "run" and bool(header[1])
-            lines.setdefault((table, _run(table, runs)), i)
+            if table in last and header[1]:
+                last[table] += 1
+            lines.setdefault((table, _place(table, last)), i)
         elif key := _KEY.match(row):
             name = re.sub(r"[\"']", "", re.sub(r"\s*\.\s*", ".", key[1]))
             name = f"{table}.{name}" if table else name
-            lines.setdefault((name, _run(table, runs)), i)
+            lines.setdefault((name, _place(table, last)), i)
     return lines
 
 
-def _run(table: str, runs: int) -> int | None:
-    return runs if runs >= 0 and table.partition(".")[0] == "run" else None
+def _place(table: str, last: Mapping[str, int]) -> int | None:
+    """Where in its list a table stands that is written now."""
+    place = last.get(table.partition(".")[0], -1)
+    return None if place < 0 else place

@@ -1,10 +1,9 @@
-"""A run on its way from the file to SI units and SAE J670 axes, with what was found odd on the way."""
+"""A file of a run on its way to SI units, SAE J670 axes and the run's clock, with what was found odd on the way."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,9 @@ from ..tables import FrameTable, Rows, Table
 from ..units import UnitError, quantity
 from .axes import to_sae
 from .binding import Bindings, bind
-from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, Channel
+from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, SOURCES, Channel
+from .derived import marker_columns, pose, unwrapped, wheel_speed
+from .devices import Part
 from .document import Document, Entry, number
 from .formats import open_table
 from .resampled import Resampled, resampled
@@ -24,7 +25,6 @@ from .series import only, spikes, tells, without
 
 COARSE = 0.05  # s: the yaw motion of a chair is over in less
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
-_FIRST = 10  # samples from which the starting speed is taken
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,19 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """A run before judgement. All series are (n,); `time` is None where the file has none."""
+    """One file of a run before judgement. All series are (n,); `time`, by the run's clock, is None where the file has none."""
 
     doc: Document
-    entry: Entry
+    part: Part
     table: Table
     bindings: Bindings
     rows: Rows
     kept: np.ndarray  # rows of the file that the cut leaves, (n,)
-    whole_time: np.ndarray | None  # s, all rows of the file
+    whole_time: np.ndarray | None  # s, all rows of the file, by its own clock
     time: np.ndarray | None
     values: Mapping[str, np.ndarray]
-    constants: tuple[str, ...]
+    angles: Mapping[str, np.ndarray]  # rad, of the wheels that it tells, without jumps
+    noise: Mapping[str, float]  # standard deviations of channels that were made from others
     gaps: Mapping[str, tuple[Gap, ...]]
     resampled: Mapping[str, Resampled]  # by channel, whose repeats are left out of `values`
     spikes: Mapping[str, Mapping[int, float]]  # left out of `values`: by channel, readings by their rows of the cut run
@@ -60,8 +61,12 @@ class Draft:
                        whole_time=None, kept=np.empty(0, int), resampled={})  # fmt: skip
 
     @property
+    def entry(self) -> Entry:
+        return self.part.entry
+
+    @property
     def file(self) -> str:
-        return self.entry.file
+        return self.part.file
 
     @property
     def inputs(self) -> dict[str, np.ndarray]:
@@ -74,43 +79,21 @@ class Draft:
     @property
     def measured(self) -> dict[str, np.ndarray]:
         """The channels that say something: not those that are empty or stuck."""
-        return {name: s for name, s in self.channels.items() if name in self.constants or tells(s)}
+        return {name: s for name, s in self.channels.items() if tells(s)}
 
     @property
-    def silent(self) -> bool:
-        """Does the run say nothing, although it has channels? The chair stood still, or nothing was recorded."""
-        return bool(self.channels) and not self.measured
+    def left_out(self) -> bool:
+        """Is this the whole of a run that says nothing, although it has channels? The chair stood still, or the logger held."""
+        known = constants(self.entry).keys() & set(CHANNEL_NAMES)
+        return self.part.alone and bool(self.channels) and not self.measured and not known
 
-    @property
-    def logged(self) -> dict[str, np.ndarray]:
-        """What the file holds, without the constants."""
-        return {name: series for name, series in self.values.items() if name not in self.constants}
-
-    def header(self, name: str) -> str:
-        return self.bindings.found[name].header
+    def header(self, name: str) -> str | None:
+        """The header of the column that a channel is read from; None for one that is made from others."""
+        return self.bindings.found[name].header if name in self.bindings.found else None
 
     def line(self, i: int) -> int | None:
         """Line in the file of row i of the cut run."""
         return self.rows.line(int(self.kept[i]))
-
-    @cached_property
-    def first_speed(self) -> float | None:
-        """Speed at the first samples, m/s: from u, else from the wheels; None where nothing tells."""
-        if "u" in self.values:
-            series = [self.values["u"]]
-        elif "wheel_speed_l" in self.values and "wheel_speed_r" in self.values:
-            series = [self.values["wheel_speed_l"], self.values["wheel_speed_r"]]
-        else:
-            return None
-        firsts = [s[np.isfinite(s)][:_FIRST] for s in series]
-        if any(first.size == 0 for first in firsts):
-            return None
-        return float(np.mean([np.median(first) for first in firsts]))
-
-    @property
-    def u0(self) -> float | None:
-        stated = self.entry.number("u0")
-        return stated if stated is not None else self.first_speed
 
 
 def constant_value(channel: Channel, value: Any) -> float:
@@ -135,31 +118,41 @@ def constants(entry: Entry) -> dict[str, float]:
     return found
 
 
-def prepare(doc: Document, entry: Entry, path: Path, known: dict[Any, Any]) -> tuple[Draft | None, list[Fault]]:
+def prepare(doc: Document, part: Part, path: Path, known: dict[Any, Any]) -> tuple[Draft | None, list[Fault]]:
     """Reads, binds, converts, turns and cuts. `known` keeps tables, so that a file is read once."""
-    key = (path, entry.text("format"), entry.text("side"), entry.number("radius"))
+    key = (path, repr(part.device.options))
     if key not in known:
-        known[key] = open_table(entry, path)
+        known[key] = open_table(part, path)
     table, faults = known[key]
     if table is None:
         return None, list(faults)
-    bindings = bind(doc, entry.file, table.headers)
-    rows = table.rows(sorted({b.index for b in bindings.found.values()}))
-    faults = [*faults, *bindings.faults, *rows.faults]
-    return _converted(doc, entry, table, bindings, rows), faults
+    markers, met = marker_columns(part, table.headers)
+    bindings = bind(part.device, part.file, table.headers, [table.headers[i] for i, _ in markers.values()])
+    rows = table.rows(sorted({*(b.index for b in bindings.found.values()), *(i for i, _ in markers.values())}))
+    faults = [*faults, *met, *bindings.faults, *rows.faults]
+    return _converted(doc, part, table, bindings, rows, markers), faults
 
 
-def _converted(doc: Document, entry: Entry, table: Table, bindings: Bindings, rows: Rows) -> Draft:
+def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows: Rows,
+               markers: Mapping[str, tuple[int, float]]) -> Draft:  # fmt: skip
     series = {name: rows.values[b.index] * b.scale for name, b in bindings.found.items()}
     whole_time = series.pop("time", None)
     length = len(next(iter(rows.values.values()))) if rows.values else 0
-    kept = _cut(entry, whole_time, length)
-    time = None if whole_time is None else whole_time[kept]
-    values = {name: s[kept] for name, s in series.items()}
-    given = constants(entry)
-    values |= {name: np.full(len(kept), value) for name, value in given.items()}
-    values = to_sae(values, doc.axes)
-    measured = [c for c in CHANNEL_NAMES if c in values and c not in given]
+    common = None if whole_time is None else whole_time * (1 + part.clock.drift) + part.clock.offset
+    kept = _cut(part.entry, common, length)
+    time = None if common is None else common[kept]
+    series = {name: s[kept] for name, s in series.items()}
+    angles = {name: series.pop(name) for name in (c.name for c in SOURCES) if name in series}
+    values = to_sae(series, part.device.axes)
+    values |= pose(part, {name: rows.values[i][kept] * scale for name, (i, scale) in markers.items()}, doc)
+    noise: dict[str, float] = {}
+    if time is not None:
+        angles = {name: unwrapped(angle) for name, angle in angles.items()}
+        for name, angle in angles.items():
+            speed = name.replace("angle", "speed")
+            if speed not in values and part.device.radius:
+                values[speed], noise[speed] = wheel_speed(time, angle, part.device.radius)
+    measured = [c for c in CHANNEL_NAMES if c in values and c not in noise]
     slower = {c: how for c in measured if (how := resampled(values[c]))}
     values |= {c: only(values[c], how.places) for c, how in slower.items()}
     spiked = _spikes(time, {c: values[c] for c in measured})
@@ -168,7 +161,7 @@ def _converted(doc: Document, entry: Entry, table: Table, bindings: Bindings, ro
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, entry, table, bindings, rows, kept, whole_time, time, values, tuple(given), gaps, slower, spiked)
+    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, noise, gaps, slower, spiked)
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

@@ -13,27 +13,29 @@ import pandas as pd
 from ..errors import CampaignError, UsageError
 from ..faults import WARNING, Fault, run_fault
 from ..tables import Table, as_frame_table, read_bytes, read_csv, unreadable
-from .document import Entry
+from .devices import Part
+from .document import number
 
 FORMATS = ("csv", "parquet", "mdf", "smartwheel")
+OPTIONS = ("format", "side")  # what [[recording]] may say of how a file is read
 _BY_SUFFIX = {".parquet": "parquet", ".mf4": "mdf", ".mdf": "mdf", ".dat": "mdf"}
 SMARTWHEEL_RATE = 240.0  # Hz
 _FORCE_X, _MOMENT_Z = 18, 23  # columns counted from 0: 18-20 are Fx Fy Fz, 21-23 Mx My Mz
 
 
-def open_table(entry: Entry, path: Path) -> tuple[Table | None, list[Fault]]:
+def open_table(part: Part, path: Path) -> tuple[Table | None, list[Fault]]:
     """The recording of one run, in whatever format it is. The file exists."""
-    kind = entry.text("format") or _BY_SUFFIX.get(path.suffix.lower(), "csv")
+    kind = str(part.device.options.get("format") or "") or _BY_SUFFIX.get(path.suffix.lower(), "csv")
     if kind == "smartwheel":
-        return _open_smartwheel(entry, path)
+        return _open_smartwheel(part, path)
     if kind == "parquet":
-        return _by_library(entry.file, path, "pyarrow", lambda _: pd.read_parquet(path))
+        return _by_library(part.file, path, "pyarrow", lambda _: pd.read_parquet(path))
     if kind == "mdf":
-        return _by_library(entry.file, path, "asammdf", lambda library: _mdf(library, path))
+        return _by_library(part.file, path, "asammdf", lambda library: _mdf(library, path))
     try:
-        return read_csv(entry.file, read_bytes(path))
+        return read_csv(part.file, read_bytes(path))
     except OSError as error:
-        return None, [unreadable(entry.file, error)]
+        return None, [unreadable(part.file, error)]
 
 
 def _by_library(file: str, path: Path, name: str, read: Any) -> tuple[Table | None, list[Fault]]:
@@ -97,18 +99,18 @@ def read_smartwheel(path: str | Path, side: str, radius: float) -> pd.DataFrame:
     })  # fmt: skip
 
 
-def _open_smartwheel(entry: Entry, path: Path) -> tuple[Table | None, list[Fault]]:
+def _open_smartwheel(part: Part, path: Path) -> tuple[Table | None, list[Fault]]:
     try:
-        frame = read_smartwheel(path, entry.text("side"), entry.number("radius") or 0.0)
+        frame = read_smartwheel(path, str(part.device.options.get("side", "")), number(part.device.options.get("radius")) or 0.0)
     except UsageError as error:
         fact, _, cure = str(error).partition("; ")
-        return None, [run_fault(entry.file, fact, f"{cure}, as side and radius of the run")]
+        return None, [run_fault(part.file, fact, f"{cure}, as side and radius of the run")]
     except CampaignError as error:
         return None, [
-            run_fault(entry.file, fault.fact, fault.cure) for fault in error.faults if isinstance(fault, Fault)
+            run_fault(part.file, fault.fact, fault.cure) for fault in error.faults if isinstance(fault, Fault)
         ]
     faults = []
     if frame.iloc[:, 2].mean() < 0:
         fact = f"the wheel brakes on the whole ({frame.iloc[:, 1].mean():.3g} N.m on average)"
-        faults.append(run_fault(entry.file, fact, "check on which side it was mounted", severity=WARNING))
-    return as_frame_table(entry.file, frame.drop(columns=frame.columns[1])), faults  # force only, never both
+        faults.append(run_fault(part.file, fact, "check on which side it was mounted", severity=WARNING))
+    return as_frame_table(part.file, frame.drop(columns=frame.columns[1])), faults  # force only, never both

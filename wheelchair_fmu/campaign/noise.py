@@ -11,7 +11,7 @@ import numpy as np
 from ..units import UnitError, quantity
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .document import Document, number
-from .draft import Draft
+from .recorded import Recorded
 from .series import estimate
 
 NAMES = (*CHANNEL_NAMES, "F_rl", "F_rr", "M_rl", "M_rr")  # what [noise] may name
@@ -33,17 +33,18 @@ class Noise:
     faults: tuple[tuple[str, UnitError], ...]
 
 
-def gather(doc: Document, drafts: Sequence[Draft]) -> Noise:
+def gather(doc: Document, runs: Sequence[Recorded]) -> Noise:
     """Noise of everything measured or pushed: as stated, else as the data show."""
-    sd, faults = _stated(doc, "noise", NAMES, drafts)
-    nuisance_sd, more = _stated(doc, "nuisance", CHANNEL_NAMES, drafts)
+    sd, faults = _stated(doc, "noise", NAMES, runs)
+    nuisance_sd, more = _stated(doc, "nuisance", NAMES, runs)
     wrong = {path for path, _ in faults}
     seen: dict[str, float | None] = {}
     estimated, missing = set(), []
     for name in NAMES:
-        logged = [d.logged[name] for d in drafts if name in d.logged and _moves(d.logged[name])]
+        logged = [d.logged[name] for d in runs if name in d.logged and _moves(d.logged[name])]
+        made = [d.noise[name] for run in runs for d in run.drafts if name in d.noise]
         if logged:
-            seen[name] = estimate(logged)
+            seen[name] = float(np.median(made)) if made else estimate(logged)
         if name in sd or f"noise.{name}" in wrong:
             continue
         value = seen.get(name)
@@ -53,7 +54,7 @@ def gather(doc: Document, drafts: Sequence[Draft]) -> Noise:
         elif name in INPUT_NAMES:
             if logged or name in ("F_rl", "F_rr"):
                 sd[name] = 0.0  # nobody pushed, and the file knows it exactly
-        elif any(name in d.measured for d in drafts):
+        elif any(name in run.measured for run in runs):
             missing.append(name)
     return Noise(sd, seen, frozenset(estimated), tuple(missing), nuisance_sd, (*faults, *more))
 
@@ -65,7 +66,7 @@ def _moves(series: np.ndarray) -> bool:
 
 
 def _stated(
-    doc: Document, table: str, names: Sequence[str], drafts: Sequence[Draft]
+    doc: Document, table: str, names: Sequence[str], runs: Sequence[Recorded]
 ) -> tuple[dict[str, float], list[tuple[str, UnitError]]]:
     """What a table states, in SI: a number is in the unit of the channel's column, text brings its own."""
     found, faults = {}, []
@@ -73,13 +74,13 @@ def _stated(
         if name not in names or (table == "nuisance" and isinstance(value, bool)):
             continue
         try:
-            found[name] = _sd(name, value, drafts)
+            found[name] = _sd(name, value, runs)
         except UnitError as error:
             faults.append((f"{table}.{name}", UnitError(f"[{table}] {name}: {error.fact}", error.cure)))
     return found, faults
 
 
-def _sd(name: str, value: Any, drafts: Sequence[Draft]) -> float:
+def _sd(name: str, value: Any, runs: Sequence[Recorded]) -> float:
     unit = BY_NAME[name].unit.name
     if isinstance(value, str):
         sd = quantity(value, unit)
@@ -87,7 +88,8 @@ def _sd(name: str, value: Any, drafts: Sequence[Draft]) -> float:
         plain = number(value)
         if plain is None:
             raise UnitError(f"{value!r} is not a number", "give a standard deviation above 0")
-        scales = {d.bindings.found[name].scale for d in drafts if name in d.logged}
+        found = [d.bindings.found for run in runs for d in run.drafts]
+        scales = {abs(bound[name].scale) for bound in found if name in bound}
         if len(scales) > 1:
             cure = f"write the unit with it, as in {name} = '{plain:g} {unit}'"
             raise UnitError(f"{plain:g} could be in several units, as the runs' columns differ", cure)

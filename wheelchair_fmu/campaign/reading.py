@@ -12,11 +12,13 @@ from ..errors import CampaignError
 from ..faults import ERROR, Fault, once
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES
-from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, RUN_CHECKS, Assembly
+from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, parameter_tables
+from .devices import Part, parts, point_of
 from .document import Document, Entry, flatten, load, number
-from .draft import Draft, prepare
+from .draft import prepare
 from .noise import gather
+from .recorded import Recorded
 from .records import Campaign, Run
 
 
@@ -44,22 +46,42 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
     if doc is None:
         return None, faults
     faults += _by_line(fault for judge in DOCUMENT_CHECKS for fault in judge(doc, known))
-    drafts, tables, left = [], dict[Any, Any](), Counter(entry.file for entry in doc.entries)
-    for entry in doc.entries:
-        file = doc.folder / entry.file
-        if entry.file and file.is_file():
-            draft, met = prepare(doc, entry, file, tables)
-            if draft is not None:
-                met += [fault for judge in (*CLOCK_CHECKS, *RUN_CHECKS) for fault in judge(draft)]
-                drafts.append(draft.slim())
-            faults += _by_line(met)
-        left[entry.file] -= 1
-        if not left[entry.file]:
+    runs, tables = [], dict[Any, Any]()
+    of_run = [parts(doc, entry) for entry in doc.entries]
+    left = Counter(part.file for some in of_run for part in some)
+    for entry, some in zip(doc.entries, of_run, strict=True):
+        recorded, met = _recorded(doc, entry, some, tables)
+        if recorded is not None:
+            runs.append(recorded.slim())
+        faults += met
+        for part in some:
+            left[part.file] -= 1
+        if not any(left[part.file] for part in some):
             tables.clear()  # cuts of one file stand together as a rule; what is needed again is read again
-    assembly = Assembly(doc, tuple(drafts), gather(doc, drafts))
-    if drafts:
+    assembly = Assembly(doc, tuple(runs), gather(doc, runs))
+    if runs:
         faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]
     return assembly, once(faults)
+
+
+def _recorded(doc: Document, entry: Entry, some: Sequence[Part], tables: dict[Any, Any]) -> tuple[Recorded | None, list[Fault]]:
+    """The files of one run, and what is wrong with each of them and with all together."""
+    drafts, faults = [], []
+    for part in some:
+        if not (file := doc.folder / part.file).is_file():
+            continue  # a check of the document says so
+        draft, met = prepare(doc, part, file, tables)
+        if draft is not None:
+            met += [fault for judge in (*CLOCK_CHECKS, *FILE_CHECKS) for fault in judge(draft)]
+            drafts.append(draft)
+        faults.append(met)
+    if not drafts:
+        return None, _by_line(fault for met in faults for fault in met)
+    run = Recorded(doc, entry, tuple(drafts))
+    of_run = [fault for judge in RUN_CHECKS for fault in judge(run)]
+    if len(some) == 1:
+        return run, _by_line((*faults[0], *of_run))
+    return run, [*(fault for met in faults for fault in _by_line(met)), *of_run]
 
 
 def _by_line(faults: Iterable[Fault]) -> list[Fault]:
@@ -71,38 +93,48 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
     doc, noise = assembly.doc, assembly.noise
     name = doc.table("campaign").get("name")
     nuisance = {key: value for key, value in doc.table("nuisance").items() if value is not False}
-    drafts = [draft for draft in assembly.drafts if not draft.silent]
-    names = _unique([Path(draft.file).name.partition(".")[0] for draft in drafts])
+    runs = [run for run in assembly.runs if not run.silent]
+    names = _unique([run.name for run in runs])
     return Campaign(
         name=name if isinstance(name, str) else doc.folder.resolve().name,
         path=doc.path,
         axes=doc.axes or SAE,
-        known=_numbers(doc.parameters(parameter_tables(known))),
+        known={**_mounted(doc, runs), **_numbers(doc.parameters(parameter_tables(known)))},
         priors=_numbers(dict(flatten(doc.table("prior")))),
         noise=noise.sd,
         noise_estimated=noise.estimated,
         nuisance=tuple(channel for channel in CHANNEL_NAMES if channel in nuisance),
         nuisance_sd=noise.nuisance_sd,
-        runs=tuple(_run(draft, name) for draft, name in zip(drafts, names, strict=True)),
+        runs=tuple(_run(run, name) for run, name in zip(runs, names, strict=True)),
         fingerprint=_fingerprint(doc),
         warnings=warnings,
     )
 
 
-def _run(draft: Draft, name: str) -> Run:
-    entry: Entry = draft.entry
-    assert draft.time is not None  # a file without time is an error, so no campaign is made
+def _run(run: Recorded, name: str) -> Run:
+    entry = run.entry
+    assert run.time is not None  # a file without time is an error, so no campaign is made
     return Run(
         name=name,
-        file=draft.doc.folder / entry.file,
+        file=run.doc.folder / run.drafts[0].file,
         manoeuvre=entry.text("manoeuvre"),
         role=entry.text("role"),
-        u0=draft.u0,
+        u0=run.u0,
         set=_numbers(dict(flatten(entry.table("set")))),
-        time=draft.time,
-        inputs={BY_NAME[c].fmu: series for c, series in draft.inputs.items()},
-        channels=draft.measured,
+        time=run.time,
+        inputs={BY_NAME[c].fmu: series for c, series in run.inputs.items()},
+        channels=run.measured,
+        clocks=run.clocks,
+        input_steps=run.input_steps,
     )
+
+
+def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:
+    """Where the accelerometers sit, as the parameters that say so."""
+    points = {name: d.part.device.at for run in runs for d in run.drafts for name in d.channels}
+    points |= {name: point for name, entry in doc.table("sensor").items() if (point := point_of(entry))}
+    at = next((points[name] for name in ("a_x", "a_y") if points.get(name)), None)
+    return {} if at is None else {f"effect.accelerometer_offset.{axis}": value for axis, value in zip("xy", at, strict=True)}
 
 
 def _numbers(table: Mapping[str, Any]) -> dict[str, float]:
@@ -130,7 +162,7 @@ def fingerprint(path: str | Path) -> str:
 def _fingerprint(doc: Document) -> str:
     """SHA-256 over campaign.toml and the files it names, in order."""
     digest = hashlib.sha256(doc.raw)
-    for file in dict.fromkeys(entry.file for entry in doc.entries):
+    for file in dict.fromkeys(part.file for entry in doc.entries for part in parts(doc, entry)):
         digest.update(f"\0{file}\0".encode())
         if (doc.folder / file).is_file():
             with (doc.folder / file).open("rb") as recording:

@@ -24,7 +24,7 @@ def estimate(series: Iterable[np.ndarray]) -> float | None:
     noise comes out too small. None where there is nothing to estimate from: too few readings, or all the same.
     """
     series = list(series)
-    sd = _scatter(np.concatenate([third_differences(s) for s in series]) if series else np.empty(0))
+    sd = scatter(np.concatenate([third_differences(s) for s in series]) if series else np.empty(0))
     return None if sd is None else max(sd, _quantum(series) / np.sqrt(12.0)) or None
 
 
@@ -47,8 +47,8 @@ def third_differences(series: np.ndarray) -> np.ndarray:
     return (third / np.sqrt(sum(w**2 for w in weights)))[close]
 
 
-def _scatter(third: np.ndarray) -> float | None:
-    """The same from third differences."""
+def scatter(third: np.ndarray) -> float | None:
+    """Standard deviation of the noise from third differences; None where there are too few."""
     if third.size < _ENOUGH:
         return None
     sd = _MAD * float(np.median(np.abs(third)))
@@ -76,7 +76,7 @@ def spikes(series: np.ndarray) -> np.ndarray:
     """
     places = np.flatnonzero(np.isfinite(series))
     values = series[places]
-    noise = _scatter(third_differences(values))
+    noise = scatter(third_differences(values))
     if not noise:
         return places[:0]
     step = np.diff(np.pad(values, 2, mode="reflect"))  # beyond an end as before it

@@ -6,7 +6,7 @@ d(i + k) − d(i) is 2σ²(1 − φ^k) for AR(1) noise, plus about c k² of what
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.optimize import brentq, least_squares
@@ -15,11 +15,11 @@ from ..campaign.series import estimate
 from .evidence import FORCES, Colour, Evidence
 
 LAGS = 15
-WHITE = 0.2  # an AR(1) coefficient, from reading to reading as the next ones, below this is not worth a state
+WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
 QUIETER = 0.75  # mean square error below which noise was taken for too large, once what was missing is in the model
 STEADY = 0.6  # an AR(1) coefficient of pushes below this may as well be noise that was stated too large
 TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept,
-SELDOM = 0.05  # of the readings of the most usual lag, below which a lag of a slow sensor is by chance
+EVEN = 0.25  # share of the usual time over so many readings by which one may differ; more is a gap
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 
 
@@ -32,20 +32,16 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
     """
     sd, ar, notes = dict(stated), {}, []
     for channel in dict.fromkeys(c for e in evidence.runs for c in e.channels):
-        residuals = _residuals(evidence, channel)
-        apart = _apart(residuals)
         if _white(evidence, channel, lowest):
             sigma, phi = taken.sd[channel], taken.ar.get(channel, 0.0)
         else:
-            sigma, phi = _fit_structure(*_structure(residuals, LAGS * apart))
-        phi **= apart  # from reading to reading
+            sigma, phi = _fit_structure(*_structure(_residuals(evidence, channel)))
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
         slow = phi > SLOW and ratio > 1 and (1 - phi) * ratio**2 < 1  # what is slow may as well be what the model lacks
         trusted = slow or 1 / TRUSTED < ratio < TRUSTED
         if phi > WHITE:
             # data tell σ² (1 − φ), the change from one sample to the next, far better than they tell either of the two
-            phi = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
-            ar[channel] = phi ** (1 / apart)
+            ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
         if not trusted:
             sd[channel] = sigma
             notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
@@ -76,33 +72,32 @@ def _there(values: np.ndarray) -> np.ndarray:
     return values[np.isfinite(values)]
 
 
-def _residuals(evidence: Evidence, channel: str) -> list[np.ndarray]:
-    return [e.run.channels[channel] - e.predicted[:, e.channels.index(channel)] for e in evidence.runs if channel in e.channels]
+def _residuals(evidence: Evidence, channel: str) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Times and residuals (m,) of the channel's own readings in each run: a slow sensor has none in most rows."""
+    found = []
+    for e in (e for e in evidence.runs if channel in e.channels):
+        d = e.run.channels[channel] - e.predicted[:, e.channels.index(channel)]
+        there = np.isfinite(d)
+        found.append((e.run.time[there], d[there]))
+    return found
 
 
-def _apart(residuals: Iterable[np.ndarray]) -> int:
-    """Rows from one reading to the next: a slow sensor has them in every second or third row only."""
-    apart = np.concatenate([np.diff(np.flatnonzero(np.isfinite(d))) for d in residuals])
-    return int(np.median(apart)) if apart.size else 1
-
-
-def _structure(residuals: Sequence[np.ndarray], most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lags in rows, up to `most`, and the residuals' mean square change over each that there is.
-
-    The coefficient fitted to it is from row to row, as the filter goes, whether there is a reading in each row or not.
-    """
-    sums, counts = np.zeros(most), np.zeros(most)
-    for d in residuals:
-        for k in range(1, min(most, len(d) - 1) + 1):
-            change = _there(d[k:] - d[:-k])
-            sums[k - 1] += float(change @ change)
-            counts[k - 1] += len(change)
-    usual = counts > SELDOM * counts.max(initial=0)
-    return np.flatnonzero(usual) + 1, sums[usual] / counts[usual]
+def _structure(residuals: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Lags over 1 … LAGS readings, in units of the usual time between two, and the residuals' mean square change over each."""
+    step = float(np.median(np.concatenate([np.diff(t) for t, _ in residuals])))
+    lags, means = [], []
+    for k in range(1, LAGS + 1):
+        pairs = [((t[k:] - t[:-k]) / step, d[k:] - d[:-k]) for t, d in residuals]
+        over, change = np.concatenate([lag for lag, _ in pairs]), np.concatenate([d for _, d in pairs])
+        even = np.abs(over - np.median(over)) < EVEN * np.median(over) if over.size else np.zeros(0, bool)
+        if even.any():
+            lags.append(float(over[even].mean()))
+            means.append(float(np.mean(change[even] ** 2)))
+    return np.array(lags), np.array(means)
 
 
 def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
-    """(σ, φ) from the mean square changes D (m,) over k (m,) rows."""
+    """(σ, φ) from the mean square changes D (m,) over k (m,) readings."""
     scale = max(float(D[0]), 1e-300)
 
     def off(q: np.ndarray) -> np.ndarray:

@@ -9,8 +9,8 @@ from ...faults import ERROR, WARNING, Fault
 from ..binding import absent_fault
 from ..channels import BY_NAME
 from ..document import Document
-from ..draft import Draft
 from ..noise import Noise
+from ..recorded import Recorded
 
 RATIO = 20.0  # between stated and visible noise
 
@@ -20,16 +20,19 @@ class Assembly:
     """The campaign.toml, the runs that could be read, and their noise."""
 
     doc: Document
-    drafts: tuple[Draft, ...]
+    runs: tuple[Recorded, ...]
     noise: Noise
 
 
 def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
-    drafts = all_.drafts
-    for name in sorted({name for draft in drafts for name in draft.bindings.absent}):
-        if all(name in d.bindings.absent and name not in d.bindings.found and name not in d.values for d in drafts):
-            headers = dict.fromkeys(header for draft in drafts for header in draft.table.headers)
-            yield absent_fault(all_.doc, name, list(headers))
+    drafts = [draft for run in all_.runs for draft in run.drafts]
+    known = {name for run in all_.runs for name in run.constants}
+    for device in dict.fromkeys(draft.part.device.name for draft in drafts):
+        own = [draft for draft in drafts if draft.part.device.name == device]
+        for name in sorted({name for draft in own for name in draft.bindings.absent} - known):
+            if all(name in d.bindings.absent and name not in d.bindings.found for d in own):
+                headers = dict.fromkeys(header for draft in own for header in draft.table.headers)
+                yield absent_fault(all_.doc, own[0].part.device, name, list(headers))
 
 
 def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
@@ -37,7 +40,7 @@ def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
     for role, severity, lack in (("fit", ERROR, "there is nothing to learn from"),
                                  ("holdout", WARNING, "no effect can be proven on data it has not seen")):  # fmt: skip
         entries = [entry for entry in all_.doc.entries if entry.text("role") == role]
-        silent = [draft for draft in all_.drafts if draft.silent and draft.entry.text("role") == role]
+        silent = [run for run in all_.runs if run.silent and run.entry.text("role") == role]
         if entries and len(silent) == len(entries):
             fact = f"no channel changes in any run with the role {role!r}, so {lack}"
             cure = f"give role = {role!r} to a run in which the chair moves"

@@ -8,15 +8,16 @@ from typing import Any
 from ...faults import WARNING, Fault, suggestion
 from ...units import UnitError
 from ..axes import ISO, SAE
-from ..channels import BY_NAME, CHANNEL_NAMES, TIME
-from ..document import CAMPAIGN_KEYS, OTHER_TABLES, PARAMETER_TABLES, RUN_KEYS, Document, Entry, flatten, number
+from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
+from ..devices import devices, parts, point_of
+from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
-from ..formats import FORMATS
+from ..formats import FORMATS, OPTIONS
 from ..noise import NAMES as NOISE_NAMES
+from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
 
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
-_COLUMN_KEYS = {"column": str, "unit": str, "radius": float}
 
 
 def parameter_tables(known: Known | None) -> tuple[str, ...]:
@@ -31,36 +32,99 @@ def unknown_table(doc: Document, known: Known | None) -> Iterator[Fault]:
         if name not in tables and name != "g":
             what = "table" if isinstance(value, dict | list) else "key"
             yield doc.fault(name, f"no {what} {name!r} in a campaign", suggestion(name, tables))
-        elif name in tables and name != "run" and not isinstance(value, Mapping):
+        elif name in tables and name not in REPEATED and not isinstance(value, Mapping):
             yield doc.fault(name, f"{name} = {value!r} is not a table", f"write [{name}] and its keys below")
 
 
-def unknown_key(doc: Document, known: Known | None) -> Iterator[Fault]:
-    for key in doc.table("campaign"):
-        if key not in CAMPAIGN_KEYS:
-            yield doc.fault(f"campaign.{key}", f"no key {key!r} in [campaign]", suggestion(key, CAMPAIGN_KEYS))
+def _tables(doc: Document) -> Iterator[tuple[TableRecord, str, int | None, Mapping[str, Any]]]:
+    """Every table whose keys are fixed: its record, how messages call it, its place in its list, and what it holds."""
+    yield CAMPAIGN, "[campaign]", None, doc.table("campaign")
     for entry in doc.entries:
-        for key in entry.data:
-            if key not in RUN_KEYS:
-                fact = f"{entry.title} has no key {key!r}"
-                yield doc.fault(f"run.{key}", fact, suggestion(key, RUN_KEYS), entry.place)
+        yield RUN, entry.title, entry.place, entry.data
+    for place, table in enumerate(doc.recordings):
+        yield RECORDING, _device_title(place, table), place, table
+
+
+def _device_title(place: int, table: Mapping[str, Any]) -> str:
+    name = table.get("device")
+    return f"recording {place + 1}" + (f" ({name})" if isinstance(name, str) and name else "")
+
+
+def unknown_key(doc: Document, known: Known | None) -> Iterator[Fault]:
+    for record, title, place, table in _tables(doc):
+        allowed = [k.name for k in record.keys] + ([*OPTIONS] if record is RECORDING else [])
+        for key in table:
+            if key not in allowed:
+                fact = f"no key {key!r} in {title}" if place is None else f"{title} has no key {key!r}"
+                yield doc.fault(f"{record.name}.{key}", fact, suggestion(key, allowed), place)
 
 
 def wrong_type(doc: Document, known: Known | None) -> Iterator[Fault]:
-    right: dict[str, Callable[[Any], bool]] = {
-        "text": lambda v: isinstance(v, str),
-        "number": lambda v: number(v) is not None,
-        "table": lambda v: isinstance(v, Mapping),
-    }
+    for record, title, place, table in _tables(doc):
+        for key in record.keys:
+            if key.name in table and not fits(table[key.name], key.kind):
+                if place is None:
+                    yield doc.fault(f"{record.name}.{key.name}", f"{key.name} = {table[key.name]!r} is no {key.kind}",
+                                    "put it in quotes")  # fmt: skip
+                    continue
+                fact = f"{title} has {key.name} = {table[key.name]!r}, which is no {key.kind}"
+                yield doc.fault(f"{record.name}.{key.name}", fact, f"give a {key.kind}", place)
+
+
+def bad_recording(doc: Document, known: Known | None) -> Iterator[Fault]:
+    if isinstance(doc.data.get("recording"), Mapping):
+        fact = "[recording] is one table, but devices are a list"
+        yield doc.fault("recording", fact, "write [[recording]] with two brackets")
+    seen: dict[str, int] = {}
+    for place, table in enumerate(doc.recordings):
+        name = table.get("device")
+        if not isinstance(name, str) or not name:
+            yield doc.fault("recording", f"recording {place + 1} has no device", 'add device = "..."', place)
+        elif name in seen:
+            fact = f"recording {place + 1} describes the device {name!r} again, as recording {seen[name] + 1} does"
+            yield doc.fault("recording.device", fact, "give each device one name and one [[recording]]", place)
+        else:
+            seen[name] = place
+    used = {name for entry in doc.entries for name in entry.table("files")}
+    for name in seen.keys() - used:
+        yield doc.fault("recording.device", f"no run has a file of the device {name!r}", suggestion(name, used) if used
+                        else 'write files = { ' + name + ' = "..." } in a run', seen[name], WARNING)  # fmt: skip
+
+
+def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
+    there = devices(doc)
     for entry in doc.entries:
-        for key, kind in RUN_KEYS.items():
-            if key in entry.data and not right[kind](entry.data[key]):
-                fact = f"{entry.title} has {key} = {entry.data[key]!r}, which is no {kind}"
-                yield doc.fault(f"run.{key}", fact, f"give a {kind}", entry.place)
-    for key in ("name", "axes"):
-        value = doc.table("campaign").get(key, "")
-        if not isinstance(value, str):
-            yield doc.fault(f"campaign.{key}", f"{key} = {value!r} is no text", "put it in quotes")
+        if "file" in entry.data and "files" in entry.data:
+            yield doc.fault("run.files", f"{entry.title} has file and files", "keep one of them", entry.place)
+        for name, file in entry.table("files").items():
+            if name not in there:
+                fact = f"{entry.title}: no device {name!r}"
+                cure = suggestion(name, there) if there else f'describe it by [[recording]] device = "{name}"'
+                yield doc.fault("run.files", fact, cure, entry.place)
+            if not isinstance(file, str):
+                yield doc.fault("run.files", f"{entry.title}: the file of {name} is {file!r}", "put its name in quotes",
+                                entry.place)  # fmt: skip
+        for name, stands in entry.table("clocks").items():
+            if name not in entry.table("files"):
+                fact = f"{entry.title}: clocks has {name!r}, of which it has no file"
+                yield doc.fault("run.clocks", fact, suggestion(name, entry.table("files")), entry.place)
+            values = stands.items() if isinstance(stands, Mapping) else [("offset", stands)]
+            for key, value in values:
+                if key not in ("offset", "sd", "drift"):
+                    yield doc.fault("run.clocks", f"{entry.title}: the clock of {name} has no key {key!r}",
+                                    suggestion(key, ("offset", "sd", "drift")), entry.place)  # fmt: skip
+                elif number(value) is None or (key == "sd" and (number(value) or 0) < 0):
+                    yield doc.fault("run.clocks", f"{entry.title}: the clock of {name} has {key} = {value!r}",
+                                    "give a number in s" if key != "drift" else "give a number", entry.place)  # fmt: skip
+
+
+def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
+    for name, entry in doc.table("sensor").items():
+        if name not in CHANNEL_NAMES:
+            yield doc.fault(f"sensor.{name}", f"[sensor] has no channel {name!r}", suggestion(name, CHANNEL_NAMES))
+        elif point_of(entry) is None:
+            cure = f"write sensor.{name}.at = [x, y], in m forward and to the right of the centre of mass"
+            yield doc.fault(f"sensor.{name}", f"[sensor] {name} = {entry!r} is no point", cure)
 
 
 def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -73,17 +137,19 @@ def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 def no_file(doc: Document, known: Known | None) -> Iterator[Fault]:
     for entry in doc.entries:
-        if "file" not in entry.data:
+        if "file" not in entry.data and "files" not in entry.data:
             yield doc.fault("run", f"{entry.title} names no file", 'add file = "..."', entry.place)
 
 
 def missing_file(doc: Document, known: Known | None) -> Iterator[Fault]:
     for entry in doc.entries:
-        if entry.file and not (doc.folder / entry.file).is_file():
-            there = [p.relative_to(doc.folder).as_posix() for g in ("*.*", "*/*.*") for p in doc.folder.glob(g)]
-            there = sorted(name for name in there if not name.endswith(".toml"))
-            cure = suggestion(entry.file, there) if there else "put it beside campaign.toml"
-            yield doc.fault("run.file", f"{entry.title}: no such file", cure, entry.place)
+        for part in parts(doc, entry):
+            if not (doc.folder / part.file).is_file():
+                there = [p.relative_to(doc.folder).as_posix() for g in ("*.*", "*/*.*") for p in doc.folder.glob(g)]
+                there = sorted(name for name in there if not name.endswith(".toml"))
+                cure = suggestion(part.file, there) if there else "put it beside campaign.toml"
+                what = "no such file" if part.alone else f"no such file as {part.file!r} of {part.device.name}"
+                yield doc.fault("run.file" if part.alone else "run.files", f"{entry.title}: {what}", cure, entry.place)
 
 
 def bad_role(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -115,10 +181,10 @@ def no_manoeuvre(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 
 def unknown_format(doc: Document, known: Known | None) -> Iterator[Fault]:
-    for entry in doc.entries:
-        kind = entry.text("format")
-        if kind and kind not in FORMATS:
-            yield doc.fault("run.format", f"{entry.title}: no format {kind!r}", suggestion(kind, FORMATS), entry.place)
+    for record, title, place, table in _tables(doc):
+        kind = table.get("format")
+        if record is not CAMPAIGN and isinstance(kind, str) and kind and kind not in FORMATS:
+            yield doc.fault(f"{record.name}.format", f"{title}: no format {kind!r}", suggestion(kind, FORMATS), place)
 
 
 def empty_cut(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -131,8 +197,9 @@ def empty_cut(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 def shared_samples(doc: Document, known: Known | None) -> Iterator[Fault]:
     """A held-out run must not hold what the fit has seen."""
-    for holdout in (e for e in doc.entries if e.text("role") == "holdout" and e.file):
-        for fit in (e for e in doc.entries if e.text("role") == "fit" and e.file == holdout.file):
+    files = {entry.place: {part.file for part in parts(doc, entry)} for entry in doc.entries}
+    for holdout in (e for e in doc.entries if e.text("role") == "holdout"):
+        for fit in (e for e in doc.entries if e.text("role") == "fit" and files[e.place] & files[holdout.place]):
             if _start(fit) < _stop(holdout) and _start(holdout) < _stop(fit):
                 fact = f"{holdout.title} is held out but shares samples with run {fit.place + 1}, which is fitted"
                 yield doc.fault("run", fact, "separate them by from and to", holdout.place, WARNING)
@@ -196,28 +263,39 @@ def _parameter(
 
 
 def bad_column(doc: Document, known: Known | None) -> Iterator[Fault]:
-    names = (TIME.name, *BY_NAME)
-    for name, value in doc.table("columns").items():
-        path = f"columns.{name}"
-        if name not in names:
-            yield doc.fault(path, f"[columns] has no channel {name!r}", suggestion(name, names))
+    yield from _columns(doc, doc.table("columns"), "columns", None)
+    for place, table in enumerate(doc.recordings):
+        columns = table.get("columns")
+        if isinstance(columns, Mapping):
+            yield from _columns(doc, columns, "recording.columns", place)
+
+
+def _columns(doc: Document, columns: Mapping[str, Any], path: str, place: int | None) -> Iterator[Fault]:
+    known = {c.name: c for c in (TIME, *BY_NAME.values(), *SOURCES)}
+    for name, value in columns.items():
+        where = f"{path}.{name}"
+        if name not in known:
+            yield doc.fault(where, f"[columns] has no channel {name!r}", suggestion(name, known), place)
         elif isinstance(value, Mapping):
-            yield from _column_table(doc, name, value, path)
+            yield from _column_table(doc, known[name], value, where, place)
         elif not isinstance(value, str):
             cure = 'write a header in quotes, or { column = "...", radius = ... }'
-            yield doc.fault(path, f"[columns] {name} = {value!r} is no header", cure)
+            yield doc.fault(where, f"[columns] {name} = {value!r} is no header", cure, place)
 
 
-def _column_table(doc: Document, name: str, value: Mapping[str, Any], path: str) -> Iterator[Fault]:
+def _column_table(doc: Document, channel: Channel, value: Mapping[str, Any], path: str, place: int | None) -> Iterator[Fault]:
+    name, keys = channel.name, [k.name for k in COLUMN.keys]
     for key, entry in value.items():
-        if key not in _COLUMN_KEYS:
-            yield doc.fault(path, f"[columns] {name} has no key {key!r}", suggestion(key, _COLUMN_KEYS))
+        if key not in keys:
+            yield doc.fault(path, f"[columns] {name} has no key {key!r}", suggestion(key, keys), place)
         elif key == "radius" and not (number(entry) or 0) > 0:
-            yield doc.fault(path, f"[columns] {name}: radius = {entry!r}", "give a radius above 0, in m")
-        elif key != "radius" and not isinstance(entry, str):
-            yield doc.fault(path, f"[columns] {name}: {key} = {entry!r} is no text", "put it in quotes")
-    if "radius" in value and BY_NAME.get(name, TIME).rotary is None:
-        yield doc.fault(path, f"[columns] {name} has a radius, but no wheel turns it", "remove the radius")
+            yield doc.fault(path, f"[columns] {name}: radius = {entry!r}", "give a radius above 0, in m", place)
+        elif key == "sign" and number(entry) not in (1.0, -1.0):
+            yield doc.fault(path, f"[columns] {name}: sign = {entry!r}", "give 1 or -1", place)
+        elif key in ("column", "unit") and not isinstance(entry, str):
+            yield doc.fault(path, f"[columns] {name}: {key} = {entry!r} is no text", "put it in quotes", place)
+    if "radius" in value and channel.rotary is None and channel not in SOURCES:
+        yield doc.fault(path, f"[columns] {name} has a radius, but no wheel turns it", "remove the radius", place)
 
 
 def bad_constant(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -235,14 +313,14 @@ def bad_constant(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 
 def unknown_noise(doc: Document, known: Known | None) -> Iterator[Fault]:
-    for table, names in (("noise", NOISE_NAMES), ("nuisance", CHANNEL_NAMES)):
+    for table, names in (("noise", NOISE_NAMES), ("nuisance", NOISE_NAMES)):
         for name in doc.table(table):
             if name not in names:
                 yield doc.fault(f"{table}.{name}", f"[{table}] has no channel {name!r}", suggestion(name, names))
 
 
 DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...] = (
-    unknown_table, unknown_key, wrong_type, no_runs, no_file, missing_file, bad_role, no_fit_run, no_holdout_run,
-    no_manoeuvre, unknown_format, empty_cut, shared_samples, bad_axes, bad_parameter, bad_set, bad_prior, bad_column,
-    bad_constant, unknown_noise,
+    unknown_table, unknown_key, wrong_type, no_runs, bad_recording, bad_files, bad_point, no_file, missing_file, bad_role,
+    no_fit_run, no_holdout_run, no_manoeuvre, unknown_format, empty_cut, shared_samples, bad_axes, bad_parameter, bad_set,
+    bad_prior, bad_column, bad_constant, unknown_noise,
 )  # fmt: skip

@@ -1,0 +1,159 @@
+"""A run made of the files of several devices, each with its own clock, rate and columns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from wheelchair_fmu.campaign import check, read
+from wheelchair_fmu.campaign.derived import wheel_speed
+
+TOML = """[campaign]
+name = "lab"
+axes = "SAE-J670"
+[chair]
+m = 80.0
+b = 0.1
+[wheel]
+R = 0.3
+[noise]
+F_rl = 0.4
+F_rr = 0.4
+yaw_rate = 0.006
+x = 0.001
+y = 0.001
+yaw = 0.01
+[[recording]]
+device = "rims"
+columns.F_rl = { column = "torque left", unit = "N.m" }
+columns.F_rr = { column = "torque right", unit = "N.m" }
+columns.wheel_angle_l = { column = "angle", unit = "deg" }
+[[recording]]
+device = "imu"
+axes = "ISO-8855"
+at = [0.11, 0.04]
+columns.yaw_rate = { column = "gyro z", unit = "deg/s" }
+columns.a_x = { column = "acc", unit = "g", sign = -1 }
+[[recording]]
+device = "cameras"
+markers = { axle_l = "LHUB", axle_r = "RHUB" }
+axes = { x = "z", y = "-x" }
+[[run]]
+files = { rims = "one_rims.csv", imu = "one_imu.csv", cameras = "one_markers.csv" }
+clocks = { imu = { offset = 0.3, sd = 0.002 }, cameras = -0.2 }
+manoeuvre = "weaving"
+role = "fit"
+u0 = 1.0
+"""
+HEADS = {"rims": (0.0, 240.0), "imu": (0.3, 100.0), "cameras": (-0.2, 150.0)}
+
+
+def moved(t: np.ndarray) -> dict[str, np.ndarray]:
+    """A chair that weaves at 1 m/s: by the run's clock, in SI and SAE axes."""
+    yaw = 0.2 * np.sin(2 * t)
+    forward, right = np.stack([np.cos(yaw), np.sin(yaw)]), np.stack([-np.sin(yaw), np.cos(yaw)])
+    axle = np.stack([t, 0.1 * np.sin(2 * t)])
+    return {"yaw": yaw, "yaw_rate": 0.4 * np.cos(2 * t), "push": 10 + 5 * np.sin(3 * t), "turned": t / 0.3 + 5.0,
+            "left": axle - 0.3 * right, "right": axle + 0.3 * right, "cm": axle + 0.1 * forward}  # fmt: skip
+
+
+@pytest.fixture
+def lab(tmp_path):
+    rng = np.random.default_rng(0)
+    time = {device: np.arange(0, 5, 1 / rate) for device, (_, rate) in HEADS.items()}
+    at = {device: moved(time[device] + HEADS[device][0]) for device in HEADS}
+
+    def noise(device, sd):
+        return rng.normal(0, sd, len(time[device]))
+
+    rims, imu, seen = at["rims"], at["imu"], at["cameras"]
+    tables = {
+        "one_rims.csv": {"time [s]": time["rims"], "torque left": 0.3 * rims["push"] + noise("rims", 0.1),
+                         "torque right": 0.3 * rims["push"] + noise("rims", 0.1),
+                         "angle": np.degrees(rims["turned"]) % 360},
+        "one_imu.csv": {"time [s]": time["imu"], "gyro z": -np.degrees(imu["yaw_rate"]) + noise("imu", 0.3),
+                        "acc": -0.01 * imu["push"] + noise("imu", 0.01)},
+        "one_markers.csv": {"time [s]": time["cameras"]}
+        | {f"{marker}.{axis} [mm]": 1000 * sign * seen[side][i] + noise("cameras", 0.5)
+           for marker, side in (("LHUB", "left"), ("RHUB", "right")) for axis, sign, i in (("z", 1, 0), ("x", -1, 1))},
+    }  # fmt: skip
+    for name, columns in tables.items():
+        pd.DataFrame(columns).to_csv(tmp_path / name, index=False)
+    (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
+    return tmp_path
+
+
+def edited(lab, old, new):
+    text = (lab / "campaign.toml").read_text(encoding="utf-8")
+    assert old in text
+    (lab / "campaign.toml").write_text(text.replace(old, new), encoding="utf-8")
+    return [str(fault) for fault in check(lab)]
+
+
+def test_every_sample_stands_at_its_own_time(lab):
+    (run,) = read(lab).runs
+    assert run.name == "one"
+    for channel, device, sd in (("yaw_rate", "imu", 0.006), ("x", "cameras", 0.001), ("yaw", "cameras", 0.003)):
+        there = np.isfinite(run.channels[channel])
+        offset, rate = HEADS[device]
+        in_file = (run.time[there] - offset) * rate
+        np.testing.assert_allclose(in_file, np.round(in_file), atol=1e-3)
+        assert there.sum() == pytest.approx(5 * rate, abs=0.4 * rate)
+        true = moved(run.time[there])
+        expected = true["cm"][0] if channel == "x" else true[channel]
+        assert np.std(run.channels[channel][there] - expected) < 1.5 * sd
+    assert run.time[0] >= 0 and run.time[-1] < 5, "pushes are known from the first row to the last"
+    assert np.isfinite(run.inputs["push.F_rl"]).all()
+    assert run.input_steps["push.F_rl"] == pytest.approx(1 / 240, rel=1e-3)
+    assert [(c.device, c.sd, set(c.channels)) for c in run.clocks] == [("imu", 0.002, {"yaw_rate", "a_x"})]
+
+
+def test_units_signs_axes_and_radius_are_each_devices_own(lab):
+    campaign = read(lab)
+    (run,) = campaign.runs
+    there = np.isfinite(run.channels["a_x"])
+    assert np.mean(run.channels["a_x"][there]) == pytest.approx(0.01 * 9.80665 * np.mean(moved(run.time)["push"]), rel=0.05)
+    assert np.mean(run.inputs["push.F_rl"]) == pytest.approx(np.mean(moved(run.time)["push"]), rel=0.02)
+    assert campaign.known["effect.accelerometer_offset.x"] == 0.11
+    assert campaign.known["effect.accelerometer_offset.y"] == 0.04
+
+
+def test_a_wheels_speed_is_made_from_its_angle(lab):
+    campaign = read(lab)
+    speed = campaign.runs[0].channels["wheel_speed_l"]
+    there = np.isfinite(speed)
+    np.testing.assert_allclose(speed[there], 1.0, atol=1e-6)
+    assert there.sum() == pytest.approx(5 / 0.05, rel=0.1)
+
+
+def test_the_noise_of_a_speed_made_from_an_angle_is_known():
+    rng, time = np.random.default_rng(1), np.arange(0, 100, 1 / 240)
+    speed, sd = wheel_speed(time, time / 0.3 + rng.normal(0, 1e-3, len(time)), 0.3)
+    assert np.nanstd(speed) == pytest.approx(sd, rel=0.1)
+    assert np.nanmean(speed) == pytest.approx(1, abs=1e-3)
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), [
+    ('device = "imu"\n', 'device = "gyro"\n', "run 1: no device 'imu'; did you mean 'rims'?"),
+    ('device = "imu"\n', 'device = "rims"\n', "recording 2 describes the device 'rims' again, as recording 1 does"),
+    ('device = "imu"\n', "", "recording 2 has no device; add device = \"...\""),
+    ('imu = "one_imu.csv"', 'imu = "imu.csv"', "run 1: no such file as 'imu.csv' of imu; did you mean 'one_imu.csv' or"),
+    ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give a point"),
+    ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
+    ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
+    ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
+    ('"LHUB"', '"LHIP"', "no column 'LHIP.z' for the marker axle_l"),
+    ("offset = 0.3", "offset = 30", "imu recorded from 30 to 34.99 s, the pushes from 0 to 4.996 s: they have no time in common"),
+    ("columns.a_x", "columns.wheel_speed_l = \"acc\"\ncolumns.a_x", "wheel_speed_l comes from rims and imu"),
+    ("[[recording]]\ndevice = \"cameras\"", "[recordings]\n[[recording]]\ndevice = \"cameras\"", "no table 'recordings'"),
+])  # fmt: skip
+def test_faults(lab, old, new, expected):
+    found = edited(lab, old, new)
+    assert any(expected in fault for fault in found), found
+
+
+def test_two_devices_that_see_the_same_are_told_apart(lab):
+    """One of them is silenced by an empty header."""
+    found = edited(lab, "columns.a_x", 'columns.wheel_speed_l = { column = "acc", unit = "m/s" }\ncolumns.a_x')
+    assert sum("comes from" in fault for fault in found) == 1

@@ -1,0 +1,120 @@
+"""Checks of one file of a run: how much of it there is, how large its values are, and whether they move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ...faults import WARNING, Fault, run_fault
+from ..channels import BY_NAME, TIME
+from ..draft import Draft, constants
+from ..resampled import REPEATED
+
+FEWEST = 10  # samples of a run
+
+
+def too_short(draft: Draft) -> Iterator[Fault]:
+    if draft.rows.values and len(draft.kept) < FEWEST:
+        start, stop = draft.entry.data.get("from"), draft.entry.data.get("to")
+        if start is None and stop is None:
+            fact, cure = f"only {len(draft.kept)} samples, at least {FEWEST} are needed", "log for longer"
+        else:
+            cut = " ".join(f"{k} {v} s" for k, v in (("from", start), ("to", stop)) if v is not None)
+            fact = f"the cut {cut} leaves {len(draft.kept)} samples, at least {FEWEST} are needed"
+            cure = _extent(draft)
+        yield run_fault(draft.file, fact, cure)
+
+
+def _extent(draft: Draft) -> str:
+    time = draft.whole_time
+    if time is None or not np.isfinite(time).any():
+        return "widen it"
+    return f"widen it; the file runs from {np.nanmin(time):.6g} to {np.nanmax(time):.6g} s"
+
+
+def input_gap(draft: Draft) -> Iterator[Fault]:
+    assert draft.time is not None or not draft.gaps
+    for name, gaps in draft.gaps.items():
+        series = draft.values[name]
+        for gap in () if np.isnan(series).all() else gaps:
+            where = "at the end of the run" if gap.stop == len(series) else "at the start of the run"
+            if gap.inside and draft.time is not None:
+                where = f"for {draft.time[gap.stop] - draft.time[gap.start - 1]:.4g} s, too long for a straight line"
+            fact = f"{name} is missing {where}"
+            cure = "fill it in, or cut the run by from and to"
+            yield run_fault(draft.file, fact, cure, draft.line(gap.start), draft.header(name))
+
+
+def empty_column(draft: Draft) -> Iterator[Fault]:
+    for name, series in draft.values.items():
+        if len(series) and np.isnan(series).all():
+            if name in draft.inputs:
+                cure = f"remove it and write constant = {{ {name} = 0.0 }} in the run, or give the values"
+                yield run_fault(draft.file, f"the input {name} holds only gaps", cure, column=draft.header(name))
+            elif not draft.left_out:
+                fact = f"{name} holds only gaps and is left out"
+                yield run_fault(draft.file, fact, "remove the column", column=draft.header(name), severity=WARNING)
+
+
+def stuck(draft: Draft) -> Iterator[Fault]:
+    """Pushes may stand still: nobody may have pushed."""
+    for name, series in ({} if draft.left_out else draft.values).items():
+        if name not in draft.inputs and np.isfinite(series).sum() > 1 and np.nanmin(series) == np.nanmax(series):
+            fact = f"{name} never changes from {np.nanmin(series):.6g} {BY_NAME[name].unit.name} and is left out"
+            cure = "check the sensor, or remove the column"
+            yield run_fault(draft.file, fact, cure, column=draft.header(name), severity=WARNING)
+
+
+def implausible(draft: Draft) -> Iterator[Fault]:
+    for name, series in draft.values.items():
+        channel = BY_NAME[name]
+        odd = np.flatnonzero((series < channel.low) | (series > channel.high))
+        if odd.size:
+            i = odd[np.argmax(np.abs(series[odd]))]
+            value, unit = series[i], channel.unit.name
+            bound = channel.high if value > channel.high else channel.low
+            side = "above" if value > channel.high else "below"
+            fact = f"{name} reaches {value:.4g} {unit}, {side} any plausible {bound:g} {unit}"
+            cure = f"check its unit (is it {channel.wrong_unit}?)"
+            yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), WARNING)
+
+
+def resampled(draft: Draft) -> Iterator[Fault]:
+    for name, found in draft.resampled.items():
+        low, high = np.floor(found.rows + 0.05), np.ceil(found.rows - 0.05)
+        rows = f"{low:g} rows" if low == high else f"{low:g} or {high:g} rows"
+        seen = "changes only every" if found.how == REPEATED else "changes its slope only every"
+        rate = ""
+        if draft.time is not None and (step := float(np.median(np.diff(draft.time)))) > 0:
+            rate = f"at about {1 / (found.rows * step):.3g} Hz "
+        fact = f"{name} {seen} {rows}: it was sampled {rate}and {found.how}; what is no reading is left out"
+        cure = "leave its cells empty in rows without a new reading"
+        yield run_fault(draft.file, fact, cure, column=draft.header(name), severity=WARNING)
+
+
+def spike(draft: Draft) -> Iterator[Fault]:
+    for name, found in draft.spikes.items():
+        usual = float(np.nanmedian(draft.values[name]))
+        i = max(found, key=lambda row: abs(found[row] - usual))
+        assert draft.time is not None  # without it nobody looks for any
+        farthest = f"{found[i]:.4g} {BY_NAME[name].unit.name} at {draft.time[i]:.6g} s"
+        if len(found) == 1:
+            fact = f"{name} reads {farthest}, alone between readings that agree, and is left out there"
+        else:
+            fact = f"{name} has {len(found)} readings that stand alone and are left out, the farthest {farthest}"
+        cure = "check the sensor and its cable; no chair moves so"
+        yield run_fault(draft.file, fact, cure, draft.line(i), draft.header(name), WARNING)
+
+
+def absent_column(draft: Draft) -> Iterator[Fault]:
+    """Only a warning: another run may have it. That no run has it is an error of the campaign."""
+    for name in draft.bindings.absent:
+        if name != TIME.name and name not in draft.values and name not in constants(draft.entry):
+            cure = "not measured in this run; give it by constant if it is known"
+            yield run_fault(draft.file, f"no column for {name}, which [columns] renames", cure, 1, severity=WARNING)
+
+
+FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
+    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, absent_column,
+)  # fmt: skip

@@ -1,0 +1,135 @@
+"""Every table and key of campaign.toml, one record each: what checks allow, and what docs/campaign.md says.
+
+Kinds are `text`, `number`, `yes or no`, `point` ([x, y]), `table`, or several of them with "or" between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .document import number
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key: its kind, unit and default, what it means, an example, and the fault it is most likely to cause."""
+
+    name: str
+    kind: str
+    meaning: str
+    unit: str = ""
+    default: str = ""
+    example: str = ""
+    fault: str = ""
+
+
+@dataclass(frozen=True)
+class TableRecord:
+    """One table. In one that is `open`, keys are names of other things: parameters, channels, devices."""
+
+    name: str
+    meaning: str
+    keys: tuple[Key, ...]
+    repeated: bool = False
+    open: bool = False
+
+    @property
+    def title(self) -> str:
+        return f"[[{self.name}]]" if self.repeated else f"[{self.name}]"
+
+    def key(self, name: str) -> Key | None:
+        return next((k for k in self.keys if k.name == name), None)
+
+
+CAMPAIGN = TableRecord("campaign", "The campaign as a whole.", (
+    Key("name", "text", "What reports call it.", default="the folder's name", example='name = "corridor, May"'),
+    Key("axes", "text", "Axes of all recordings that do not say otherwise: SAE-J670 has y to the right and yaw clockwise from "
+        "above, ISO-8855 has y to the left and yaw counter-clockwise.", default="SAE-J670, with a warning",
+        example='axes = "ISO-8855"', fault="no axes given, SAE-J670 assumed"),
+    Key("description", "text", "For readers; nothing uses it."),
+    Key("source", "text", "Where the recordings come from; nothing uses it."),
+))  # fmt: skip
+
+RUN = TableRecord("run", "One recording, or a cut of one. At least one run has the role fit.", (
+    Key("file", "text", "The recording, beside campaign.toml, of a run with one device.", example='file = "slalom.csv"',
+        fault="no such file"),
+    Key("files", "table", "The recordings of a run with several devices, by the device's name in [[recording]].",
+        example='files = { imu = "run01_imu.csv", wheels = "run01_wheels.csv" }', fault="no device 'imu'"),
+    Key("clocks", "table", "For each device what to add to its times, in s, so that all are alike; or a table with offset, sd "
+        "(standard deviation of what may be left of it) and drift (s per s). `wheelchair sync` writes them.", "s", "0",
+        "clocks = { imu = { offset = 0.412, sd = 0.002 } }", "no device 'imu' in this run's files"),
+    Key("name", "text", "What tables and figures call the run.", default="what its files' names have in common"),
+    Key("manoeuvre", "text", "What was done, in your words.", example='manoeuvre = "coast-down"',
+        fault="the run has no manoeuvre"),
+    Key("role", "text", 'fit: to learn from; holdout: kept to prove what was learnt.', example='role = "holdout"',
+        fault="the run has no role"),
+    Key("u0", "number", "Speed at the first sample, about; it is estimated anyway.", "m/s", "from the first measured speeds",
+        "u0 = 1.2"),
+    Key("set", "table", "Parameters that differ from the campaign's in this run.", "SI",
+        example='set = { "chair.m" = 90, "start.psi" = 1.57 }', fault="no parameter 'chair.mass'"),
+    Key("from", "number", "Where to cut the run, in its own time; the sample at `from` is kept.", "s", "the beginning",
+        "from = 2.5"),
+    Key("to", "number", "Where to cut the run; the sample at `to` is not kept.", "s", "the end", "to = 14"),
+    Key("constant", "table", "Channels that were not logged but are known: a number in SI units, or text with a unit.", "SI",
+        example='constant = { F_rl = 0, F_rr = 0 }', fault="constant has no channel 'F_r'"),
+    Key("format", "text", "How the file is read.", default="found from its content", example='format = "smartwheel"',
+        fault="no format 'smartwheels'"),
+    Key("side", "text", "Where an instrumented wheel was mounted: l or r.", example='side = "r"'),
+    Key("radius", "number", "Radius of the wheel whose file this is.", "m", example="radius = 0.31"),
+), repeated=True)  # fmt: skip
+
+RECORDING = TableRecord("recording", "One device: how its files are read, in whichever run. What is not listed here is an option "
+                        "of its format.", (
+    Key("device", "text", "Its name, which the runs' files go by.", example='device = "imu"', fault="[[recording]] has no device"),
+    Key("columns", "table", "As [columns], for this device's files.", example='columns.yaw_rate = "Gyroscope Z"'),
+    Key("markers", "table", "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which x, y and yaw "
+        "follow.", example='markers = { axle_l = "LHUB", axle_r = "RHUB" }', fault="no column 'LHUB.x'"),
+    Key("axes", "text or table", "As [campaign] axes, for this device. For markers, which of the laboratory's axes is the room's "
+        "x (forward) and y (right): a letter with a sign.", default="the campaign's", example='axes = { x = "x", y = "z" }'),
+    Key("radius", "number", "Radius by which this device's angles, speeds and torques of a wheel become those of the rim of "
+        "contact.", "m", "[wheel] R", "radius = 0.306"),
+    Key("at", "point", "Where it sits on the chair: forward and to the right of the centre of mass.", "m", "the centre of mass",
+        "at = [0.11, 0.04]"),
+    Key("description", "text", "For readers; nothing uses it."),
+), repeated=True)  # fmt: skip
+
+COLUMN = TableRecord("columns", "Names of columns that are not called as their channels. A channel is matched by a whole header "
+                     "first, then without its unit. Each entry is a header, or a table of these keys.", (
+    Key("column", "text", "The header.", default="the channel's own name", example='yaw_rate = { column = "Gyro Z" }'),
+    Key("unit", "text", "Its unit, where the file gives none, or a wrong one.", default="as in the file", example='unit = "deg/s"',
+        fault="no unit given"),
+    Key("radius", "number", "Of the wheel, where a column is an angle, an angular speed or a torque of it.", "m",
+        "the device's radius, or [wheel] R", "radius = 0.306"),
+    Key("sign", "number", "-1 turns the column round.", "1", "1", "sign = -1"),
+), open=True)  # fmt: skip
+
+OPEN = (
+    TableRecord("noise", "One standard deviation of each channel's sensor and of each recorded push: a number in the unit of its "
+                "column, or text with a unit. What is not given is estimated from the samples, and said.", (), open=True),
+    TableRecord("nuisance", "Sensor offsets to be estimated beside everything else: true, or the standard deviation about zero. "
+                "For a push (F_rl, F_rr, M_rl, M_rr) the baseline of an instrumented wheel, and its ripple once per turn.", (),
+                open=True),
+    TableRecord("prior", "How well values above are known: a standard deviation for each parameter by its dotted name.", (),
+                open=True),
+    TableRecord("sensor", "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m.",
+                (), open=True),
+)  # fmt: skip
+
+TABLES = (CAMPAIGN, RUN, RECORDING, COLUMN, *OPEN)
+PARAMETER_TABLES = ("chair", "tyre", "resistance", "wheel", "caster", "floor", "effect")
+OTHER_TABLES = tuple(t.name for t in TABLES)
+
+_KINDS: dict[str, Callable[[Any], bool]] = {
+    "text": lambda v: isinstance(v, str),
+    "number": lambda v: number(v) is not None,
+    "yes or no": lambda v: isinstance(v, bool),
+    "table": lambda v: isinstance(v, Mapping),
+    "point": lambda v: isinstance(v, list) and len(v) == 2 and all(number(one) is not None for one in v),
+}
+
+
+def fits(value: Any, kind: str) -> bool:
+    """Is a value of this kind?"""
+    return any(_KINDS[one](value) for one in ([kind] if kind in _KINDS else kind.split(" or ")))
