@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo test test-browser lint bench bench-diagnosis importers nightly clean
+.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis importers nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -11,6 +11,7 @@ help:
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    all tests"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
+	@echo "make docs    write the pages that are made from records: docs/campaign.md"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
@@ -40,6 +41,9 @@ demo: setup
 	$(BIN)/python build_fmu.py --variant out/demo/better.toml -o out/demo/Better.fmu
 	@echo "the report, to be opened in a browser:"
 	@$(BIN)/wheelchair report examples/sample-campaign --diagnosis out/demo/diagnosis.json -o out/demo/report.html
+
+docs: setup
+	$(BIN)/python -m wheelchair_fmu.campaign.reference docs/campaign.md
 
 test: setup
 	$(BIN)/python -m pytest -n 2

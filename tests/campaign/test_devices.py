@@ -144,7 +144,8 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
     ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
     ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
     ('"LHUB"', '"LHIP"', "no column 'LHIP.z' for the marker axle_l"),
-    ("offset = 0.3", "offset = 30", "imu recorded from 30 to 34.99 s, the pushes from 0 to 4.996 s: they have no time in common"),
+    ("offset = 0.3", "offset = 30",
+     "imu recorded from 30 to 34.99 s, the pushes from 0 to 4.996 s: they have no time in common"),
     ("columns.a_x", "columns.wheel_speed_l = \"acc\"\ncolumns.a_x", "wheel_speed_l comes from rims and imu"),
     ("[[recording]]\ndevice = \"cameras\"", "[recordings]\n[[recording]]\ndevice = \"cameras\"", "no table 'recordings'"),
 ])  # fmt: skip

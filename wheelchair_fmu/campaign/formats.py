@@ -101,7 +101,8 @@ def read_smartwheel(path: str | Path, side: str, radius: float) -> pd.DataFrame:
 
 def _open_smartwheel(part: Part, path: Path) -> tuple[Table | None, list[Fault]]:
     try:
-        frame = read_smartwheel(path, str(part.device.options.get("side", "")), number(part.device.options.get("radius")) or 0.0)
+        options = part.device.options
+        frame = read_smartwheel(path, str(options.get("side", "")), number(options.get("radius")) or 0.0)
     except UsageError as error:
         fact, _, cure = str(error).partition("; ")
         return None, [run_fault(part.file, fact, f"{cure}, as side and radius of the run")]

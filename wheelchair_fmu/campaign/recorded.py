@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from os.path import commonprefix
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,8 @@ class Recorded:
     def name(self) -> str:
         """What its files' names have in common, unless the run has a name of its own."""
         stems = [Path(d.file).name.partition(".")[0] for d in self.drafts]
-        shared = re.sub(r"[\W_]+$", "", commonprefix(stems))
+        alike = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
+        shared = re.sub(r"[\W_]+$", "", "".join(letters[0] for letters in alike))
         return self.entry.text("name") or shared or f"run-{self.entry.place + 1}"
 
     @cached_property
