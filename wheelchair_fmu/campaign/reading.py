@@ -40,6 +40,12 @@ def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault
     return _assess(path, known_parameters)[1]
 
 
+def recorded(path: str | Path, known_parameters: Known | None = None) -> tuple[tuple[Recorded, ...], list[Fault]]:
+    """Every run that can be read, as its devices recorded it, also of a campaign that has faults; and these."""
+    assembly, faults = _assess(path, known_parameters)
+    return (assembly.runs if assembly else ()), faults
+
+
 def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, list[Fault]]:
     """Runs every check on everything that can be read."""
     doc, faults = load(path)

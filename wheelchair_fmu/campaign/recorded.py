@@ -12,11 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
+from .devices import clock
 from .document import Document, Entry
 from .draft import Draft, constants
 from .records import Clock
 from .series import tells
 
+PUSHES_CLOCK = "pushes"  # what `clocks` calls the record of pushes in a run of one file
 GRID = 1e-6  # s to which times of several devices are kept, so that two samples at one moment share a row
 _FIRST = 10  # samples from which the starting speed is taken
 
@@ -75,7 +77,7 @@ class Recorded:
     def values(self) -> dict[str, np.ndarray]:
         """Everything recorded or known, by name: channels with NaN in gaps, inputs as straight lines between their samples."""
         if len(self.drafts) == 1:
-            found = dict(self.drafts[0].values)
+            found = self._shifted(self.drafts[0])
             rows = len(next(iter(found.values()))) if found else len(self.drafts[0].kept)
         elif self.time is None:
             return {}
@@ -83,6 +85,13 @@ class Recorded:
             rows = len(self.time)
             found = {name: self._on_rows(d, name) for d in self.drafts for name in d.values}
         return found | {name: np.full(rows, value) for name, value in self.constants.items()}
+
+    def _shifted(self, draft: Draft) -> dict[str, np.ndarray]:
+        """What a run's only file holds, its pushes read when the chair felt them."""
+        late, found = clock(self.entry, PUSHES_CLOCK).offset, dict(draft.values)
+        if late and draft.time is not None:
+            found |= {name: np.interp(draft.time - late, draft.time, push) for name, push in draft.inputs.items()}
+        return found
 
     def _on_rows(self, draft: Draft, name: str) -> np.ndarray:
         assert self.time is not None and draft.time is not None
@@ -126,6 +135,9 @@ class Recorded:
     @property
     def clocks(self) -> tuple[Clock, ...]:
         """What is left uncertain of the devices' clocks."""
+        if len(self.drafts) == 1:
+            sd = clock(self.entry, PUSHES_CLOCK).sd
+            return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].inputs), sd),) if sd else ()
         return tuple(
             Clock(d.part.device.name, frozenset(d.channels) & frozenset(CHANNEL_NAMES), _fmu_names(d.inputs), d.part.clock.sd)
             for d in self.drafts if d.part.clock.sd > 0)  # fmt: skip

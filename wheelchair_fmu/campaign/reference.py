@@ -69,9 +69,9 @@ F_rl = { column = "Moment left", unit = "N.m", sign = -1 }
 """
 CHANNEL_WORDS = """## Channels
 
-A column is matched by its whole header first, then without the unit behind it: `yaw_rate [deg/s]` is the channel `yaw_rate`.
-Any unit of the right dimension is converted. Cells may be empty: a gap is no reading. `time` and the pushes of both wheels (F or
-M, or a constant) are needed; of the rest, whatever was measured.
+A column is matched by its whole header first, then without the unit behind it: `yaw_rate [deg/s]` is the channel
+`yaw_rate`. Any unit of the right dimension is converted. Cells may be empty: a gap is no reading. `time` and the pushes of both
+wheels (F or M, or a constant) are needed; of the rest, whatever was measured.
 
 """
 PARAMETER_WORDS = """## Parameters: [chair], [tyre], [resistance], [wheel], [caster], [floor], [effect]

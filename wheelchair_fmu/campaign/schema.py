@@ -60,7 +60,8 @@ RUN = TableRecord("run", "One recording, or a cut of one. At least one run has t
         example='files = { imu = "run01_imu.csv", wheels = "run01_wheels.csv" }', fault="run 1: no device 'imu'"),
     Key("clocks", "table",
         "For each device what to add to its times so that all are alike; or a table with offset, sd (the standard deviation of "
-        "what may be left of it) and drift (s per s). `wheelchair sync` writes them.",
+        "what may be left of it) and drift (s per s). In a run of one file, `pushes` is its record of pushes. "
+        "`wheelchair sync` writes them.",
         unit="s", default="0", example="clocks = { imu = { offset = 0.412, sd = 0.002 } }",
         fault="run 1: clocks has 'imu', of which it has no file"),
     Key("name", "text", "What tables and figures call the run.", default="what its files' names have in common"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -10,10 +12,12 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import CHANNELS, Campaign, Fault, read
-from ..campaign import check as faults_of
+from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, read, recorded
 from ..faults import ERROR
 from ..loop.subject import known_parameters
+from ..report import preview
+from ..report.saving import save
+from ..writing import written
 from .files import print_json
 from .group import console
 
@@ -40,10 +44,14 @@ def measurements(folder: Path) -> Campaign:
 def check(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the faults as JSON.")] = False,
+    plot: Annotated[bool, typer.Option("--plot", help="Draw every signal of every run: preview.html and PNG.")] = False,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where to draw.")] = Path("out"),
 ) -> None:
     """Read a campaign and print all its faults: place, fact, cure. Exits with 1 where there are errors."""
     known = known_parameters()
-    faults = faults_of(campaign, known)
+    runs, faults = recorded(campaign, known)
+    if plot:
+        draw(campaign.name, runs, faults, out)
     errors = sum(fault.severity == ERROR for fault in faults)
     counts = {"errors": errors, "warnings": len(faults) - errors}
     if as_json:
@@ -54,6 +62,28 @@ def check(
             _tell(read(campaign, known))
     if errors:
         raise typer.Exit(1)
+
+
+def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Path) -> None:
+    """preview.html and preview.png in `out`, and their names on stderr: what was printed before may be JSON."""
+    seen = [preview.Run(run.name, run.entry.text("role"), dict(_signals(run))) for run in runs]
+    drawn = preview.figures(seen)
+    for i, figure in enumerate(drawn):
+        name = "preview.png" if len(drawn) == 1 else f"preview-{i + 1}.png"
+        with written(out / name) as beside:
+            save(figure, beside)
+        print(out / name, file=sys.stderr)
+    with written(out / "preview.html") as beside:
+        beside.write_text(preview.page(title, seen, [(f.severity, str(f)) for f in faults]), encoding="utf-8")
+    print(out / "preview.html", file=sys.stderr)
+
+
+def _signals(run: Recorded) -> Iterator[tuple[str, preview.Signal]]:
+    for draft in run.drafts:
+        for name, series in draft.values.items():
+            if draft.time is not None:
+                odd = draft.time[list(draft.spikes.get(name, {}))]
+                yield name, preview.Signal(name, BY_NAME[name].unit.name, draft.part.device.name, draft.time, series, odd)
 
 
 def _show(campaign: Path, faults: list[Fault], counts: dict[str, int]) -> None:

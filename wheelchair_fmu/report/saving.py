@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from PIL import Image
@@ -23,6 +23,14 @@ def save(figure: Figure, path: Path) -> None:
 
     with rc_context(STEADY):
         figure.savefig(path, dpi=150, metadata=UNDATED[path.suffix])
+
+
+def save_svg(figure: Figure, target: IO[str]) -> None:
+    """Write a figure as SVG text."""
+    from matplotlib import rc_context
+
+    with rc_context(STEADY):
+        figure.savefig(target, format="svg", metadata=UNDATED[".svg"])
 
 
 def save_film(frames: Iterable[np.ndarray], path: Path, pause: float) -> None:

@@ -28,12 +28,12 @@ from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
 from ..campaign.document import Entry
 from ..campaign.formats import open_table
+from ..campaign.layout import relaid
 from ..errors import CampaignError, Failure, UsageError
 from ..model.effects import bundled, load
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
 from ..writing import written
-from .layout import relaid
 
 SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
 MOST_BYTES = 200_000_000  # of one file

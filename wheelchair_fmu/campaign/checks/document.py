@@ -14,6 +14,7 @@ from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
 from ..formats import FORMATS, OPTIONS
 from ..noise import NAMES as NOISE_NAMES
+from ..recorded import PUSHES_CLOCK
 from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
 
 Known = Mapping[str, tuple[float, float]]
@@ -104,10 +105,11 @@ def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
             if not isinstance(file, str):
                 yield doc.fault("run.files", f"{entry.title}: the file of {name} is {file!r}", "put its name in quotes",
                                 entry.place)  # fmt: skip
+        clocks = entry.table("files") or {PUSHES_CLOCK: ""}
         for name, stands in entry.table("clocks").items():
-            if name not in entry.table("files"):
+            if name not in clocks:
                 fact = f"{entry.title}: clocks has {name!r}, of which it has no file"
-                yield doc.fault("run.clocks", fact, suggestion(name, entry.table("files")), entry.place)
+                yield doc.fault("run.clocks", fact, suggestion(name, clocks), entry.place)
             values = stands.items() if isinstance(stands, Mapping) else [("offset", stands)]
             for key, value in values:
                 if key not in ("offset", "sd", "drift"):

@@ -12,7 +12,7 @@ pytest.importorskip("tomlkit", reason="the workbench's libraries are not install
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wheelchair_fmu.workbench.layout import relaid
+from wheelchair_fmu.campaign.layout import relaid
 
 SAMPLE = (Path(__file__).parents[2] / "examples" / "sample-campaign" / "campaign.toml").read_text(encoding="utf-8")
 ODD = """# ours

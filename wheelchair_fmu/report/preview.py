@@ -1,0 +1,108 @@
+"""Every signal of every run on one page, before anything is concluded from it: a picture, and the same as HTML with all faults.
+
+A row for each channel, a column for each run, so that a sign, a unit or a clock that is wrong in one run stands out beside the
+others.
+"""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .canvas import blank
+from .figures import BLUE, GREY, ORANGE
+from .saving import save_svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+POINTS = 1500  # of a curve; more is drawn as the range of each of so many pieces
+ABREAST = 8  # runs in one picture
+STYLE = """body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:110rem;padding:0 1rem}
+body{color:#1a1a1a;background:#fff}
+h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a5200}svg{max-width:100%;height:auto}
+@media(prefers-color-scheme:dark){body{background:#16181c;color:#e8e8e8}.error{color:#ff9d9d}.warning{color:#ffd28a}
+svg{background:#fff}}"""
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """One channel of one run: times and values (n,), NaN in gaps; `odd` (m,) are times of readings that were left out."""
+
+    name: str
+    unit: str
+    device: str
+    time: np.ndarray
+    values: np.ndarray
+    odd: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run's signals, by channel."""
+
+    name: str
+    role: str
+    signals: dict[str, Signal]
+
+
+def figures(runs: Sequence[Run]) -> list[Figure]:
+    """One picture for each ABREAST runs."""
+    return [_figure(runs[i : i + ABREAST]) for i in range(0, len(runs), ABREAST)]
+
+
+def page(title: str, runs: Sequence[Run], faults: Iterable[tuple[str, str]]) -> str:
+    """The pictures and all faults (severity, text) as one HTML file that needs nothing else."""
+    drawn = "".join(_svg(figure) for figure in figures(runs))
+    said = "".join(f'<li class="{html.escape(kind)}">{html.escape(text)}</li>' for kind, text in faults)
+    listed = f"<h2>What is odd</h2><ul>{said}</ul>" if said else "<p>Nothing odd was found.</p>"
+    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
+    return (f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>'
+            "<p>Each row is a channel, each column a run; all rows have one scale. Crosses are readings that were left out.</p>"
+            f"{drawn}{listed}</body></html>\n")  # fmt: skip
+
+
+def _svg(figure: Figure) -> str:
+    held = io.StringIO()
+    save_svg(figure, held)
+    return held.getvalue().partition("<svg")[1] + held.getvalue().partition("<svg")[2]
+
+
+def _figure(runs: Sequence[Run]) -> Figure:
+    names = list(dict.fromkeys(name for run in runs for name in run.signals))
+    figure = blank(2.2 + 2.4 * len(runs), 0.8 + 1.1 * max(len(names), 1))
+    axes = figure.subplots(max(len(names), 1), max(len(runs), 1), sharex="col", sharey="row", squeeze=False)
+    for column, run in enumerate(runs):
+        axes[0][column].set_title(f"{run.name} ({run.role})" if run.role else run.name, fontsize=9)
+        axes[-1][column].set_xlabel("time [s]", fontsize=8)
+        for row, name in enumerate(names):
+            _panel(axes[row][column], run.signals.get(name))
+    for row, name in enumerate(names):
+        one = next(run.signals[name] for run in runs if name in run.signals)
+        of = f"\n{one.device}" if one.device else ""
+        axes[row][0].set_ylabel(f"{name}\n[{one.unit}]{of}", fontsize=8, rotation=0, ha="right", va="center")
+    return figure
+
+
+def _panel(ax: Axes, signal: Signal | None) -> None:
+    ax.tick_params(labelsize=7)
+    ax.axhline(0, color=GREY, linewidth=0.5)
+    if signal is None:
+        ax.text(0.5, 0.5, "not recorded", transform=ax.transAxes, ha="center", va="center", fontsize=7, color=GREY)
+        return
+    there = np.isfinite(signal.values)
+    time, values = signal.time[there], signal.values[there]
+    if len(time) <= POINTS:
+        ax.plot(time, values, color=BLUE, linewidth=0.7)
+    else:
+        pieces = np.array_split(np.arange(len(time)), POINTS // 2)
+        low, high = (np.array([f(values[p]) for p in pieces]) for f in (np.min, np.max))
+        ax.fill_between([time[p[0]] for p in pieces], low, high, color=BLUE, linewidth=0.5)
+    if signal.odd.size and len(time):
+        ax.plot(signal.odd, np.interp(signal.odd, time, values), "x", color=ORANGE, markersize=5)
