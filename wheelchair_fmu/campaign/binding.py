@@ -15,12 +15,13 @@ from .document import Document, number
 
 @dataclass(frozen=True)
 class Binding:
-    """Column `index` of a table feeds `channel`: SI value = scale · number in the file."""
+    """Column `index` of a table feeds `channel`: SI value = scale · number in the file, which may be of a turning wheel."""
 
     channel: Channel
     index: int
     header: str
     scale: float
+    through_radius: bool = False
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,9 @@ def _scaled(
         fact = f"[columns] gives a radius, but {unit!r} needs none"
         faults.append(run_fault(file, fact, "remove the radius, or correct the unit", 1, header, WARNING))
     try:
-        return Binding(channel, index, header, want.sign * _factor(device, channel, unit, want.radius)), faults
+        scale = want.sign * _factor(device, channel, unit, want.radius)
+        turns = channel.rotary is not None and same_dimension(unit, channel.rotary.name)
+        return Binding(channel, index, header, scale, turns), faults
     except UnitError as error:
         faults.append(run_fault(file, error.fact, error.cure, 1, header))
         return Binding(channel, index, header, 1.0), faults

@@ -82,4 +82,5 @@ BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + I
 BY_FMU_NAME: dict[str, Channel] = {channel.fmu: channel for channel in CHANNELS + INPUTS}
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
+PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..units import UnitError, quantity
-from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
+from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, PUSH_NAMES
 from .document import Document, number
 from .recorded import Recorded
 from .series import estimate
 
-NAMES = (*CHANNEL_NAMES, "F_rl", "F_rr", "M_rl", "M_rr")  # what [noise] may name
+NAMES = (*CHANNEL_NAMES, *PUSH_NAMES)  # what [noise] may name
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import CampaignError
 from ..faults import ERROR, Fault, once
 from .axes import SAE
-from .channels import BY_NAME, CHANNEL_NAMES
+from .channels import BY_NAME, CHANNEL_NAMES, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, parameter_tables
 from .devices import Part, parts, point_of
@@ -20,6 +20,7 @@ from .draft import prepare
 from .noise import gather
 from .recorded import Recorded
 from .records import Campaign, Run
+from .rims import Rim, corrected, rims, unasked, unfounded
 
 
 def read(path: str | Path, known_parameters: Known | None = None) -> Campaign:
@@ -64,7 +65,10 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
             left[part.file] -= 1
         if not any(left[part.file] for part in some):
             tables.clear()  # cuts of one file stand together as a rule; what is needed again is read again
-    assembly = Assembly(doc, tuple(runs), gather(doc, runs))
+    asked = [name for name, value in doc.table("nuisance").items() if name in PUSH_NAMES and value is not False]
+    shown = rims(runs, asked) if asked else {}
+    faults += [*unfounded(runs, shown), *unasked(runs, asked)]
+    assembly = Assembly(doc, tuple(runs), gather(doc, runs), shown)
     if runs:
         faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]
     return assembly, once(faults)
@@ -111,14 +115,15 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
         noise_estimated=noise.estimated,
         nuisance=tuple(channel for channel in CHANNEL_NAMES if channel in nuisance),
         nuisance_sd=noise.nuisance_sd,
-        runs=tuple(_run(run, name) for run, name in zip(runs, names, strict=True)),
+        runs=tuple(_run(run, name, assembly.rims.get(run.entry.place, {})) for run, name in zip(runs, names, strict=True)),
         fingerprint=_fingerprint(doc),
         warnings=warnings,
     )
 
 
-def _run(run: Recorded, name: str) -> Run:
+def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
     entry = run.entry
+    inputs, unsure = corrected(run, of)
     assert run.time is not None  # a file without time is an error, so no campaign is made
     return Run(
         name=name,
@@ -128,9 +133,10 @@ def _run(run: Recorded, name: str) -> Run:
         u0=run.u0,
         set=_numbers(dict(flatten(entry.table("set")))),
         time=run.time,
-        inputs={BY_NAME[c].fmu: series for c, series in run.inputs.items()},
+        inputs={BY_NAME[c].fmu: series for c, series in inputs.items()},
         channels=run.measured,
         clocks=run.clocks,
+        baselines=unsure,
         input_steps=run.input_steps,
     )
 

@@ -23,6 +23,7 @@ COMMANDS = {
     "sweep": "Simulate every chair of a plan.",
     "tyre": "Tyres identified from rig data.",
     "check": "Read a campaign and print all its faults: place, fact, cure.",
+    "sync": "Find the clocks of a campaign's devices.",
     "compare": "Simulate every run, and say how far off the model is.",
     "diagnose": "Say which physical effect is missing, with the evidence.",
     "fleet": "Diagnose every campaign of a fleet.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from ...faults import ERROR, WARNING, Fault
@@ -11,17 +11,19 @@ from ..channels import BY_NAME
 from ..document import Document
 from ..noise import Noise
 from ..recorded import Recorded
+from ..rims import Rim
 
 RATIO = 20.0  # between stated and visible noise
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """The campaign.toml, the runs that could be read, and their noise."""
+    """The campaign.toml, the runs that could be read, their noise, and what their rims show where nobody touches them."""
 
     doc: Document
     runs: tuple[Recorded, ...]
     noise: Noise
+    rims: Mapping[int, Mapping[str, Rim]]
 
 
 def column_in_no_run(all_: Assembly) -> Iterator[Fault]:

@@ -1,0 +1,176 @@
+"""Pushes that were recorded by another clock than the readings in the same file.
+
+A force record that is late in every run is a property of the instrument, and an effect of its own; nobody here touches it. One
+run whose pushes are shifted beside those of all others has been put together wrongly. A rigid body tells: what its mass and its
+drag are the other runs say, so that within one run only the shift is left to be found. Two equations do so apart, since what
+makes a chair go on and what turns it know nothing of each other, and each has errors of its own that all runs share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .equation import Equation
+from .lag import Lag, find
+from .signals import Device, Signal, devices
+from .smoothing import Smooth
+from .views import FORWARDS, TURNS, View, equation, rigid
+
+WAYS = (FORWARDS, TURNS)
+ENOUGH = 3  # runs that must tell a shift before one of them can be odd
+ODD = 5.0  # standard errors from the others, and
+LEAST = 0.012  # s, below which nobody puts a file together anew
+ALIKE = 4.0  # standard errors that the two equations may differ by in one run: a clock shifts both
+REWEIGHTED = 8  # times
+ROUNDS = 2  # of coefficients at the shift that is common, which needs coefficients
+
+Equations = Mapping[View, Equation]  # of one run and one way
+
+
+@dataclass(frozen=True)
+class Shift:
+    """`seconds` to be added to the time of a run's pushes, so that they make the motion that was read, beside what is to be
+    added in all runs; with its standard error, which holds the scatter between runs. `way` says what told it. Where not `unique`
+    another shift does nearly as well (strokes that are all alike), and `seconds` is a guess."""
+
+    seconds: float
+    se: float
+    unique: bool
+    way: str
+
+
+def odd_ones_out(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
+    """The runs whose pushes have a clock of their own, from the signals of each run, which are of one file and have its clock.
+
+    One after the other, the oddest first: it spoils what the others are compared with. Empty where less than ENOUGH runs tell
+    their shift, and where half of them would be odd.
+    """
+    ready = _ready(runs)
+    odd: list[str] = []
+    while True:
+        shifts = _relative(ready, [n for n in ready if n not in odd])
+        named = {n: s for n, s in shifts.items() if _is_odd(s)}
+        new = [n for n in named if n not in odd]
+        if not new:
+            break
+        odd.append(max(new, key=lambda n: abs(named[n].seconds) / named[n].se))
+    return named if 2 * len(named) < len(shifts) else {}
+
+
+def push_shifts(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
+    """The shift of each run that has pushes and motion enough to tell one, beside all the others."""
+    ready = _ready(runs)
+    return _relative(ready, list(ready))
+
+
+def _is_odd(s: Shift) -> bool:
+    return s.unique and abs(s.seconds) > max(ODD * s.se, LEAST)
+
+
+def _ready(runs: Mapping[str, Iterable[Signal]]) -> dict[str, dict[str, Equations]]:
+    """Equations by run and way."""
+    ready = {}
+    for name, signals in runs.items():
+        found = devices(signals)
+        if len(found) > 1:
+            raise ValueError(f"run {name} has signals of {len(found)} devices; here each run has one, offsets() is for several")
+        for device in found.values():
+            ready[name] = {way: _equations(device, way) for way in WAYS}
+    return ready
+
+
+def _equations(device: Device, way: str) -> dict[View, Equation]:
+    return {v: equation(v, device, device) for v in rigid(device, way)}
+
+
+def _relative(ready: Mapping[str, Mapping[str, Equations]], pool: Sequence[str]) -> dict[str, Shift]:
+    """Each run beside the others of the pool, by the way or ways that are unique for it."""
+    ways: dict[str, list[Shift]] = {}
+    for way in WAYS:
+        lags = _lags({n: e[way] for n, e in ready.items() if e[way]}, pool)
+        for name, lag in lags.items():
+            others = [o for n, o in lags.items() if n in pool and n != name and o.unique]
+            if len(others) + 1 >= ENOUGH:
+                common, se = _common(others)
+                away = Shift(lag.seconds - common, float(np.hypot(lag.se, se)), lag.unique, way)
+                ways.setdefault(name, []).append(away)
+    return {name: _together(found) for name, found in ways.items()}
+
+
+def _together(found: Sequence[Shift]) -> Shift:
+    """What two equations say of one clock; where they contradict each other it is not the clock."""
+    telling = [s for s in found if s.unique] or list(found)
+    weights = np.array([1 / s.se**2 for s in telling])
+    mean = float(weights @ [s.seconds for s in telling] / weights.sum())
+    agree = all(abs(s.seconds - mean) < ALIKE * s.se for s in telling)
+    return Shift(mean, float(weights.sum() ** -0.5), agree and telling[0].unique, " and ".join(s.way for s in telling))
+
+
+def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, Lag]:
+    """Each run's lag with the coefficients of the other runs in the pool, by which only an offset of its own is free."""
+    common, lags = 0.0, {}
+    for _ in range(ROUNDS):
+        grams = {n: {v: _gram(e, common) for v, e in of.items()} for n, of in runs.items()}
+        lags = {}
+        for name, own in runs.items():
+            others = [of for n, of in grams.items() if n != name and n in pool]
+            lag = find([_known(e, _coefficients([of[v] for of in others if v in of])) for v, e in own.items()])
+            if lag is not None:
+                lags[name] = lag
+        telling = [lag for n, lag in lags.items() if lag.unique and n in pool]
+        before, common = common, _common(telling)[0] if telling else 0.0
+        if abs(common - before) < LEAST:
+            break
+    return lags
+
+
+def _gram(e: Equation, shift: float) -> tuple[np.ndarray, int]:
+    """Products (k + 1, k + 1) of what is known, the pushes and the target, less their means, and how many samples they have."""
+    rows = np.array([*e.own[1:], *(s.at(e.time - shift)[0] for s in e.seen), e.target])
+    rows = rows[:, np.isfinite(rows).all(axis=0)]
+    rows = rows - rows.mean(axis=1, keepdims=True) if rows.shape[1] else rows
+    return rows @ rows.T, rows.shape[1]
+
+
+def _coefficients(grams: Sequence[tuple[np.ndarray, int]]) -> np.ndarray | None:
+    """Of what is known and of the pushes, by least squares over runs. A run that fits worse than
+    most counts less, so that one with a clock of its own spoils little."""
+    grams = [(g, n) for g, n in grams if n > len(g)]
+    if not grams:
+        return None
+    weights, found = np.ones(len(grams)), np.zeros(len(grams[0][0]) - 1)
+    for _ in range(REWEIGHTED):
+        total = sum(w * g for w, (g, _) in zip(weights, grams, strict=True))
+        size = np.sqrt(np.diag(total)[:-1])
+        size[size == 0] = 1.0  # a column that no run moves
+        normal, right = total[:-1, :-1] / np.outer(size, size), total[:-1, -1] / size
+        found = np.linalg.lstsq(normal, right, rcond=1e-9)[0] / size
+        left = np.append(found, -1.0)
+        power = np.array([float(left @ g @ left) / n for g, n in grams])
+        weights = 1 / np.maximum(power, max(float(np.median(power)), 1e-300))
+    return found
+
+
+def _known(e: Equation, coefficients: np.ndarray | None) -> Equation:
+    """The equation with everything but its offset put in; as it is where nobody else knows the coefficients."""
+    if coefficients is None:
+        return e
+    own, pushes = np.split(coefficients, [len(e.own) - 1])
+    drag = own @ e.own[1:]
+    first = e.seen[0]
+    value, slope = (sum(c * getattr(s, part) for c, s in zip(pushes, e.seen, strict=True)) for part in ("value", "slope"))
+    force = Smooth(first.start, first.step, value, slope)
+    return replace(e, target=e.target - drag, slope=e.slope - np.gradient(drag, first.step), own=e.own[:1], seen=(force,))
+
+
+def _common(lags: Sequence[Lag]) -> tuple[float, float]:
+    """Weighted median, and its standard error with the scatter of the runs about it: what one more run may be away."""
+    seconds, ses = (np.array([getattr(lag, part) for lag in lags]) for part in ("seconds", "se"))
+    order = np.argsort(seconds)
+    weights = 1 / ses[order] ** 2
+    middle = float(np.interp(0.5 * weights.sum(), np.cumsum(weights) - 0.5 * weights, seconds[order]))
+    scatter = 1.4826 * float(np.median(np.abs(seconds - middle)))
+    return middle, float(np.hypot(scatter, np.sqrt(np.pi / 2 / weights.sum())))  # of a median: π/2 times a mean's variance

@@ -1,0 +1,113 @@
+"""The clocks of a campaign's devices: found from what they see alike, and written into campaign.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..writing import written
+from .clocks import Clock, Shift, Signal, odd_ones_out, offsets
+from .clocks.signals import rate
+from .document import Document
+from .layout import relaid
+from .recorded import PUSHES_CLOCK, Recorded
+
+PLACES = 5  # decimals of a second that are written
+DRIFTS = 3.0  # standard errors from which a drift is written
+
+
+@dataclass(frozen=True)
+class RunClocks:
+    """What was found of one run: a clock for each device but the first, whose times the others are brought to."""
+
+    run: Recorded
+    reference: str
+    clocks: Mapping[str, Clock | Shift]
+
+    def seconds(self, device: str) -> float:
+        """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows."""
+        clock = self.clocks.get(device)
+        return 0.0 if clock is None else clock.seconds if isinstance(clock, Shift) else clock.offset
+
+    def why(self, device: str) -> str:
+        """In words: what told it, or what is missing."""
+        clock = self.clocks[device]
+        return f"its pushes against its readings, by {clock.way}" if isinstance(clock, Shift) else clock.why
+
+    @property
+    def sure(self) -> dict[str, dict[str, float]]:
+        """What may be written, by device."""
+        found = {}
+        for device, clock in self.clocks.items():
+            if isinstance(clock, Shift):
+                found[device] = {"offset": round(clock.seconds, PLACES), "sd": round(clock.se, PLACES)}
+            elif clock.sure:
+                found[device] = {"offset": round(clock.offset, PLACES), "sd": round(clock.se, PLACES)}
+                if abs(clock.drift) > DRIFTS * clock.drift_se:
+                    found[device]["drift"] = float(f"{clock.drift:.3g}")
+        return found
+
+
+def signals(run: Recorded) -> Iterator[Signal]:
+    """Everything that the devices of a run measured, each on its own clock."""
+    for draft in run.drafts:
+        if draft.time is None:
+            continue
+        clock = draft.part.clock
+        own = (draft.time - clock.offset) / (1 + clock.drift)
+        device = draft.part.device
+        for name, series in draft.values.items():
+            if name not in draft.noise:
+                yield Signal(device.name, name, own, series)
+        for name, angle in draft.angles.items():  # every sample of it: a speed over spans has lost some of when it was
+            middle, speed = rate(own, angle)
+            yield Signal(device.name, name.replace("angle", "speed"), middle, (device.radius or 1.0) * speed)
+
+
+SHOWN = ("wheel_speed_l", "wheel_speed_r", "u", "x", "yaw_rate", "a_x", "F_rl", "F_rr", "M_rl", "M_rr")  # the first there is
+
+def alike(run: Recorded) -> tuple[str, dict[str, tuple[np.ndarray, np.ndarray]]]:
+    """What to draw of a run's devices beside each other, and for each its times and values (n,) on its own clock, less their
+    median and in units of their range: a speed, or what comes nearest to it."""
+    by_device: dict[str, list[Signal]] = {}
+    for signal in signals(run):
+        by_device.setdefault(signal.device, []).append(signal)
+    curves = {}
+    for device, own in by_device.items():
+        best = next((s for name in SHOWN for s in own if s.quantity == name and np.isfinite(s.values).sum() > 1), None)
+        if best is not None:
+            there = np.isfinite(best.values)
+            time, values = best.time[there], best.values[there]
+            if best.quantity in ("x", "y"):
+                time, values = 0.5 * (time[1:] + time[:-1]), np.diff(values) / np.diff(time)
+            low, middle, high = np.percentile(values, [1, 50, 99])
+            curves[device] = (time, (values - middle) / ((high - low) or 1.0))
+    return "speed, or push", curves
+
+
+def find(runs: tuple[Recorded, ...]) -> list[RunClocks]:
+    """The clocks of every run with several devices; and of runs of one file, whose pushes belong to another time than the
+    readings beside them."""
+    found = []
+    for run in (r for r in runs if len(r.drafts) > 1):
+        reference = run.drafts[0].part.device.name
+        known = offsets(signals(run), reference=reference)
+        found.append(RunClocks(run, reference, {d: c for d, c in known.items() if d != reference}))
+    alone = {str(i): tuple(signals(r)) for i, r in enumerate(runs) if len(r.drafts) == 1}
+    for i, shift in odd_ones_out(alone).items():
+        found.append(RunClocks(runs[int(i)], "readings", {PUSHES_CLOCK: shift}))
+    return found
+
+
+def write(doc: Document, found: list[RunClocks]) -> None:
+    """Put what is sure into campaign.toml, which keeps its comments and layout. Raises OSError."""
+    content: dict[str, Any] = {**doc.data, "run": [dict(entry) for entry in doc.data["run"]]}
+    for one in found:
+        if one.sure:
+            entry = content["run"][one.run.entry.place]
+            entry["clocks"] = {**entry.get("clocks", {}), **one.sure}
+    with written(doc.path) as beside:
+        beside.write_text(relaid(doc.raw.decode("utf-8-sig"), content), encoding="utf-8")
