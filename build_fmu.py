@@ -6,9 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from wheelchair_fmu.contracts.own import catalogue_of
 from wheelchair_fmu.errors import WheelchairError
 from wheelchair_fmu.fmu.build import NAMES, build_each
-from wheelchair_fmu.model.effects import catalogue_of
 from wheelchair_fmu.model.variant import Variant, read_variant
 
 

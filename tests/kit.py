@@ -1,34 +1,17 @@
-"""What several tests need: evaluating a model, random places to evaluate it at, its mirror image; a campaign's own settings."""
+"""What several tests need: a chair with effects, random places to evaluate it at; a campaign's own settings."""
 
 from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
-import casadi as cs
 import numpy as np
 import pandas as pd
 
+from wheelchair_fmu.contracts import places
+from wheelchair_fmu.contracts.places import Place
 from wheelchair_fmu.model.variant import Variant
-from wheelchair_fmu.model.wheelchair import Model
-from wheelchair_fmu.quantities import Quantity
-
-
-@dataclass(frozen=True)
-class Place:
-    """Somewhere to evaluate a model: states (nx,), inputs (nw,), parameters (np,)."""
-
-    x: np.ndarray
-    w: np.ndarray
-    p: np.ndarray
-
-
-def evaluate(model: Model, place: Place, *what: cs.SX) -> list[np.ndarray]:
-    function = cs.Function("evaluate", [model.x, model.w, model.p], list(what))
-    values = function.call([place.x, place.w, place.p])
-    return [np.array(v.full()).squeeze(-1) if v.shape[1] == 1 else v.full() for v in values]
 
 
 def variant_with(*ids: str, size: float = 1.0) -> Variant:
@@ -39,48 +22,8 @@ def variant_with(*ids: str, size: float = 1.0) -> Variant:
 
 
 def anywhere(variant: Variant, rng: np.random.Generator, speed: float = 1.0, spread: float = 0.1) -> Place:
-    """A random motion about `speed`, random pushes, and parameters off their defaults by up to `spread`."""
-    model = variant.model()
-    x = rng.normal(0, 0.3, model.x.numel())
-    x[3] += speed
-    w = np.array([i.start for i in model.inputs]) + rng.uniform(0, 0.5, len(model.inputs)) * np.array(
-        [min(i.nominal, i.upper) for i in model.inputs]
-    )
-    p = variant.vector()
-    loose = np.array([not q.choices for q in model.parameters])
-    p = np.where(loose, p * (1 + spread * rng.uniform(-1, 1, len(p))), p)
-    return Place(x, w, np.clip(p, [q.lower for q in model.parameters], [q.upper for q in model.parameters]))
-
-
-def mirrored(records: tuple[Quantity, ...], values: np.ndarray) -> np.ndarray:
-    """The values as a mirror along the chair shows them."""
-    names = [n for r in records for n in r.names]
-    out = np.empty_like(values)
-    for record in records:
-        sign, partner = (-1 if record.mirror[0] == "-" else 1), record.mirror[1:]
-        places = [names.index(n) for n in record.names]
-        if partner == "swap":
-            others = places[::-1]
-        elif partner:
-            others = [names.index(n) for n in _partner(records, record, partner).names]
-        else:
-            others = places
-        out[others] = sign * values[places]
-    return out
-
-
-def _partner(records: tuple[Quantity, ...], record: Quantity, partner: str) -> Quantity:
-    """By full name, or by symbol within the same effect or group."""
-    group = record.name.rpartition(".")[0]
-    same = [r for r in records if r.name == partner or (r.symbol == partner and r.name.startswith(group))]
-    assert len(same) == 1, f"{record.name} has no partner {partner}"
-    return same[0]
-
-
-def mirrored_place(model: Model, place: Place) -> Place:
-    return Place(
-        mirrored(model.states, place.x), mirrored(model.inputs, place.w), mirrored(model.parameters, place.p)
-    )
+    """A random motion of this chair about `speed`, as the contracts have it."""
+    return places.anywhere(variant.model(), variant.vector(), rng, speed, spread)
 
 
 # what runs of the sample campaign may set, each another kind

@@ -7,6 +7,7 @@
     └── Failure                 the data or the model fails what was asked (exit code 1)
         ├── FileError           faults in files; carries all of them
         │   ├── CampaignError   those of a campaign
+        │   ├── EffectError     those of effects of a user's own
         │   └── SystemStructureError  those of an .ssp
         ├── ModelError          a model that cannot be assembled
         ├── SimulationError     a simulation that cannot go on
@@ -48,6 +49,10 @@ class FileError(Failure):
 
 class CampaignError(FileError):
     """Faults in a campaign's files."""
+
+
+class EffectError(FileError):
+    """Faults in effect files, and contracts that their effects break."""
 
 
 class SystemStructureError(FileError):

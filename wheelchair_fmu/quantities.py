@@ -61,6 +61,7 @@ N_M_S = Unit("N.m.s/rad", kg=1, m=2, s=-1, rad=-1, quantity="RotationalDamping")
 PER_N = Unit("1/N", kg=-1, m=-1, s=2, quantity="RatioPerForce")
 W = Unit("W", kg=1, m=2, s=-3, quantity="Power")
 BAR = Unit("bar", quantity="Pressure")  # pressure enters only as a ratio, so its own dimension never meets kg, m, s
+UNITS = {unit.name: unit for unit in tuple(globals().values()) if isinstance(unit, Unit) and unit is not BAR}
 
 
 def per_second(unit: Unit) -> Unit:
@@ -102,8 +103,10 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Parameter(Quantity):
-    """A constant of the model. In an effect, `off` is its default and `smallest_interesting` its δ."""
+    """A constant of the model. In an effect, `off` is its default and `smallest_interesting` its δ; a `mirror` that is given
+    is a claim that the effect is held to."""
 
+    mirror: str = ""  # as "+" where nothing is given
     default: float = 0.0
     off: float | None = None
     lower: float = -inf
@@ -115,9 +118,12 @@ class Parameter(Quantity):
     fixed: bool = False  # may not change once the simulation has started
     uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
     estimated: bool = True  # False for an effect's constants, which no fit touches
+    mirror_given: bool = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        object.__setattr__(self, "mirror_given", bool(self.mirror))
+        object.__setattr__(self, "mirror", self.mirror or "+")
         if self.off is not None:
             object.__setattr__(self, "default", self.off)
         if self.nominal is None:

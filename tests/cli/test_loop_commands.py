@@ -99,7 +99,7 @@ def test_an_effect_of_ones_own(tmp_path):
     folder = tmp_path / "effects"
     assert run("effects", "new", "my_drag", "-o", str(folder)).exit_code == 0
     file = folder / "my_drag.py"
-    file.write_text(file.read_text().replace("-q * u", "-q * u * magnitude(u, v_eps)"))
+    file.write_text(file.read_text().replace("-q * u", "-q * u * magnitude(u, v_eps)").replace("N_S_M", "N_S2_M2"))
     done = run("simulate", "coast-down", "--effects", str(folder), "--set", "effect.my_drag.q=5", "-o", str(tmp_path / "out"))
     assert done.exit_code == 0, done.output
     last = (tmp_path / "out" / "coast-down.csv").read_text().splitlines()

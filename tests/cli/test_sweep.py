@@ -70,7 +70,7 @@ def test_effects_of_ones_own_are_in_the_sweep(tmp_path):
     assert slowed < without - 0.02
     (folder / "my_drag.py").write_text("EFFECT = 1\n")
     spoilt = wheelchair(*words, "--effects", folder)
-    assert spoilt.exit_code == 1 and f"{folder / 'my_drag.py'}: no record EFFECT" in spoilt.stderr
+    assert spoilt.exit_code == 1 and f"{folder / 'my_drag.py'}: EFFECT is of type int" in spoilt.stderr
 
 
 def test_the_examples_indices_say_what_the_paper_says(tmp_path):

@@ -1,18 +1,24 @@
-"""What every effect in the catalogue must satisfy, from its record alone."""
+"""What every effect in the catalogue must satisfy, from its record alone; and that one which does not is found out."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
+import casadi as cs
 import numpy as np
 import pytest
 
-from tests.kit import Place, anywhere, evaluate, variant_with
+from tests.kit import anywhere, variant_with
+from wheelchair_fmu.contracts import Subject, breaches, mirror
+from wheelchair_fmu.contracts.places import evaluate
 from wheelchair_fmu.errors import ModelError
 from wheelchair_fmu.model.effects import bundled
-from wheelchair_fmu.model.stage import Effect, adds
-from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.expression import law
+from wheelchair_fmu.model.smooth import magnitude
+from wheelchair_fmu.model.stage import Contribution, Effect, Row, adds, scales
 from wheelchair_fmu.model.wheelchair import assemble
+from wheelchair_fmu.quantities import N_S_M, N, Parameter, State
 
 EFFECTS = bundled()
 
@@ -22,74 +28,77 @@ def effect(request) -> Effect:
     return EFFECTS[request.param]
 
 
-def test_record_is_complete(effect):
+def test_it_keeps_every_contract(effect):
+    assert breaches(effect) == []
     assert re.fullmatch(r"[a-z][a-z_]*", effect.id)
-    assert effect.title
     assert effect.title[0].islower()
-    for p in effect.parameters:
-        assert p.off == 0 and p.default == 0, "off is zero"
-        assert p.smallest_interesting and p.smallest_interesting > 0
-        assert p.lower <= 0 < p.smallest_interesting < p.upper
-        assert np.isfinite([p.lower, p.upper]).all(), "every parameter has bounds"
-        assert p.meaning and p.source
 
 
-def test_neutral_when_off(effect):
-    """With its parameters at zero the chair moves as without the effect."""
-    on = Variant().with_effects([effect.id])
-    off = Variant(choice=on.choice)
-    rng = np.random.default_rng(11)
-    for speed in (1.0, 0.0, -0.6):
-        place = anywhere(off, rng, speed)
-        base = off.model()
-        f0, y0 = evaluate(base, place, base.f, base.y)
-        model = on.model()
-        extra = model.x.numel() - base.x.numel()
-        x = np.concatenate([place.x, np.zeros(extra)])
-        p = np.concatenate([place.p, on.vector()[len(place.p) :]])
-        x = _settled(model, x, place.w, p)
-        f1, y1 = evaluate(model, Place(x, place.w, p), model.f, model.y)
-        np.testing.assert_allclose(f1[: len(f0)], f0, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(y1[: len(y0)], y0, rtol=1e-12, atol=1e-12)
+def test_what_every_model_keeps_an_effect_keeps_whether_it_claims_it_or_not(effect):
+    assert mirror(Subject.of([effect])) == []
 
 
-def _settled(model, x, w, p):
-    """Algebraic states in their places."""
-    from wheelchair_fmu.engine.kernel import kernel
-
-    project = kernel(model).functions["project"]
-    for _ in range(5):
-        x = project(x, w, p).full().ravel()
-    return x
+def an(law, *, to="F_x", unit=N_S_M, kind=adds, mirror="", **more) -> Effect:
+    """An effect whose only term is this law of q."""
+    usual = {"off": 0.0, "smallest_interesting": 0.5, "lower": 0.0, "upper": 9.0, "source": "chosen"}
+    q = Parameter("q", unit, "its size", mirror=mirror, **(usual | more))
+    return Effect("mine", "what I think", (q,), (law if isinstance(law, Contribution) else kind(to, law),))
 
 
-def test_it_does_something(effect):
-    """At its smallest interesting size something changes: the equations, the mass or a reading."""
-    if effect.delays_record:
-        pytest.skip("shifts the record, not the chair")
-    variant = variant_with(effect.id)
-    model, rng = variant.model(), np.random.default_rng(12)
-    place = anywhere(variant, rng, 1.0, spread=0)
-    off = Place(place.x, place.w, Variant().with_effects([effect.id]).vector())
-    on = evaluate(model, place, model.f, model.mass, model.y)
-    without = evaluate(model, off, model.f, model.mass, model.y)
-    assert any(not np.array_equal(a, b) for a, b in zip(on, without, strict=True))
+LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
 
 
-def test_opposes_motion_where_it_says_so(effect):
-    variant, rng = variant_with(effect.id), np.random.default_rng(13)
-    model = variant.model()
-    off = Variant().with_effects([effect.id]).vector()
-    promises = [c for c in effect.contributions if c.opposes]
-    if not promises:
-        pytest.skip("promises nothing")
-    for contribution in promises:
-        for speed in np.linspace(-1, 1, 21):
-            place = anywhere(variant, rng, speed, spread=0)
-            force, velocity = evaluate(model, place, model.quantities[contribution.to],
-                                       model.quantities[contribution.opposes])  # fmt: skip
-            (without,) = evaluate(model, Place(place.x, place.w, off), model.quantities[contribution.to])
-            assert np.all((force - without) * velocity <= 1e-12)
+@pytest.mark.parametrize(("effect", "contract", "fact", "cure"), [
+    (an(lambda q, u: -q * u, unit=N), "units", "its term in F_x comes out in W where N belongs",
+     "give q the unit N.s/m instead of N"),
+    (an(law("-q * u"), unit=N), "units", "comes out in W where N belongs", "give q the unit N.s/m"),
+    (an(lambda q, u: -q * magnitude(u, 0.01)), "units", "adds unlike quantities, or a plain number", "constants=("),
+    (an(law("-q * magnitude(u, 0.01)")), "units", "adds unlike quantities", "0.1 [m/s]"),
+    (an(lambda q, u: 1 + q * u, to="F_t", kind=scales), "units", "its factor of F_t has no unit, but 1 belongs", ""),
+    (replace(an(lambda lagged: -lagged), rows=(Row(LAGGED, lambda q: q, lambda u: u),)), "units",
+     "rate / mass of lagged comes out in m/kg where kg.m/s3 belongs", "change the law, or the units of q"),
+    (an(lambda q, u: q * u, kind=scales), "neutral when off", "should be", "each factor 1"),
+    (an(lambda q, u: 0 * q * u), "does something", "with q = 0.5 N.s/m nothing changes", "let a law read"),
+    (an(lambda q, u: -q * cs.sqrt(u) * cs.sqrt(u)), "finite at standstill", "the slope of the equation of u by u is nan",
+     "magnitude(u, v_eps)"),
+    (an(lambda q, u, v_eps: q * v_eps * v_eps / u), "finite at standstill", "is nan", "away from zero"),
+    (an(lambda q, u: -q * cs.sign(u), unit=N), "exact derivative",
+     "at rest its term in F_x changes by -5e+07 N per m/s of u, but its derivative says 0", "nothing that jumps"),
+    (an(adds("F_x", lambda q, u: q * u, opposes="u")), "passive", "opposes u, but adds", "turn the sign"),
+    (an(adds("F_x", lambda q, u: -q * u, opposes="u"), lower=-1.0), "passive", "with its parameters negative", "set lower=0.0"),
+    (an(adds("F_x", lambda q, u: -q * u, opposes="w")), "passive", "opposes='w' is no quantity", ""),
+    (an(lambda q: q, to="F_y", unit=N, mirror="+"), "mirror", "along the chair, with mirror= of q \"+\"", 'mirror="-"'),
+    (an(lambda q: q, to="F_y", unit=N, mirror="-p"), "mirror", "no partner p", "symbol behind the sign"),
+    (an(lambda q, u: -q * u, off=1.0), "record", "q is off at 1.0", "write off=0.0"),
+    (an(lambda q, u: -q * u, smallest_interesting=None), "record", "smallest_interesting of q is None", "N.s/m"),
+    (an(lambda q, u: -q * u, upper=float("inf")), "record", "0 to inf", "finite"),
+    (an(lambda q, u: -q * u, upper=0.2), "record", "0.5 N.s/m is of interest", "lower ≤ 0"),
+    (an(lambda q, u: -q * u, source=""), "record", "q has no source", "in quotes"),
+    (an(lambda q, u: -q * u, unit="N"), "record", "the unit of q is 'N'", "wheelchair_fmu.quantities"),
+    (an("-q * u"), "record", "the law of its term in F_x is a str", "function"),
+    (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
+    (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
+    (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
+    (an(lambda q, nonsense: q * nonsense), "equations", "reads 'nonsense', which is no quantity", "effects quantities"),
+    (an(lambda q, u: -q * u, to="F_z"), "equations", "'F_z'", "did you mean"),
+    (an(lambda q, u: -q * u if u > 0 else 0), "equations", "its law fails in line", "without if"),
+])  # fmt: skip
+def test_what_breaks_a_contract_is_named_with_its_cure(effect, contract, fact, cure):
+    found = breaches(effect)
+    told = [str(b) for b in found if b.contract == contract]
+    assert told, [str(b) for b in found]
+    assert fact in told[0]
+    assert cure in told[0]
+    assert "\n" not in told[0]
+
+
+def test_everything_that_is_broken_is_named_at_once():
+    found = breaches(an(lambda q, u: 1 + q * cs.sign(u), unit=N, mirror="-"))
+    assert [b.contract for b in found] == ["units", "neutral when off", "exact derivative", "mirror"]
+
+
+def test_no_claim_of_a_mirror_is_fine():
+    assert breaches(an(lambda q: q, to="F_y", unit=N)) == []
 
 
 def test_order_does_not_matter():

@@ -6,14 +6,16 @@ import casadi as cs
 import numpy as np
 import pytest
 
-from tests.kit import Place, anywhere, evaluate, mirrored, mirrored_place, variant_with
+from tests.kit import anywhere, variant_with
+from wheelchair_fmu.contracts import Subject, mirror
+from wheelchair_fmu.contracts.places import Place, evaluate, mirrored_place
+from wheelchair_fmu.contracts.smooth import finite
 from wheelchair_fmu.engine.kernel import kernel, rate
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
 EFFECTS = bundled()
 CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS)]
-SPEEDS = (1.0, 0.0, -0.7)
 
 
 def name(case: tuple[str, ...]) -> str:
@@ -25,15 +27,10 @@ def variant(request) -> Variant:
     return variant_with(*request.param)
 
 
-def test_mirror(variant):
-    """A mirrored chair in a mirrored motion has mirrored forces, to rounding."""
-    rng, model = np.random.default_rng(1), variant.model()
-    for speed in SPEEDS:
-        place = anywhere(variant, rng, speed)
-        f, y = evaluate(model, place, model.f, model.y)
-        fm, ym = evaluate(model, mirrored_place(model, place), model.f, model.y)
-        np.testing.assert_allclose(fm, mirrored(model.states, f), rtol=1e-11, atol=1e-11)
-        np.testing.assert_allclose(ym, mirrored(model.outputs, y), rtol=1e-11, atol=1e-11)
+def test_mirror_and_standstill(variant):
+    """A mirrored chair in a mirrored motion has mirrored forces; at rest equations and all their slopes are finite."""
+    subject = Subject.of(variant.active())
+    assert [*mirror(subject), *finite(subject)] == []
 
 
 def test_mirror_twice_is_nothing(variant):
@@ -60,20 +57,6 @@ def test_units(variant):
     moving = mass != 0
     np.testing.assert_allclose((f2[moving] / mass2[moving]), f[moving] / mass[moving] * rate[moving], rtol=1e-9)
     np.testing.assert_allclose(f2[~moving], f[~moving] * scales(model.states)[~moving], rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("size", [0.0, 1.0, -1.0])
-def test_finite_at_standstill(variant, size):
-    """Equations and all their slopes are finite at rest, with effects off, on and turned round."""
-    model = variant.model()
-    p = variant.vector()
-    lower, upper = (np.array([getattr(q, side) for q in model.parameters]) for side in ("lower", "upper"))
-    effect = np.array([q.name.startswith("effect.") for q in model.parameters])
-    p = np.clip(np.where(effect, size * p, p), lower, upper)
-    place = Place(np.zeros(model.x.numel()), np.array([i.start for i in model.inputs]), p)
-    z = cs.vertcat(model.x, model.w, model.p)
-    for value in evaluate(model, place, model.f, model.y, cs.jacobian(model.f, z), cs.jacobian(model.y, z)):
-        assert np.isfinite(value).all()
 
 
 def test_derivatives_are_exact(variant):

@@ -155,7 +155,7 @@ def test_what_no_effect_explains_is_outside_with_a_proposal(tmp_path):
     assert found.ladder[-1].heldout < 1.05
     file = tmp_path / "caster_spring.py"
     file.write_text(terms()[found.proposal.effect].file("caster_spring"), encoding="utf-8")
-    from wheelchair_fmu.model.effects import load
+    from wheelchair_fmu.contracts.own import load
 
     assert load(tmp_path)["caster_spring"].parameters[0].unit.name == "N.m"
 

@@ -13,11 +13,11 @@ from benchmarks.independent.manoeuvres import STRAIGHT, Run, coast
 from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.contracts.own import load
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.statistics import standard_errors
 from wheelchair_fmu.loop.verdict import diagnose
-from wheelchair_fmu.model.effects import load
 from wheelchair_fmu.model.variant import Variant, read_variant
 
 FAST = Run("fast-coast", "coast-down", "fit", 2.5, 14.0, coast(0.0, 1.0))

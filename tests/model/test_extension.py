@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.kit import Place, anywhere, evaluate
+from tests.kit import anywhere
+from wheelchair_fmu.contracts.places import Place, evaluate
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.model.variant import Variant
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,16 +17,18 @@ from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
 from ..loop.verdict import Diagnosis, insufficient
 from ..loop.verdict import diagnose as run_diagnosis
+from ..model.effects import bundled
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from ..report.words import helpers, tied
+from ..report.words import helpers, probability, tied, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
 from .settings import subject
 from .staircase import staircase_table
 
+LIKELIEST = 8  # effects, of which the table tells
 SENTENCES = {
     "missing": "Missing: {effects}.",
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
@@ -86,7 +89,7 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         lead = "The term that helps most, and does not suffice either" if insufficient(d.ladder) else "What would explain it"
         out.print(f"{lead}: {term.words}, {size}.")
     out.print(staircase_table(d.ladder))
-    out.print(_ranking(content))
+    out.print(_ranking(content, set(d.search.workshop.catalogue) - set(bundled())))
     for name, (low, high) in d.intervals.items():
         unit = d.search.records[name].unit.name
         out.print(f"{name.removeprefix('effect.')} = {d.final.values[name]:.4g} {unit}, 95 % within {low:.4g} to {high:.4g}")
@@ -109,19 +112,21 @@ def _show_bootstrap(b: Bootstrap) -> None:
         out.print(f"  {name} ± {se:.2g}, 95 % within {low:.4g} to {high:.4g} (SI)")
 
 
-def _ranking(content: dict[str, Any]) -> Table:
-    """One line per parameter of the likeliest effects."""
+def _ranking(content: dict[str, Any], own: Container[str]) -> Table:
+    """One line per parameter of the likeliest effects, and of all of the user's own."""
     table = Table(box=box.SIMPLE)
     for title in ("effect", "parameter", "estimate", "of interest", "p", "power", "Δ(−2 log L)", "verdict"):
         right = title in ("p", "power", "Δ(−2 log L)")
         table.add_column(title, no_wrap=True, justify="right" if right else "left")
-    for row in content["ranking"][:8]:
-        figures = (f"{row['p']:.1g}", f"{row['power']:.2f}", f"{row['lr']:.0f}", row["verdict"])
+    for place, row in enumerate(content["ranking"]):
+        if place >= LIKELIEST and row["effect"] not in own:
+            continue
+        figures = (probability(row["p"]), f"{row['power']:.2f}", f"{row['lr']:.0f}", verdict_words(row))
         for i, (name, v) in enumerate(row["parameters"].items()):
             se = f"{v['se']:.2g}" if v["se"] is not None else "?"
             size = f"{v['estimate']:.3g} ± {se} {v['unit']}".removesuffix(" 1")
-            own = (name, size, f"{v['smallest_interesting']:g}")
-            table.add_row("" if i else row["effect"], *own, *(("",) * 4 if i else figures))
+            about = (name, size, f"{v['smallest_interesting']:g}")
+            table.add_row("" if i else row["effect"], *about, *(("",) * 4 if i else figures))
     return table
 
 

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-import re
+from importlib.resources import files
 from pathlib import Path
+from shlex import quote
 from typing import Annotated, Any
 
 import typer
 from rich import box
 from rich.table import Table
 
+from ..contracts.own import catalogue
 from ..errors import UsageError, unknown
-from ..model.effects import bundled
-from ..model.expression import effect_file
+from ..model.dimensions import targets, vocabulary
+from ..model.effects import NAME, bundled
 from ..model.stage import Effect
-from ..quantities import N, Parameter
+from ..model.wheelchair import Choice, assemble
+from ..quantities import Parameter
 from ..writing import written
+from . import templates
 from .files import print_json
 from .group import console
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
+KINDS = ("force", "moment", "reading", "state")
+Own = Annotated[Path | None, typer.Option("--effects", metavar="DIR", help="A folder with effect files of your own.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
@@ -28,9 +34,9 @@ def register(parent: typer.Typer) -> None:
 
 
 @app.command(name="list")
-def list_effects(as_json: AsJson = False) -> None:
+def list_effects(as_json: AsJson = False, own: Own = None) -> None:
     """Every effect with its parameters, their units and smallest interesting sizes."""
-    effects = bundled().values()
+    effects = catalogue(own).values()
     if as_json:
         print_json([record(effect) for effect in effects])
         return
@@ -46,11 +52,13 @@ def list_effects(as_json: AsJson = False) -> None:
 def show(
     effect: Annotated[str, typer.Argument(metavar="ID", help="An effect, as `list` names it.")],
     as_json: AsJson = False,
+    own: Own = None,
 ) -> None:
     """One effect: what it is, what it acts on, its parameters and where their sizes come from."""
-    if effect not in bundled():
-        raise unknown("effect", effect, bundled())
-    told = record(bundled()[effect])
+    known = catalogue(own)
+    if effect not in known:
+        raise unknown("effect", effect, known)
+    told = record(known[effect])
     if as_json:
         print_json(told)
         return
@@ -61,7 +69,10 @@ def show(
         out.print(f"states of its own: {', '.join(told['states'])}")
     if told["needs"]:
         out.print("needs: " + ", ".join(f"{kind} = {law}" for kind, law in told["needs"].items()))
-    out.print(f"in the default FMU: {'yes' if told['in_default_fmu'] else 'no'}")
+    if effect in bundled():
+        out.print(f"in the default FMU: {'yes' if told['in_default_fmu'] else 'no'}")
+    else:
+        out.print("your own; it keeps every contract that the bundled effects keep")
     for p in told["parameters"]:
         out.print(f"\n{p['name']} [{p['unit']}]: {p['meaning']}")
         out.print(f"    off at {p['default']:g}" if p["estimated"] else f"    a constant, {p['default']:g} unless set")
@@ -76,18 +87,53 @@ def show(
 def new(
     effect: Annotated[str, typer.Argument(metavar="ID", help="A name in small letters and underscores.")],
     folder: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the file goes.")] = Path("effects"),
+    kind: Annotated[str, typer.Option(metavar="KIND", help="What to begin with: force, moment, reading or state.")] = "force",
 ) -> None:
     """Start an effect of your own: a file to edit, which `--effects DIR` puts into the catalogue."""
-    if not re.fullmatch(r"[a-z][a-z0-9_]*", effect):
+    if kind not in KINDS:
+        raise unknown("kind of effect", kind, KINDS)
+    if not NAME.fullmatch(effect):
         raise UsageError(f"{effect!r} is no name for an effect; use small letters, digits and underscores, like my_drag")
     file = folder / f"{effect}.py"
     if effect in bundled() or file.exists():
         raise UsageError(f"there is an effect {effect!r} already; choose another name")
-    text = effect_file(effect, "say in a few words what it is", "F_x", N, "-q * u", size=0.5, lower=0.0, upper=100.0,
-                       source="say where its size comes from")  # fmt: skip
     with written(file) as beside:
-        beside.write_text(text, encoding="utf-8")
+        beside.write_text(template(kind, effect), encoding="utf-8")
     print(file)
+    where = f"--effects {quote(str(folder))}"
+    print("It is a whole effect already; its first lines say what to change. Then check it, diagnose with it, add it:",
+          f"  wheelchair effects show {effect} {where}",
+          f"  wheelchair diagnose CAMPAIGN {where}",
+          f"  wheelchair add {effect} CAMPAIGN {where} -o better.toml", sep="\n")  # fmt: skip
+
+
+def template(kind: str, effect: str) -> str:
+    """An effect of one of the KINDS to begin with, under this id."""
+    text = files(templates).joinpath(f"{kind}.py").read_text(encoding="utf-8")
+    return text.replace('"my_effect"', f'"{effect}"')
+
+
+@app.command()
+def quantities(as_json: AsJson = False) -> None:
+    """What a law of your own may read, by its symbol, and what an effect may act on."""
+    told = []
+    usual, swivelling = (assemble(Choice(caster=name)) for name in ("ideal", "swivelling"))
+    common = vocabulary(usual)
+    for symbol, q in (vocabulary(swivelling) | common).items():
+        components = ", ".join(q.components)
+        told.append({"symbol": symbol, "unit": q.unit.name, "components": components, "meaning": q.meaning,
+                     "acted_on": symbol in targets(swivelling) or symbol in targets(usual),
+                     "needs": {} if symbol in common else {"caster": "swivelling"}})  # fmt: skip
+    if as_json:
+        print_json(told)
+        return
+    table = Table(box=box.SIMPLE)
+    for title in ("symbol", "unit", "of", "may be acted on", "what it is"):
+        table.add_column(title, no_wrap=title != "what it is")
+    for t in told:
+        needs = "".join(f'; with needs={{"{kind}": "{law}"}}' for kind, law in t["needs"].items())
+        table.add_row(t["symbol"], t["unit"], t["components"], "yes" if t["acted_on"] else "", t["meaning"] + needs)
+    console().print(table)
 
 
 def record(effect: Effect) -> dict[str, Any]:
@@ -113,4 +159,4 @@ def _parameter(p: Parameter) -> dict[str, Any]:
 
 def _size(p: Parameter) -> str:
     size = "" if p.smallest_interesting is None else f" {p.smallest_interesting:g}"
-    return f"{p.symbol}{size} {'' if p.unit.name == '1' else p.unit.name}".rstrip()
+    return f"{p.name}{size} {'' if p.unit.name == '1' else p.unit.name}".rstrip()

@@ -13,12 +13,12 @@ from rich.console import Group as Stacked
 from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from ..contracts.own import load
 from ..handling.experiments import experiments
 from ..loop.diagnose import Step
 from ..loop.improve import after, with_proposal
 from ..loop.ranking import as_json
 from ..loop.verdict import diagnose
-from ..model.effects import load
 from ..model.generic import library
 from .diagnose import show, write_proposal
 from .files import write_json

@@ -12,11 +12,11 @@ from rich import box
 from rich.table import Table
 from scipy.io import savemat
 
+from ..contracts.own import catalogue_of
 from ..errors import UsageError
 from ..fmu.build import with_chosen_effects
 from ..handling.linearize import Linear, linearize, radius_sensitivities, radius_slopes
 from ..handling.trim import Chair, SteadyState, trim
-from ..model.effects import catalogue_of
 from ..quantities import ONE
 from ..writing import written
 from .files import print_json

@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..campaign import Campaign
+from ..contracts.own import catalogue
 from ..errors import UsageError
 from ..fmu.build import with_chosen_effects
-from ..loop.subject import applied, catalogue, chair
+from ..loop.subject import applied, chair
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant
 from .check import measurements

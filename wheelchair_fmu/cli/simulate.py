@@ -11,10 +11,10 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..contracts.own import catalogue_of
 from ..errors import UsageError
 from ..handling.key_numbers import KeyNumber, key_numbers
 from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
-from ..model.effects import catalogue_of
 from ..model.variant import Variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save

@@ -7,19 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..campaign import Campaign
-from ..model.effects import bundled, load
-from ..model.stage import Effect
+from ..contracts.own import catalogue
+from ..model.effects import bundled
 from ..model.variant import Variant, read_variant
 
 
 def known_parameters() -> dict[str, tuple[float, float]]:
     """Bounds, in SI units, of every parameter that a campaign may name."""
     return {p.name: (p.lower, p.upper) for p in Variant().with_effects(bundled()).parameters()}
-
-
-def catalogue(folder: Path | None) -> dict[str, Effect]:
-    """The effects that are bundled, and those of a user's own folder."""
-    return {**bundled(), **(load(folder) if folder else {})}
 
 
 def chair(variant: Path | None, effects: Path | None) -> Variant:

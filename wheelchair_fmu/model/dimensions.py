@@ -16,7 +16,7 @@ import casadi as cs
 import numpy as np
 
 from ..errors import ModelError, UsageError, unknown
-from ..quantities import ONE, Parameter, Quantity, Unit
+from ..quantities import ONE, UNITS, Parameter, Quantity, Unit
 from . import expression
 from .stage import Effect, adds
 from .wheelchair import Choice, Model, assemble
@@ -50,7 +50,7 @@ def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
     _refuse_unreadable(text, to, law, choice)
     here, there = _exponents(text, vocabulary(model)), model.records[to].unit
     wanted = [have - own for have, own in zip((there.kg, there.m, there.s), here, strict=True)]
-    return _named(*wanted)
+    return named(*wanted)
 
 
 def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice) -> None:
@@ -100,11 +100,9 @@ def _value(law: Callable[..., Any], place: Mapping[str, np.ndarray], q: float) -
     return np.array(cs.DM(law(**{n: cs.DM(v) for n, v in place.items()}, **{"q": q}))).ravel()
 
 
-def _named(kg: int, m: int, s: int) -> Unit:
+def named(kg: int, m: int, s: int) -> Unit:
     """The project's own record of a unit, or a name made of its exponents."""
-    from .. import quantities
-
-    own = [u for u in vars(quantities).values() if isinstance(u, Unit) and (u.kg, u.m, u.s) == (kg, m, s) and u.name != "bar"]
+    own = [u for u in UNITS.values() if (u.kg, u.m, u.s) == (kg, m, s)]
     if own:
         return min(own, key=lambda u: abs(u.rad))
     above = [_written(n, e) for n, e in zip(SYMBOLS, (kg, m, s), strict=True) if e > 0]

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as cs
 
 from ..errors import UsageError
-from ..quantities import Unit
+from ..quantities import UNITS, Unit
 from ..units import UnitError, coherent
 from .smooth import direction, grip, magnitude
 
@@ -35,7 +35,9 @@ def law(expression: str) -> Callable[..., Any]:
 
     Raises UsageError for anything but arithmetic, numbers (with units), names and the functions above.
     """
-    return _function(WITH_UNIT.sub(lambda number: repr(_in_si(number)[0]), expression))
+    made = _function(WITH_UNIT.sub(lambda number: repr(_in_si(number)[0]), expression))
+    made.__dict__["expression"] = expression  # from which the units of its numbers can be read
+    return made
 
 
 def law_of_constants(expression: str) -> tuple[Callable[..., Any], dict[str, tuple[float, Unit]]]:
@@ -51,6 +53,8 @@ def law_of_constants(expression: str) -> tuple[Callable[..., Any], dict[str, tup
 
 
 def _in_si(number: re.Match[str]) -> tuple[float, Unit]:
+    if number[2].strip() in UNITS:
+        return float(number[1]), UNITS[number[2].strip()]
     try:
         factor, kg, m, s = coherent(number[2])
     except UnitError as error:

@@ -12,36 +12,38 @@ from ..quantities import M_S2, N_M, ONE, RAD_S, N, Parameter, Unit
 from .expression import effect_file, law
 from .stage import Effect, adds, scales
 
+U, V, R = "u / 1 [m/s]", "v / 1 [m/s]", "psi_dot / 1 [rad/s]"
+LEFT_OR_RIGHT = "sum1(v_yf / magnitude(v_xf, 0.05 [m/s])) / 2"  # the casters' angle, roughly
 # name -> (words, expression); scaled so that the coefficient is a force at about 1 m/s and 1 rad/s
 ODD = {
-    "yaw": ("proportional to the yaw rate", "psi_dot"),
-    "yaw_dry": ("constant against the turn", "grip(psi_dot, psi_dot * psi_dot, 0.01)"),
-    "yaw_yaw": ("growing with the square of the yaw rate", "psi_dot * magnitude(psi_dot, 0.01)"),
-    "yaw_speed": ("proportional to yaw rate times speed", "psi_dot * u"),
-    "side": ("proportional to the sideways speed", "v"),
-    "side_dry": ("constant against sideways motion", "direction(v, 0.01)"),
-    "caster": ("proportional to the casters' angle", "sum1(v_yf / magnitude(v_xf, 0.05)) / 2"),
+    "yaw": ("proportional to the yaw rate", R),
+    "yaw_dry": ("constant against the turn", "grip(psi_dot, psi_dot * psi_dot, 0.01 [rad/s])"),
+    "yaw_yaw": ("growing with the square of the yaw rate", f"{R} * magnitude({R}, 0.01)"),
+    "yaw_speed": ("proportional to yaw rate times speed", f"{R} * {U}"),
+    "side": ("proportional to the sideways speed", V),
+    "side_dry": ("constant against sideways motion", "direction(v, 0.01 [m/s])"),
+    "caster": ("proportional to the casters' angle", LEFT_OR_RIGHT),
     "heading_sin": ("with the sine of the heading", "sin(psi)"),
-    "push_difference": ("proportional to the difference of the pushes", "(F_t[0] - F_t[1]) / 20"),
+    "push_difference": ("proportional to the difference of the pushes", "(F_t[0] - F_t[1]) / 20 [N]"),
 }
 ONE_SIDED = {
-    "constant": ("to one side while it rolls", "direction(u, 0.02)"),
-    "speed": ("to one side, proportional to speed", "u"),
-    "speed_speed": ("to one side, with the square of the speed", "u * magnitude(u, 0.01)"),
-    "push": ("to one side, proportional to the push", "sum1(F_t) / 40"),
+    "constant": ("to one side while it rolls", "direction(u, 0.02 [m/s])"),
+    "speed": ("to one side, proportional to speed", U),
+    "speed_speed": ("to one side, with the square of the speed", f"{U} * magnitude({U}, 0.01)"),
+    "push": ("to one side, proportional to the push", "sum1(F_t) / 40 [N]"),
     "heading_cos": ("with the cosine of the heading", "cos(psi)"),
-    "only_right": ("in right turns only", "fmax(psi_dot, 0)"),
-    "only_left": ("in left turns only", "fmin(psi_dot, 0)"),
+    "only_right": ("in right turns only", f"fmax({R}, 0)"),
+    "only_left": ("in left turns only", f"fmin({R}, 0)"),
 }
 EVEN = {
-    "speed": ("proportional to speed", "u"),
-    "speed_speed": ("with the square of the speed", "u * magnitude(u, 0.01)"),
+    "speed": ("proportional to speed", U),
+    "speed_speed": ("with the square of the speed", f"{U} * magnitude({U}, 0.01)"),
     "constant": ("constant against the motion", "grip(u, u * u, drag_eps)"),
-    "turning": ("growing with the square of the yaw rate", "psi_dot * psi_dot * direction(u, 0.02)"),
-    "turning_right": ("in right turns only", "fmax(psi_dot, 0) * direction(u, 0.02)"),
-    "turning_left": ("in left turns only", "fmin(psi_dot, 0) * direction(u, 0.02)"),
-    "push": ("proportional to the push", "sum1(F_t) / 40"),
-    "push_small": ("of small pushes only", "sum1(direction(F_t, 3.0))"),
+    "turning": ("growing with the square of the yaw rate", f"{R} * {R} * direction(u, 0.02 [m/s])"),
+    "turning_right": ("in right turns only", f"fmax({R}, 0) * direction(u, 0.02 [m/s])"),
+    "turning_left": ("in left turns only", f"fmin({R}, 0) * direction(u, 0.02 [m/s])"),
+    "push": ("proportional to the push", "sum1(F_t) / 40 [N]"),
+    "push_small": ("of small pushes only", "sum1(direction(F_t, 3 [N]))"),
     "heading_cos": ("with the cosine of the heading", "cos(psi)"),
     "heading_sin": ("with the sine of the heading", "sin(psi)"),
 }
@@ -51,9 +53,9 @@ CASTER = {
     "one_sided": ("that turns both casters to one side", "1 + 0 * delta"),
 }
 WHEEL = {
-    "speed": ("proportional to speed", "magnitude(u, 0.01)"),
-    "right": ("in right turns", "(1 + direction(psi_dot, 0.02)) / 2"),
-    "left": ("in left turns", "(1 - direction(psi_dot, 0.02)) / 2"),
+    "speed": ("proportional to speed", f"magnitude({U}, 0.01)"),
+    "right": ("in right turns", "(1 + direction(psi_dot, 0.02 [rad/s])) / 2"),
+    "left": ("in left turns", "(1 - direction(psi_dot, 0.02 [rad/s])) / 2"),
 }
 READINGS = {
     "read_yaw_rate": (RAD_S, "yaw rate reading"),
@@ -129,7 +131,7 @@ VARIABLES = {
     "yaw_rate": ("yaw rate", "rad/s", "psi_dot", (-2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0)),
     "heading": ("heading", "rad", "atan2(sin(psi), cos(psi))", (-3.1416, -2.0944, -1.0472, 0.0, 1.0472, 2.0944, 3.1416)),
     "push": ("push of both hands", "N", "sum1(F_t)", (-60.0, -20.0, -5.0, 5.0, 20.0, 40.0, 80.0, 140.0)),
-    "caster": ("mean caster angle", "rad", "sum1(v_yf / magnitude(v_xf, 0.05)) / 2",
+    "caster": ("mean caster angle", "rad", LEFT_OR_RIGHT,
                (-0.8, -0.4, -0.2, -0.05, 0.05, 0.2, 0.4, 0.8)),
 }  # fmt: skip
 

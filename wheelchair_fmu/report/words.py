@@ -8,6 +8,10 @@ from typing import Any
 from ..loop.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
+LEAST = 1e-300  # of probabilities that are printed
+SEEN = 0.05  # a probability below which the data show something like the effect
+SEEN_WORDS = "seen, not chosen"
+
 
 def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
     """The verdict in one sentence; `titles` say what each effect is."""
@@ -93,6 +97,17 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
     first, exponent = f"{se:.0e}".split("e")
     place = max(0, (1 if first in "12" else 0) - int(exponent))
     return f"{value:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")
+
+
+def probability(p: float) -> str:
+    """"3e-138"; what floats cannot hold is smaller than anything they can."""
+    return f"{p:.1g}" if p > LEAST else f"< {LEAST:.0e}"
+
+
+def verdict_words(row: Mapping[str, Any]) -> str:
+    """What became of an effect of the ranking; one that the data show, and another explains better, was seen all the same."""
+    seen = row["verdict"] == "cannot_see" and row["p"] < SEEN
+    return SEEN_WORDS if seen else str(row["verdict"]).replace("_", " ")
 
 
 def _listed(names: Sequence[str], word: str) -> str:

@@ -19,6 +19,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 
+from ..contracts.own import checked
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
@@ -258,8 +259,9 @@ class Workbench:
             raise UsageError(f"the sizes must go lower ≤ 0 < of interest < upper, not {lower:g}, {size:g}, {upper:g}")
         expression, to = str(asked.get("expression", "")), str(asked.get("to", ""))
         unit = await run_in_threadpool(unit_of_q, expression, to)
-        source = effect_file(id, title, to, unit, expression, size=size, lower=lower, upper=upper, source="own")
-        write(session.effects / f"{id}.py", source.encode())
+        source = effect_file(id, title, to, unit, expression, size=size, lower=lower, upper=upper, source="own").encode()
+        await run_in_threadpool(checked, ((f"{id}.py", source),))
+        write(session.effects / f"{id}.py", source)
         return await self.state(request, session)
 
     # -- taking things away ---------------------------------------------------------------------------------

@@ -29,8 +29,9 @@ from ..campaign.channels import BY_NAME, TIME
 from ..campaign.document import Entry
 from ..campaign.formats import open_table
 from ..campaign.layout import relaid
+from ..contracts.own import load
 from ..errors import CampaignError, Failure, UsageError
-from ..model.effects import bundled, load
+from ..model.effects import bundled
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
 from ..writing import written

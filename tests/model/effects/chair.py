@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from tests.kit import Place, evaluate
+from wheelchair_fmu.contracts.places import Place, evaluate
 from wheelchair_fmu.engine.kernel import kernel, rate
 from wheelchair_fmu.engine.simulate import Simulator, Trajectory
 from wheelchair_fmu.model.variant import Variant

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from tests.kit import Place, evaluate
 from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, C_M_PHI, C_PHI, I_Z, MASS, SMOOTH, A, B, G, run, snapshot
+from wheelchair_fmu.contracts.places import Place, evaluate
 from wheelchair_fmu.model.variant import Variant
 
 RIG = Path(__file__).parents[3] / "examples" / "rotating-disc.csv"

@@ -12,7 +12,7 @@ import pytest
 from wheelchair_fmu.chunks import complete, dask, here
 from wheelchair_fmu.errors import Failure
 from wheelchair_fmu.model.expression import effect_file
-from wheelchair_fmu.quantities import N
+from wheelchair_fmu.quantities import N_S_M
 from wheelchair_fmu.studies.sweep import Job, prepare, read_plan
 
 PLAN = """
@@ -28,7 +28,7 @@ time = 4
 
 def write(folder: Path, expression: str) -> None:
     folder.mkdir(exist_ok=True)
-    text = effect_file("my_drag", "viscous drag", "F_x", N, expression, size=0.5, lower=0.0, upper=100.0, source="chosen")
+    text = effect_file("my_drag", "viscous drag", "F_x", N_S_M, expression, size=0.5, lower=0.0, upper=100.0, source="chosen")
     (folder / "my_drag.py").write_text(text, encoding="utf-8")
 
 
@@ -87,7 +87,7 @@ def test_a_changed_effect_is_another_sweep(place):
     with pytest.raises(KeyboardInterrupt):
         complete(first, out, stops)
     assert job_of(place, chunk=1).fingerprint == first.fingerprint
-    write(place / "effects", "-q * u * u")
+    write(place / "effects", "-q * u * cos(psi_dot * 1 [s])")
     with pytest.raises(Failure, match="parts of another plan, effects, engine or version"):
         complete(job_of(place, chunk=1), out, here(1))
     changed = job_of(place).table(0).to_pandas()  # quadratic: u = 1 / (1 + q t / m)

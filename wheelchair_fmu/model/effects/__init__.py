@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import linecache
 import pkgutil
+import re
+import traceback
+from collections.abc import Container
 from functools import cache
 from importlib import import_module
 from importlib.util import decode_source
 from pathlib import Path
 from types import ModuleType
 
-from ...errors import ModelError
+from ...errors import EffectError, ModelError
+from ...faults import Fault
 from ..stage import Effect
 
 Sources = tuple[tuple[str, bytes], ...]  # files by path, with their content
+NAME = re.compile(r"[a-z][a-z0-9_]*")  # of an effect
 
 
 @cache
@@ -21,11 +26,6 @@ def bundled() -> dict[str, Effect]:
     """The effects that come with the package, by id, in alphabetical order."""
     names = sorted(module.name for module in pkgutil.iter_modules(__path__))
     return {name: import_module(f".{name}", __name__).EFFECT for name in names}
-
-
-def load(folder: Path) -> dict[str, Effect]:
-    """The effects in a user's folder, by id. Raises ModelError as `sources` and `defined` do."""
-    return defined(sources(folder))
 
 
 def sources(folder: Path) -> Sources:
@@ -43,37 +43,68 @@ def sources(folder: Path) -> Sources:
 
 
 def defined(files: Sources) -> dict[str, Effect]:
-    """The effects that these files define, by id.
-
-    Raises ModelError for a file that is no Python, has no record `EFFECT`, or one whose id is not the file's name.
-    """
-    found = {}
-    for file, content in files:
-        stem = Path(file).stem
-        effect = _run(file, content).__dict__.get("EFFECT")
-        if not isinstance(effect, Effect):
-            raise ModelError(f"{file}: no record EFFECT; write EFFECT = Effect('{stem}', ...)")
-        if effect.id != stem:
-            raise ModelError(f"{file}: its effect is called {effect.id!r}; call it {stem!r} like its file")
-        found[effect.id] = effect
+    """The effects that these files define, by id. Raises EffectError with the faults of all files."""
+    found, faults = read(files)
+    if faults:
+        raise EffectError(faults)
     return found
 
 
-def _run(file: str, content: bytes) -> ModuleType:
-    """The module that a file makes, a sibling of the bundled effects."""
-    module = ModuleType(f"{__name__}.{Path(file).stem}")
+def read(files: Sources) -> tuple[dict[str, Effect], list[Fault]]:
+    """The effects that these files define, by id, and one fault for each file that defines none."""
+    found: dict[str, Effect] = {}
+    faults = []
+    for file, content in files:
+        effect = _effect(file, content)
+        fault = effect if isinstance(effect, Fault) else _misnamed(file, effect.id, found)
+        if fault:
+            faults.append(fault)
+        else:
+            assert isinstance(effect, Effect)
+            found[effect.id] = effect
+    return found, faults
+
+
+def _misnamed(file: str, id: object, others: Container[str]) -> Fault | None:
+    stem = Path(file).stem
+    if id == stem in bundled():
+        return Fault(file, None, None, f"there is a bundled effect {id!r} already", "give the file and its effect another name")
+    if id == stem and not NAME.fullmatch(stem):
+        return Fault(file, None, None, f"{stem!r} is no name for an effect",
+                     "use small letters, digits and underscores, like my_drag")  # fmt: skip
+    if id == stem:
+        return None
+    taken = f", which is that of {id}.py" if isinstance(id, str) and id in others else ""
+    return Fault(file, None, None, f"its effect is called {id!r}{taken}", f"call it {stem!r} like its file")
+
+
+def _effect(file: str, content: bytes) -> Effect | Fault:
+    """What a file makes, a sibling of the bundled effects. It is a program, and may end in any way."""
+    stem = Path(file).stem
+    module = ModuleType(f"{__name__}.{stem}")
     module.__dict__.update(__file__=file, __package__=__name__)
     try:
         exec(compile(content, file, "exec"), module.__dict__)
         lines = decode_source(content).splitlines(keepends=True)
-    except Exception as error:
-        raise ModelError(f"{file}: cannot be read as an effect: {type(error).__name__}: {error}") from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # SystemExit too, which would end the command without a word
+        return _failed(file, error)
     linecache.cache[file] = (len(content), None, lines, file)  # the text as it ran, for tracebacks and the kernels' cache
-    return module
+    effect = module.__dict__.get("EFFECT")
+    if effect is None:
+        return Fault(file, None, None, "there is no record EFFECT in it", f'write EFFECT = Effect("{stem}", ...)')
+    if not isinstance(effect, Effect):
+        return Fault(file, None, None, f"EFFECT is of type {type(effect).__name__}", f'write EFFECT = Effect("{stem}", ...)')
+    return effect
 
 
-def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:
-    """What `--effects WORD` means: a folder joins its effects to the catalogue, anything else chooses from it."""
-    if Path(word).is_dir():
-        return {**bundled(), **load(Path(word))}, "default"
-    return bundled(), word
+def _failed(file: str, error: BaseException) -> Fault:
+    """One sentence for whatever a file raised, with the last of its lines that took part."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    line = error.lineno if isinstance(error, SyntaxError) else lines[-1] if lines else None
+    if isinstance(error, SystemExit):
+        return Fault(file, line, None, "it ends the program instead of defining an effect", "leave out exit() and sys.exit()")
+    told = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
+    return Fault(file, line, None, f"cannot be read as an effect: {type(error).__name__}: {told}".removesuffix(": "),
+                 "mend this line, or move the file away")  # fmt: skip

@@ -4,6 +4,7 @@ import { byId, csv, h, save } from "page/dom";
 import { inUnit, probability, rms, significant, withError } from "page/numbers";
 
 const FIRST = 8; // effects that are open without asking
+const SEEN = 0.05; // a probability below which the data show something like the effect
 const VERDICTS = {
   missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen",
 };
@@ -45,7 +46,7 @@ function line(row, record, later) {
     h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Rivals" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${r.effect.replaceAll("_", " ")} `, h("span", { class: "faint" }, r.cosine.toFixed(2)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.verdict === "cannot_see" && row.p < SEEN ? "seen, not chosen" : VERDICTS[row.verdict] ?? row.verdict)));
 }
 
 function columns(ranking) {

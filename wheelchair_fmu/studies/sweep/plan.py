@@ -33,6 +33,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ...contracts.own import checked
 from ...errors import FileError, WheelchairError
 from ...faults import Fault, not_utf8, suggestion
 from ...handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
@@ -94,9 +95,12 @@ class Plan:
 def read_plan(path: Path, effects: Path | None = None) -> Plan:
     """The plan in a TOML file, which may name the `effects` in a folder of the user's own.
 
-    Raises PlanError with every fault, and ModelError for a folder that is not there or a file in it that is no effect.
+    Raises PlanError with every fault, ModelError for a folder that is not there, and EffectError for what is wrong with the
+    effects in it.
     """
-    reader = _Reader(path, Chair(own=sources(effects) if effects else ()))
+    own = sources(effects) if effects else ()
+    checked(own)
+    reader = _Reader(path, Chair(own=own))
     plan = reader.plan()
     if reader.faults or plan is None:
         raise PlanError(sorted(reader.faults, key=lambda fault: (fault.line is None, fault.line or 0)))

@@ -1,0 +1,1 @@
+"""Effects to begin with: `wheelchair effects new` copies one of these files, under another id."""
