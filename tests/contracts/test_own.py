@@ -6,7 +6,7 @@ import pytest
 
 from wheelchair_fmu.cli.effects import KINDS, template
 from wheelchair_fmu.contracts.own import catalogue, checked, load
-from wheelchair_fmu.errors import EffectError
+from wheelchair_fmu.errors import EffectError, ModelError
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import terms
 
@@ -57,6 +57,11 @@ def test_what_one_begins_with_keeps_every_contract(kind):
 def test_the_terms_that_a_diagnosis_may_propose_keep_every_contract():
     files = tuple((f"proposed_{i}.py", term.file(f"proposed_{i}").encode()) for i, term in enumerate(terms().values()))
     assert len(checked(files)) == len(terms())
+
+
+def test_a_folder_without_effects_is_no_answer(tmp_path):
+    with pytest.raises(ModelError, match="no effect file in it; `wheelchair effects new ID -o"):
+        catalogue(tmp_path)
 
 
 def test_an_interrupt_is_none_of_a_file_s_faults():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from ..errors import EffectError
+from ..errors import EffectError, ModelError
 from ..model.effects import Sources, bundled, read, sources
 from ..model.stage import Effect
 from . import breaches
@@ -36,8 +36,11 @@ def _checked(files: Sources) -> dict[str, Effect]:
 
 
 def catalogue(folder: Path | None) -> dict[str, Effect]:
-    """The effects that are bundled, and those of a user's own folder."""
-    return {**bundled(), **(load(folder) if folder else {})}
+    """The effects that are bundled, and those of a user's own folder. Raises ModelError where there are none in that."""
+    own = load(folder) if folder else {}
+    if folder and not own:
+        raise ModelError(f"{folder}: no effect file in it; `wheelchair effects new ID -o {folder}` starts one")
+    return {**bundled(), **own}
 
 
 def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:

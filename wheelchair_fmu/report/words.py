@@ -10,7 +10,6 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 LEAST = 1e-300  # of probabilities that are printed
 SEEN = 0.05  # a probability below which the data show something like the effect
-SEEN_WORDS = "seen, not chosen"
 
 
 def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
@@ -101,13 +100,13 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
 
 def probability(p: float) -> str:
     """"3e-138"; what floats cannot hold is smaller than anything they can."""
-    return f"{p:.1g}" if p > LEAST else f"< {LEAST:.0e}"
+    return f"{p:.1g}" if p > LEAST else f"<{LEAST:.0e}"
 
 
 def verdict_words(row: Mapping[str, Any]) -> str:
-    """What became of an effect of the ranking; one that the data show, and another explains better, was seen all the same."""
+    """What became of an effect of the ranking. One that the data show was seen, even where others explain them better."""
     seen = row["verdict"] == "cannot_see" and row["p"] < SEEN
-    return SEEN_WORDS if seen else str(row["verdict"]).replace("_", " ")
+    return "not chosen" if seen else str(row["verdict"]).replace("_", " ")
 
 
 def _listed(names: Sequence[str], word: str) -> str:

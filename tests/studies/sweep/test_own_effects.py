@@ -87,7 +87,7 @@ def test_a_changed_effect_is_another_sweep(place):
     with pytest.raises(KeyboardInterrupt):
         complete(first, out, stops)
     assert job_of(place, chunk=1).fingerprint == first.fingerprint
-    write(place / "effects", "-q * u * cos(psi_dot * 1 [s])")
+    write(place / "effects", "-q * u * u / 1 [m/s]")
     with pytest.raises(Failure, match="parts of another plan, effects, engine or version"):
         complete(job_of(place, chunk=1), out, here(1))
     changed = job_of(place).table(0).to_pandas()  # quadratic: u = 1 / (1 + q t / m)
