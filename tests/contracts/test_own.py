@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 
 from wheelchair_fmu.cli.effects import KINDS, template
+from wheelchair_fmu.contracts import CONTRACTS, Subject
 from wheelchair_fmu.contracts.own import catalogue, checked, load
+from wheelchair_fmu.contracts.record import record
 from wheelchair_fmu.errors import EffectError, ModelError
-from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.effects import bundled, defined
 from wheelchair_fmu.model.generic import terms
 
 GOOD = template("force", "mine")
@@ -55,8 +57,13 @@ def test_what_one_begins_with_keeps_every_contract(kind):
 
 
 def test_the_terms_that_a_diagnosis_may_propose_keep_every_contract():
+    """All in one model, which takes a tenth of the time."""
     files = tuple((f"proposed_{i}.py", term.file(f"proposed_{i}").encode()) for i, term in enumerate(terms().values()))
-    assert len(checked(files)) == len(terms())
+    proposed = defined(files)
+    assert len(proposed) == len(terms())
+    assert [breach for effect in proposed.values() for breach in record(effect)] == []
+    subject = Subject.of(proposed.values())
+    assert [breach for contract in CONTRACTS for breach in contract(subject)] == []
 
 
 def test_a_folder_without_effects_is_no_answer(tmp_path):

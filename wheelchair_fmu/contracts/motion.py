@@ -31,10 +31,10 @@ def neutral(subject: Subject) -> list[Breach]:
         after = evaluate(model, settled(model, Place(x, there.w, p)), model.f, model.y)
         for records, is_, should in zip((subject.bare.states, subject.bare.outputs), after, before, strict=True):
             worst += _furthest(records, is_[: len(should)], should)
-    return [subject.breach("neutral when off",
-                           f"with its parameters at 0 {_words(*found)}",
-                           "write each term so that it is 0, and each factor 1, where the parameters are 0")
-            for found in worst[:1]]  # fmt: skip
+    if not worst:
+        return []
+    return [subject.breach("neutral when off", f"with its parameters at 0 {_words(*max(worst, key=lambda far: far[0]))}",
+                           "write each term so that it is 0, and each factor 1, where the parameters are 0")]  # fmt: skip
 
 
 def present(subject: Subject) -> list[Breach]:
