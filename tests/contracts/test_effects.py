@@ -18,7 +18,7 @@ from wheelchair_fmu.model.expression import law
 from wheelchair_fmu.model.smooth import magnitude
 from wheelchair_fmu.model.stage import Contribution, Effect, Row, adds, scales
 from wheelchair_fmu.model.wheelchair import assemble
-from wheelchair_fmu.quantities import N_S_M, N, Parameter, State
+from wheelchair_fmu.quantities import N_S_M, N, Parameter, State, Unit
 
 EFFECTS = bundled()
 
@@ -75,13 +75,15 @@ LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
     (an(lambda q, u: -q * u, upper=0.2), "record", "0.5 N.s/m is of interest", "lower ≤ 0"),
     (an(lambda q, u: -q * u, source=""), "record", "q has no source", "in quotes"),
     (an(lambda q, u: -q * u, unit="N"), "record", "the unit of q is 'N'", "wheelchair_fmu.quantities"),
+    (an(lambda q, u: -q * u, unit=Unit("N", kg="1")), "record", "the unit of q is Unit(name='N', kg='1'", "import a Unit"),
+    (an(lambda q, v_xr: -q * v_xr), "equations", "gives F_x a term of shape (2, 1)", "give one number"),
     (an("-q * u"), "record", "the law of its term in F_x is a str", "function"),
     (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
     (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
     (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
     (an(lambda q, nonsense: q * nonsense), "equations", "reads 'nonsense', which is no quantity", "effects quantities"),
     (an(lambda q, u: -q * u, to="F_z"), "equations", "'F_z'", "did you mean"),
-    (an(lambda q, u: -q * u if u > 0 else 0), "equations", "its law fails in line", "without if"),
+    (an(lambda q, u: -q * u if u > 0 else 0), "equations", "RuntimeError: Cannot compute the truth value", "without if"),
 ])  # fmt: skip
 def test_what_breaks_a_contract_is_named_with_its_cure(effect, contract, fact, cure):
     found = breaches(effect)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import traceback
 from collections.abc import Callable
 
@@ -18,6 +19,9 @@ from .units import units
 __all__ = ["CLAIMS", "CONTRACTS", "Breach", "Subject", "breaches"]
 
 CONTRACTS: tuple[Callable[[Subject], list[Breach]], ...] = (units, neutral, present, finite, derivative, passive)
+LISTED = "`wheelchair effects quantities` lists what a law may read and act on"
+WHOLE = "give one number, or one for each component of what it acts on"
+PLACE = re.compile(r"^\S+\.[ch]pp:\d+: ")  # in CasADi's source
 CLAIMS = (mirror,)  # asked where a parameter says what it becomes in a mirror
 
 
@@ -32,7 +36,7 @@ def breaches(effect: Effect) -> list[Breach]:
             return [breach for contract in asked for breach in contract(subject)]
     except WheelchairError as error:
         fact, _, known = str(error).partition("; ")
-        cure = "`wheelchair effects quantities` lists what a law may read and act on" if known.startswith("known") else known
+        cure = LISTED if known.startswith("known") else known or WHOLE
         return [Breach(effect.id, "equations", fact.removeprefix(f"effect {effect.id} "), cure)]
     except Exception as error:  # what somebody else's law may raise
         return [Breach(effect.id, "equations", f"its law fails{_line(effect, error)}: {type(error).__name__}: {_last(error)}",
@@ -48,5 +52,6 @@ def _line(effect: Effect, error: Exception) -> str:
 
 
 def _last(error: Exception) -> str:
-    """The sentence of a message; CasADi's goes behind its places."""
-    return (str(error).strip().splitlines() or ["no reason given"])[-1].strip()
+    """The sentence of a message, of which CasADi's is the last line."""
+    last = (str(error).strip().splitlines() or ["no reason given"])[-1]
+    return PLACE.sub("", last.strip()).rstrip(".")

@@ -42,7 +42,7 @@ def _types(effect: Effect) -> list[tuple[str, str]]:
 def _of_parameter(p: Parameter) -> Iterator[tuple[str, str]]:
     if not isinstance(p.name, str) or not p.name.isidentifier():
         yield f"a parameter is called {p.name!r}", "use letters, digits and underscores, like q or k_left"
-    if not isinstance(p.unit, Unit):
+    if not _is_unit(p.unit):
         yield f"the unit of {p.name} is {p.unit!r}", "import a Unit from wheelchair_fmu.quantities, such as N or N_S_M"
     if not isinstance(p.mirror, str) or not MIRROR.fullmatch(p.mirror):
         yield f"the mirror of {p.name} is {p.mirror!r}", 'write "+", "-", or one of these and the partner\'s symbol'
@@ -50,6 +50,10 @@ def _of_parameter(p: Parameter) -> Iterator[tuple[str, str]]:
         value = getattr(p, key)
         if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
             yield f"{key} of {p.name} is {value!r}", "write a number in SI units"
+
+
+def _is_unit(unit: Any) -> bool:
+    return isinstance(unit, Unit) and all(isinstance(n, int) for n in (unit.kg, unit.m, unit.s, unit.rad))
 
 
 def _of_contribution(c: Contribution) -> Iterator[tuple[str, str]]:
@@ -64,7 +68,7 @@ def _of_contribution(c: Contribution) -> Iterator[tuple[str, str]]:
 def _of_row(row: Row) -> Iterator[tuple[str, str]]:
     if not isinstance(row.state, State):
         yield f"the state of a row is {_short(row.state)}", "write Row(State(...), mass=..., rate=...)"
-    elif not isinstance(row.state.unit, Unit):
+    elif not _is_unit(row.state.unit):
         yield f"the unit of the state {row.state.name} is {row.state.unit!r}", "import a Unit from wheelchair_fmu.quantities"
     for key in ("mass", "rate", "start"):
         law = getattr(row, key)
