@@ -6,10 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from wheelchair_fmu.contracts.own import catalogue_of
-from wheelchair_fmu.errors import WheelchairError
-from wheelchair_fmu.fmu.build import NAMES, build_each
-from wheelchair_fmu.model.variant import Variant, read_variant
+from wheelchair_fmu.errors import INTERRUPTED, WheelchairError
 
 
 class Parser(argparse.ArgumentParser):
@@ -43,16 +40,30 @@ def targets(version: str | None, flavour: str, first: Path) -> dict[str, Path]:
 def main(argv: list[str] | None = None) -> int:
     given = arguments(argv)
     try:
-        catalogue, effects = catalogue_of(given.effects)
-        variant = read_variant(given.variant, catalogue) if given.variant else Variant(catalogue=catalogue)
-        first = given.output or Path("dist") / f"{NAMES.get(given.flavour, 'Wheelchair')}.fmu"
-        paths = build_each(targets(given.fmi, given.flavour, first), variant, effects=effects, equations=given.equations,
-                           flavour=given.flavour, platforms=given.platforms)  # fmt: skip
+        print(*built(given), sep="\n")
     except WheelchairError as error:
         print(error, file=sys.stderr)
         return error.exit_code
-    print(*paths, sep="\n")
+    except OSError as error:
+        print(f"{error.filename or 'a file'}: {error.strerror or error}; make room, or get the rights", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(INTERRUPTED, file=sys.stderr)
+        return 130  # 128 + SIGINT, as shells have it
     return 0
+
+
+def built(given: argparse.Namespace) -> list[Path]:
+    # imported here, for it takes seconds, and Ctrl-C then is no fault either
+    from wheelchair_fmu.contracts.own import catalogue_of
+    from wheelchair_fmu.fmu.build import NAMES, build_each
+    from wheelchair_fmu.model.variant import Variant, read_variant
+
+    catalogue, effects = catalogue_of(given.effects)
+    variant = read_variant(given.variant, catalogue) if given.variant else Variant(catalogue=catalogue)
+    first = given.output or Path("dist") / f"{NAMES.get(given.flavour, 'Wheelchair')}.fmu"
+    return build_each(targets(given.fmi, given.flavour, first), variant, effects=effects, equations=given.equations,
+                      flavour=given.flavour, platforms=given.platforms)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""What several tests need: a chair with effects, random places to evaluate it at; a campaign's own settings."""
+"""What several tests need: a chair with effects, random places to evaluate it at; a campaign's own settings; who is whose child."""
 
 from __future__ import annotations
 
 import shutil
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -65,3 +66,38 @@ def tracked(folder: Path) -> Path:
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("[noise]", "[noise]\nx = 0.004\ny = 0.004\nyaw = 0.004\n#", 1), encoding="utf-8")
     return folder
+
+
+def descendants(pid: int) -> set[int]:
+    """The processes that a process has started, and those that these have started, by Linux' /proc."""
+    parents = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (folder / "stat").read_text().rpartition(")")[2].split()
+        except (FileNotFoundError, ProcessLookupError):  # it has just ended
+            continue
+        if words[0] != "Z":
+            parents[int(folder.name)] = int(words[1])
+    found: set[int] = set()
+    newest = {pid}
+    while newest:
+        newest = {p for p, parent in parents.items() if parent in newest} - found
+        found |= newest
+    return found
+
+
+def gone(processes: set[int], seconds: float = 10.0) -> bool:
+    """Whether all these end in time."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        if not any(_runs(p) for p in processes):
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def _runs(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False

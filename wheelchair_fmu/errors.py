@@ -19,6 +19,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
+INTERRUPTED = "interrupted; files already there are as they were"
+
 
 class WheelchairError(Exception):
     """Base of all errors that a user can cause and cure."""

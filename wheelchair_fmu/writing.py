@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,10 +21,27 @@ def written(path: Path) -> Iterator[Path]:
     beside = path.with_name(f".{os.getpid()}-{uuid4().hex[:6]}-{path.name}")
     try:
         yield beside
-        beside.replace(path)
+        settle(beside, path)
     except OSError as error:
         if error.filename == str(beside):  # nobody asked for that one
             error.filename, error.filename2 = str(path), None
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+def settle(beside: Path, path: Path) -> None:
+    """Rename a finished file to `path` in such an order that a power failure leaves the old one or the new one, whole."""
+    with beside.open("rb+") as file:
+        os.fsync(file.fileno())
+    beside.replace(path)
+    if os.name == "nt":  # where a folder cannot be opened
+        return
+    folder = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    except OSError as error:
+        if error.errno != errno.EINVAL:  # what file systems say that have nothing to flush for a folder
+            raise
+    finally:
+        os.close(folder)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import pytest
 
-from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.engine import cache, compiler
 from wheelchair_fmu.errors import BuildError
+
+posix = pytest.mark.skipif(os.name == "nt", reason="a shell's script")
 
 
 def test_flags_of_a_compiler_make_it_another(monkeypatch):
@@ -19,13 +24,62 @@ def test_flags_of_a_compiler_make_it_another(monkeypatch):
         compiler.command.cache_clear()
 
 
-@pytest.mark.parametrize(("cc", "says"), [("false", "the C compiler failed; set CC to another"),
-                                          ("no-such-compiler", "set CC to one that runs")])  # fmt: skip
-def test_a_compiler_that_does_not_work_is_an_error_with_a_cure(monkeypatch, cc, says):
-    monkeypatch.setenv("CC", cc)
+@pytest.fixture
+def cc(monkeypatch):
+    """Sets $CC."""
+    yield lambda text: (monkeypatch.setenv("CC", text), compiler.command.cache_clear())
     compiler.command.cache_clear()
+
+
+def script(folder: Path, text: str) -> str:
+    """A program that is a compiler by name."""
+    file = folder / "compiler"
+    file.write_text(f"#!/bin/sh\n{text}\n")
+    file.chmod(0o755)
+    return str(file)
+
+
+@pytest.mark.parametrize(("words", "says"), [
+    ("false", "the C compiler failed; set CC to another"),
+    ("no-such-compiler", "set CC to one that runs"),
+    ('gcc "-O2', "CC = .* is no command: no closing quotation; set it as a shell would read it"),
+    ("sh -c :", "sh -c : --version says nothing, so it is no C compiler; set CC to one, or unset it"),
+])  # fmt: skip
+def test_a_compiler_that_does_not_work_is_an_error_with_a_cure(cc, words, says):
+    cc(words)
+    with pytest.raises(BuildError, match=says):
+        compiler.version.__wrapped__()
+
+
+def test_a_variable_that_is_blank_asks_for_nothing(cc):
+    cc(" ")
+    assert compiler.command() and compiler.version.__wrapped__()
+
+
+@posix
+@pytest.mark.parametrize(("does", "says"), [
+    ("true", "has written nothing, so it is no C compiler"),
+    ("sleep 60", "was ended after 0.3 s without a result; set CC to one"),
+    ("kill -s KILL $$", "was ended by SIGKILL, perhaps for want of memory"),
+    ("echo 'x.s: No space left on device' >&2; exit 1", "no room for what the C compiler writes; make room"),
+    ("printf '\\377\\376' >&2; exit 1", "the C compiler failed"),
+])  # fmt: skip
+def test_a_compiler_that_makes_nothing_is_said_in_a_sentence(cc, does, says, tmp_path, monkeypatch):
+    cc(script(tmp_path, does))
+    monkeypatch.setattr(compiler, "LONGEST", 0.3)
+    (tmp_path / "x.c").write_text("int x;\n")
+    with pytest.raises(BuildError, match=says):
+        compiler.compile_shared([tmp_path / "x.c"], tmp_path / "x.so")
+    assert not (tmp_path / "x.so").exists()
+
+
+@posix
+def test_a_compiler_for_another_machine_is_said(cc, tmp_path, monkeypatch):
+    cc(script(tmp_path, 'echo 1.0; for last; do :; done; [ "$last" = --version ] || echo text > "$last"'))
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "cache"))
+    compiler.version.cache_clear()
     try:
-        with pytest.raises(BuildError, match=says):
-            compiler.version.__wrapped__()
+        with pytest.raises(BuildError, match=r"cannot be loaded here .* set CC to a compiler for this machine"):
+            cache.helper("innovations")
     finally:
-        compiler.command.cache_clear()
+        compiler.version.cache_clear()

@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 from typer.core import TyperGroup
 
+from ..errors import INTERRUPTED as SAID
 from ..errors import WheelchairError
 
 Progress = Annotated[bool, typer.Option("--progress", help="Say each step on a line of its own on stderr.")]
@@ -51,7 +52,7 @@ class Group(TyperGroup):
             console(stderr=True).print(_file_message(error))
             raise typer.Exit(1) from None
         except KeyboardInterrupt:
-            console(stderr=True).print("interrupted; files already there are as they were")
+            console(stderr=True).print(SAID)
             raise typer.Exit(INTERRUPTED) from None
 
 

@@ -6,32 +6,24 @@ import ctypes
 import hashlib
 import linecache
 import os
-import tempfile
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-import platformdirs
-
+from ..children import side_by_side
+from ..errors import BuildError
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
 from .kernel import kernel
 from .source import CSRC, c_source, coefficients, tangent_source
+from .store import kept
 from .tangent import tangent
 
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
 LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "-O3", "rodas": "-O3"}
-
-
-def folder() -> Path:
-    """Where compiled kernels are kept: $WHEELCHAIR_CACHE, or the user's cache folder."""
-    path = Path(os.environ.get("WHEELCHAIR_CACHE") or platformdirs.user_cache_dir("wheelchair-fmu"))
-    path.mkdir(parents=True, exist_ok=True)
-    return path
 
 
 def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None) -> ctypes.CDLL:
@@ -42,30 +34,34 @@ def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | 
     effects = sorted(effects, key=lambda e: e.id)
     words = "\n".join((_toolchain(), repr(choice), repr(columns), *map(effect_key, effects)))
     key = hashlib.sha256(words.encode()).hexdigest()[:24]
-    target = folder() / f"{key}{compiler.SUFFIX}"
-    if not target.exists():
-        with tempfile.TemporaryDirectory(dir=folder()) as place:
-            _compile(choice, effects, columns, Path(place), target)
-    return ctypes.CDLL(str(target))
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(choice, effects, columns, path)))
 
 
 def helper(name: str) -> ctypes.CDLL:
     """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
-    target = _place(name, compiler.SUFFIX)
-    if not target.exists():
-        compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3"])
-    return ctypes.CDLL(str(target))
+    flags = ["-fvisibility=default", "-O3"]
+    return _loaded(kept(_name(name, compiler.SUFFIX), compiler.SUFFIX,
+                        lambda path: compiler.compile_shared([CSRC / f"{name}.c"], path, flags)))  # fmt: skip
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, place: Path, target: Path) -> None:
+def _loaded(path: Path) -> ctypes.CDLL:
+    try:
+        return ctypes.CDLL(str(path))
+    except OSError as error:
+        raise BuildError(f"what {' '.join(compiler.command())} makes cannot be loaded here ({error}); set CC to a compiler "
+                         "for this machine") from error  # fmt: skip
+
+
+def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, target: Path) -> None:
     model = assemble(choice, effects)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
         texts["tangent_model"] = tangent_source(tangent(model, columns), "tangent")
         by_hand = ["tangent", "rodas"]
+    place = target.parent
     for name, text in texts.items():
         (place / f"{name}.c").write_text(text)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with side_by_side(os.cpu_count()) as pool:
         objects = [pool.submit(_object, place / f"{name}.c", place / f"{name}.o") for name in texts]
         objects += [pool.submit(_by_hand, name) for name in by_hand]
         compiler.compile_shared([o.result() for o in objects], target)
@@ -73,13 +69,13 @@ def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | Non
 
 def _by_hand(name: str) -> Path:
     """A file of `csrc` that all models share, compiled once."""
-    target = _place(name, ".o")
-    if not target.exists():
-        with tempfile.TemporaryDirectory(dir=folder()) as place:
-            header = Path(place) / "coefficients.h"
-            header.write_text(coefficients())
-            _object(CSRC / f"{name}.c", target, "-include", str(header))
-    return target
+
+    def make(path: Path) -> None:
+        header = path.with_name("coefficients.h")
+        header.write_text(coefficients())
+        _object(CSRC / f"{name}.c", path, "-include", str(header))
+
+    return kept(_name(name, ".o"), ".o", make)
 
 
 def _object(source: Path, target: Path, *flags: str) -> Path:
@@ -87,10 +83,9 @@ def _object(source: Path, target: Path, *flags: str) -> Path:
     return compiler.compile_object(source, target, ["-fvisibility=default", f"-I{CSRC}", LEVELS[source.stem], *flags])
 
 
-def _place(name: str, suffix: str) -> Path:
-    """Where a file of `csrc`, compiled, is kept."""
-    key = hashlib.sha256(f"{_toolchain()} {suffix}".encode()).hexdigest()[:24]
-    return folder() / f"{name}-{key}{suffix}"
+def _name(name: str, suffix: str) -> str:
+    """What a file of `csrc`, compiled, is called."""
+    return f"{name}-{hashlib.sha256(f'{_toolchain()} {suffix}'.encode()).hexdigest()[:24]}"
 
 
 def _toolchain() -> str:

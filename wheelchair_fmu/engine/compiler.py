@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Sequence
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
+from ..children import run
 from ..errors import BuildError
 
 # Contracting a·b + c to one rounding would give other digits on other machines. Nobody asks errno after a square root.
 FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden",
          "-fno-sanitize=all")  # fmt: skip
+LONGEST = 900.0  # seconds: ziglang compiles its C library at first, which takes slow machines minutes
+CURE = "set CC to one, or unset it"
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
@@ -27,8 +31,12 @@ def command() -> tuple[str, ...]:
 
     Raises BuildError where there is none.
     """
-    if os.environ.get("CC"):
-        return tuple(shlex.split(os.environ["CC"]))
+    try:
+        if words := shlex.split(os.environ.get("CC", "")):
+            return tuple(words)
+    except ValueError as error:
+        raise BuildError(f"CC = {os.environ['CC']!r} is no command: {str(error).lower()}; set it as a shell would read it, or "
+                         "unset it") from None  # fmt: skip
     for name in ("cc", "gcc", "clang"):
         if path := shutil.which(name):
             return (path,)
@@ -40,13 +48,16 @@ def command() -> tuple[str, ...]:
 @cache
 def version() -> str:
     """What $CC asks for, and what the compiler says of itself, for the cache's key."""
-    return f"{os.environ.get('CC', '')} {_run([*command(), '--version']).splitlines()[0]}"
+    said = _run([*command(), "--version"], 60.0).strip()
+    if not said:
+        raise BuildError(f"{shlex.join(command())} --version says nothing, so it is no C compiler; {CURE}")
+    return f"{os.environ.get('CC', '')} {said.splitlines()[0]}"
 
 
 def compile_shared(
     sources: Sequence[Path], target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None
 ) -> Path:
-    """Compile `sources`, C files or objects, into the shared library `target`, which appears whole or not at all.
+    """Compile `sources`, C files or objects, into the shared library `target`.
 
     `cross` is the compiler for another system than this.
 
@@ -66,19 +77,35 @@ def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) ->
 
 
 def _compiled(compiler: list[str], sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
-    with TemporaryDirectory(dir=target.parent) as folder:
-        beside = Path(folder) / target.name  # some linkers write the file's name into it
-        _run([*compiler, *map(str, sources), *flags, "-o", str(beside)])
-        beside.replace(target)
+    _run([*compiler, *map(str, sources), *flags, "-o", str(target)])
+    if not target.exists():
+        raise BuildError(f"the C compiler {compiler[0]!r} has written nothing, so it is no C compiler; {CURE}")
     return target
 
 
-def _run(words: list[str]) -> str:
+def _run(words: list[str], seconds: float | None = None) -> str:
+    """What a compiler prints. Raises BuildError, in one sentence and the compiler's own words."""
+    seconds = seconds or LONGEST
     try:
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = run(words, seconds)
     except OSError as error:
         raise BuildError(f"cannot run the C compiler {words[0]!r}: {error.strerror}; set CC to one that runs") from error
+    except subprocess.TimeoutExpired:
+        raise BuildError(f"the C compiler {words[0]!r} was ended after {seconds:g} s without a result; {CURE}") from None
+    if done.returncode < 0:
+        raise BuildError(f"the C compiler {words[0]!r} was ended by {_signal(-done.returncode)}, perhaps for want of memory; "
+                         "run the same again, with less beside it")  # fmt: skip
+    said = "\n".join(filter(None, (shlex.join(words), done.stderr.strip())))
+    if done.returncode and os.strerror(errno.ENOSPC) in said:
+        raise BuildError(f"no room for what the C compiler writes; make room, or set TMPDIR and WHEELCHAIR_CACHE to folders on "
+                         f"another disk: {said}")  # fmt: skip
     if done.returncode:
-        said = "\n".join(filter(None, (shlex.join(words), done.stderr.strip())))
         raise BuildError(f"the C compiler failed; set CC to another, or unset it and `pip install ziglang`: {said}")
     return done.stdout
+
+
+def _signal(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import hashlib
-import tempfile
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Lock
 
+from ..children import side_by_side
 from ..errors import BuildError
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import cache, compiler
 from .kernel import kernel
 from .source import CSRC, NOTHING, c_source, coefficients, tangent_source
+from .store import kept
 from .tangent import tangent
 
 PUSHES = 2  # the hands' forces: a campaign states no noise of torques
@@ -28,6 +30,8 @@ FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O3", "-
 KERNEL = {"step": "wc_page_step", "forward": NOTHING, "rate": NOTHING}
 TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_all", "begin"), NOTHING)
 
+_deriving = Lock()  # CasADi's objects are not for several threads
+
 
 def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str]) -> list[bytes]:
     """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`.
@@ -39,36 +43,33 @@ def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence
     if not find_spec("ziglang"):
         raise BuildError("the model is compiled to WebAssembly by ziglang, which is not installed; "
                          "pip install 'wheelchair-fmu[report]'")  # fmt: skip
-    with ThreadPoolExecutor() as pool, tempfile.TemporaryDirectory(dir=cache.folder()) as place:
+    with side_by_side() as pool:
         waiting = []
-        for i, (choice, some) in enumerate(models):
+        for choice, some in models:
             effects = sorted(some, key=lambda e: e.id)
-            target = _target(choice, effects, columns)
-            files = [] if target.exists() else _written(choice, effects, columns, Path(place) / str(i))
-            waiting.append(pool.submit(_compiled, files, target))
+            make = partial(_compile, choice, effects, columns)
+            waiting.append(pool.submit(kept, _name(choice, effects, columns), ".wasm", make))
         return [w.result().read_bytes() for w in waiting]
 
 
-def _target(choice: Choice, effects: list[Effect], columns: Sequence[str]) -> Path:
+def _name(choice: Choice, effects: list[Effect], columns: Sequence[str]) -> str:
     words = "\n".join((cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), *map(cache.effect_key, effects)))
-    key = hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
-    return cache.folder() / f"{key}.wasm"
+    return hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
+
+
+def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], target: Path) -> None:
+    files = _written(choice, effects, columns, target.parent)
+    by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
+    flags = [*FLAGS, f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
+    compiler.compile_wasm([*files, *by_hand], target, flags)
 
 
 def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], place: Path) -> list[Path]:
     """The model's C files, and what they need beside them."""
-    model = assemble(choice, effects)
-    sources = {"model.c": c_source(kernel(model), "model", KERNEL),
-               "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT)}  # fmt: skip
-    place.mkdir()
+    with _deriving:
+        model = assemble(choice, effects)
+        sources = {"model.c": c_source(kernel(model), "model", KERNEL),
+                   "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT)}  # fmt: skip
     for name, text in {**sources, "coefficients.h": coefficients()}.items():
         (place / name).write_text(text)
     return [place / name for name in sources]
-
-
-def _compiled(files: list[Path], target: Path) -> Path:
-    if not files:
-        return target
-    by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
-    flags = [*FLAGS, f"-I{CSRC}", "-include", str(files[0].with_name("coefficients.h"))]
-    return compiler.compile_wasm([*files, *by_hand], target, flags)

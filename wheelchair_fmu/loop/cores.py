@@ -23,7 +23,11 @@ def each(do: Callable[[Thing], Result], things: Iterable[Thing],
         return [do(thing) for thing in things]
     order = sorted(range(len(things)), key=lambda i: -size(things[i]))
     begun = {i: _pool().submit(do, things[i]) for i in order}
-    return [begun[i].result() for i in range(len(things))]
+    try:
+        return [begun[i].result() for i in range(len(things))]
+    finally:  # after a fault, or Ctrl-C, nobody waits for the rest
+        for waiting in begun.values():
+            waiting.cancel()
 
 
 _this = local()  # thread

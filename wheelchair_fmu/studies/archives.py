@@ -12,7 +12,8 @@ import casadi
 
 from .. import __version__
 from ..engine import compiler
-from ..engine.cache import effect_key, folder
+from ..engine.cache import effect_key
+from ..engine.store import kept
 from ..fmu.build import build, with_chosen_effects
 from ..model.variant import Variant
 
@@ -30,8 +31,7 @@ def fmu_of(variant: Variant, effects: str | Iterable[str] = "default") -> Path:
     bare = replace(with_chosen_effects(variant, effects), values={}, notes={})
     words = (_makers(), repr(bare.choice), *(effect_key(e) for e in bare.active()))
     key = hashlib.sha256("\n".join(words).encode()).hexdigest()[:24]
-    target = folder() / f"Wheelchair-{key}.fmu"
-    return target if target.exists() else build(bare, target, effects="none")
+    return kept(f"Wheelchair-{key}", ".fmu", lambda path: build(bare, path, effects="none"))
 
 
 @cache

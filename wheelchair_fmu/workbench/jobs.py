@@ -9,10 +9,12 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..children import child
 from ..errors import UsageError
 
 COMMAND = (sys.executable, "-m", "wheelchair_fmu.cli.main")
@@ -53,18 +55,20 @@ class Job:
 
     def _one(self, words: Sequence[str], folder: Path) -> str | None:
         """What the command printed; None where it failed or was cancelled."""
-        with self.lock:
-            if self.state != "running":
-                return None
-            self.process = subprocess.Popen([*COMMAND, *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                            text=True, env={**os.environ, "PYTHONPATH": SEARCHED})  # fmt: skip
-        process = self.process
-        said = threading.Thread(target=self._listen, args=(process.stderr,), daemon=True)
-        said.start()
-        assert process.stdout
-        out = process.stdout.read()
-        code = process.wait()
-        said.join()
+        with ExitStack() as stack:
+            with self.lock:
+                if self.state != "running":
+                    return None
+                process = stack.enter_context(child([*COMMAND, *words], cwd=folder, stdout=subprocess.PIPE,
+                                                    stderr=subprocess.PIPE,
+                                                    env={**os.environ, "PYTHONPATH": SEARCHED}))  # fmt: skip
+                self.process = process
+            said = threading.Thread(target=self._listen, args=(process.stderr,), daemon=True)
+            said.start()
+            assert process.stdout
+            out = process.stdout.read()
+            code = process.wait()
+            said.join()
         with self.lock:
             if self.state == "running" and code:
                 self.state = "failed"

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,8 @@ from wheelchair_fmu.chunks import bad, complete, dask, here, is_done
 from wheelchair_fmu.chunks.parts import folder
 from wheelchair_fmu.errors import Failure
 from wheelchair_fmu.studies.sweep import Job, prepare, read_plan
+
+from ...kit import descendants, gone
 
 SMALL = """
 [sweep]
@@ -173,8 +176,10 @@ def test_killed_outright_and_run_again(tmp_path):
     job, out = job_of(tmp_path, LONG), tmp_path / "out.parquet"
     first = subprocess.Popen(command(tmp_path, out, "--workers", "2"))
     wait_for_parts(out, 3, first)
+    workers = descendants(first.pid)
     first.send_signal(signal.SIGKILL)
     first.wait()
+    assert gone(workers, 30) and (workers or not Path("/proc/self/stat").exists())
     kept = {file.name: file.stat().st_mtime_ns for file in folder(out).glob("[0-9]*.parquet")}
     again = subprocess.Popen(command(tmp_path, out, "--workers", "2"))
     wait_for_parts(out, len(kept) + 1, again)
