@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis importers nightly clean
+.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -16,7 +16,8 @@ help:
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make importers   the FMUs in other people's importers, as a table; these go into $(VENV)-importers"
-	@echo "make nightly     what takes longer: every platform, importers, fuzzing, a minute in real time; then bench-diagnosis"
+	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
+	@echo "make nightly     what takes up to an hour: every platform, importers, fuzzing, kills and damage, a few hidden truths, matrix"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready
@@ -71,12 +72,25 @@ $(VENV)-importers/.ready: benchmarks/importers/requirements.txt
 	$(VENV)-importers/bin/python -m pip install --quiet --disable-pip-version-check -r $<
 	@touch $@
 
+# PYTHONS and TESTS narrow it, or widen it to TESTS=tests.
+matrix: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[matrix]"
+	$(BIN)/python -m benchmarks.matrix $(if $(PYTHONS),--pythons $(PYTHONS)) $(if $(TESTS),--tests $(TESTS))
+
 # Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind, clang with libclang-rt-dev; the rest is skipped
-# with its reason.
+# with its reason. Every part is done, and it fails if one has failed. NIGHTLY_SEED and TRIALS' --seeds choose other moments,
+# places and chairs.
+NIGHTLY_SEED ?= 1
+nightly: TRIALS := --seeds $(NIGHTLY_SEED) --every 20 --out out/nightly-diagnosis
 nightly: setup $(VENV)-importers/.ready
+	@echo "seeds: NIGHTLY_SEED=$(NIGHTLY_SEED), trials $(TRIALS)"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
-	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly
-	$(MAKE) bench-diagnosis
+	@failed=; \
+	NIGHTLY_SEED=$(NIGHTLY_SEED) IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly \
+		|| failed="$$failed tests"; \
+	$(BIN)/python -m benchmarks.diagnosis $(TRIALS) || failed="$$failed trials"; \
+	$(MAKE) --no-print-directory matrix || failed="$$failed matrix"; \
+	if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
 
 clean:
 	rm -rf dist out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -49,6 +49,11 @@ def test_platforms_by_name():
         chosen("x86_64-linux,x86_64-windos")
 
 
+@pytest.mark.skipif(not HOST.endswith("-linux") or not shutil.which("readelf"), reason="asks readelf about a Linux library")
+def test_a_library_for_this_system_loads_on_old_ones_too(native):
+    assert _newest_glibc(native.library) <= (2, 17)
+
+
 def _trajectory(unpacked: Unpacked, library: Path, program: Path, version: str, runner: list[str]) -> np.ndarray:
     references = [str(unpacked.reference(n)) for n in (*INPUTS, *OUTPUTS)]
     words = [*runner, str(program), str(library), unpacked.description.guid, version, "400", "0.01", *references]
@@ -99,8 +104,7 @@ def test_libraries_export_fmi_and_need_the_system_only(everywhere):
         assert all(re.match(r"lib[cm]\.so|ld-linux|KERNEL32|api-ms-win-crt|ucrtbase|msvcrt|/usr/lib/libSystem", n)
                    for n in needed), (name, needed)  # fmt: skip
         if "linux" in name:
-            versions = re.findall(r"GLIBC_(\d+)\.(\d+)", _said("readelf", "-V", str(library)))
-            assert max((int(a), int(b)) for a, b in versions) <= (2, 17), name
+            assert _newest_glibc(library) <= (2, 17), name
 
 
 @needs_zig
@@ -108,6 +112,11 @@ def test_libraries_export_fmi_and_need_the_system_only(everywhere):
 def test_two_builds_for_all_platforms_are_the_same_bytes(everywhere, tmp_path):
     build_each({"3": tmp_path / "again.fmu"}, platforms="all")
     assert (tmp_path / "again.fmu").read_bytes() == everywhere["3"].path.read_bytes()
+
+
+def _newest_glibc(library: Path) -> tuple[int, int]:
+    versions = re.findall(r"GLIBC_(\d+)\.(\d+)", _said("readelf", "-V", str(library)))
+    return max((int(a), int(b)) for a, b in versions)
 
 
 def _said(*words: str) -> str:

@@ -16,6 +16,20 @@ from ..errors import BuildError, unknown
 ELF = ("-Wl,-Bsymbolic", "-Wl,--no-undefined", "-s")
 MACH = ("-s", "-Wl,-install_name,@rpath/Wheelchair.dylib")
 
+# glibc has newer versions of these, which differ in errno alone. Linked with the oldest, a library loads on systems as old
+# as those that ziglang builds for.
+RENEWED = ("exp", "exp2", "fmod", "hypot", "log", "log2", "pow")
+OLDEST_GLIBC = f"""
+#include <stdlib.h>
+#ifdef __GLIBC__
+#ifdef __x86_64__
+{"".join(f'__asm__(".symver {name},{name}@GLIBC_2.2.5");' for name in RENEWED)}
+#elif defined(__aarch64__)
+{"".join(f'__asm__(".symver {name},{name}@GLIBC_2.17");' for name in RENEWED)}
+#endif
+#endif
+"""
+
 
 @dataclass(frozen=True)
 class Platform:
@@ -76,4 +90,9 @@ def chosen(words: str) -> list[Platform]:
 
 def compile_for(p: Platform, sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
     """Compile C files into the shared library `target` of a platform."""
-    return compiler.compile_shared(sources, target, [*flags, *p.link], p.command())
+    flags = [*flags, *p.link]
+    if p.link == ELF and not p.target:
+        header = target.with_name("oldest_glibc.h")
+        header.write_text(OLDEST_GLIBC)
+        flags += ["-include", str(header)]
+    return compiler.compile_shared(sources, target, flags, p.command())
