@@ -6,7 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from wheelchair_fmu.errors import INTERRUPTED, WheelchairError
+from wheelchair_fmu.cli.terminal import printable
+from wheelchair_fmu.errors import WheelchairError
 
 
 class Parser(argparse.ArgumentParser):
@@ -41,15 +42,12 @@ def main(argv: list[str] | None = None) -> int:
     given = arguments(argv)
     try:
         print(*built(given), sep="\n")
-    except WheelchairError as error:
-        print(error, file=sys.stderr)
-        return error.exit_code
-    except OSError as error:
-        print(f"{error.filename or 'a file'}: {error.strerror or error}; make room, or get the rights", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        print(INTERRUPTED, file=sys.stderr)
-        return 130  # 128 + SIGINT, as shells have it
+    except (WheelchairError, OSError, MemoryError, RecursionError, KeyboardInterrupt) as error:
+        from wheelchair_fmu.cli.group import ending
+
+        message, code = ending(error)
+        print(printable(message), file=sys.stderr)
+        return code
     return 0
 
 

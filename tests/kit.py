@@ -1,4 +1,4 @@
-"""What several tests need: a chair with effects, random places to evaluate it at, settings of a campaign, who is whose child."""
+"""What several tests need: a chair with effects, places to evaluate it at, settings of a campaign, who is whose child."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 ERROR, WARNING = "error", "warning"
 SHOWN = 10  # faults of one kind listed for one column; the rest are counted
+LONG = 500  # characters of a fact; a cell may hold a million
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,20 @@ class Fault:
         warning = "warning: " if self.severity == WARNING else ""
         place = f"run {self.file}" if self.in_run else self.file
         line = f" line {self.line}" if self.line is not None else ""
-        column = f" column {self.column!r}" if self.column is not None else ""
-        return f"{warning}{place}{line}{column}: {self.fact}; {self.cure}"
+        column = f" column {short(repr(self.column))}" if self.column is not None else ""
+        return f"{warning}{place}{line}{column}: {short(self.fact)}; {self.cure}"
+
+
+def short(text: str) -> str:
+    """The text, or its two ends where a file put too much into it."""
+    return text if len(text) <= LONG else f"{text[: LONG // 2]} … {text[-LONG // 2 :]}"
+
+
+def some(words: Iterable[str]) -> str:
+    """The first of many words, with commas, and how many more there are."""
+    words = list(words)
+    more = f" and {len(words) - SHOWN} more" if len(words) > SHOWN else ""
+    return ", ".join(words[:SHOWN]) + more
 
 
 def run_fault(

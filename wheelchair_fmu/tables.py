@@ -17,7 +17,9 @@ import numpy as np
 import pandas as pd
 
 from .faults import SHOWN, Fault, not_utf8, run_fault
+from .given import what_is
 
+MOST = 2**30  # bytes that a packed recording may have unpacked: a day at 100 Hz has less
 _GAPS = ("", "NaN", "nan", "NAN")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf(inity)?", re.IGNORECASE)
 
@@ -51,16 +53,25 @@ class FrameTable:
     headers: tuple[str, ...]
     frame: pd.DataFrame
 
+    @property
+    def length(self) -> int:
+        return len(self.frame)
+
     def rows(self, indices: Sequence[int]) -> Rows:
         values, faults = {}, []
         for i in indices:
-            try:
-                values[i] = self.frame.iloc[:, i].to_numpy(dtype=float, na_value=nan)
-            except (TypeError, ValueError):
-                fact = f"the column holds {self.frame.dtypes.iloc[i]}, not numbers"
-                faults.append(run_fault(self.file, fact, "store it as numbers", column=self.headers[i]))
-                values[i] = np.full(len(self.frame), nan)
+            values[i], met = numbers(self.file, self.headers[i], self.frame.iloc[:, i])
+            faults += met
         return Rows(values, None, tuple(faults))
+
+
+def numbers(file: str, header: str, column: pd.Series) -> tuple[np.ndarray, list[Fault]]:
+    """A library's column (n,) as numbers; gaps, and the fault, where it holds something else."""
+    try:
+        return column.to_numpy(dtype=float, na_value=nan), []
+    except (TypeError, ValueError):
+        fact = f"the column holds {column.dtype}, not numbers"
+        return np.full(len(column), nan), [run_fault(file, fact, "store it as numbers", column=header)]
 
 
 @dataclass
@@ -83,8 +94,7 @@ class CsvTable:
 
     def words(self, index: int) -> list[str]:
         """A column of text, one word for each row of `rows`."""
-        reader = csv.reader(io.StringIO(self.body), delimiter=self.separator, quoting=self._quoting())
-        filled = (row for row in reader if any(cell.strip() for cell in row))
+        filled = (row for row in self._cells() if any(cell.strip() for cell in row))
         return [row[index].strip() if index < len(row) else "" for row in filled]
 
     def _fast(self, indices: tuple[int, ...]) -> Rows | None:
@@ -110,12 +120,20 @@ class CsvTable:
 
     def _careful(self, indices: tuple[int, ...]) -> Rows:
         """Cell by cell, to name the line of every fault."""
-        reader = csv.reader(io.StringIO(self.body), delimiter=self.separator, quoting=self._quoting())
+        reader, too_long = self._cells(), list[Fault]()
         cells: dict[int, list[float]] = {i: [] for i in indices}
         lines: list[int] = []
         bad: dict[int, list[tuple[int, str]]] = {i: [] for i in indices}
         ragged: list[tuple[int, str]] = []
-        for row in reader:
+        while True:
+            try:
+                row = next(reader)
+            except StopIteration:
+                break
+            except csv.Error as error:
+                line = reader.line_num + self.header_line
+                too_long.append(run_fault(self.file, f"the row cannot be read ({error})", "export the file again", line))
+                break
             if not any(cell.strip() for cell in row):
                 continue
             line = reader.line_num + self.header_line
@@ -128,11 +146,14 @@ class CsvTable:
                 if np.isnan(cells[i][-1]) and text not in _GAPS:
                     bad[i].append((line, f"{text!r} is not a number"))
         values = {i: np.array(cells[i], dtype=float) for i in indices}
-        faults = self._listed(ragged, None, "write one cell for each column")
+        faults = too_long + self._listed(ragged, None, "write one cell for each column")
         for i in indices:
             faults += self._listed(bad[i], self.headers[i], "write a number, or leave the cell empty for a gap")
         faults += self._infinite(values, np.array(lines))
         return Rows(values, np.array(lines), tuple(faults))
+
+    def _cells(self) -> Any:
+        return csv.reader(io.StringIO(self.body), delimiter=self.separator, quoting=self._quoting())
 
     def _quoting(self) -> Literal[0, 3]:
         """A quote that is never closed would swallow the rest of the file: then quotes are plain characters."""
@@ -158,12 +179,19 @@ class CsvTable:
 
 
 def read_bytes(path: Path) -> bytes:
-    """The file's bytes, unpacked where its name ends in .gz. Raises OSError."""
-    raw = path.read_bytes()
+    """The file's bytes, unpacked where its name ends in .gz. Raises OSError, also for more than MOST unpacked bytes."""
+    if kind := what_is(path):
+        raise OSError(f"it is {kind}")
+    if path.suffix != ".gz":
+        return path.read_bytes()
     try:
-        return gzip.decompress(raw) if path.suffix == ".gz" else raw
+        with gzip.open(path) as packed:
+            raw = packed.read(MOST + 1)
     except (EOFError, zlib.error) as error:
         raise OSError(f"broken gzip: {error}") from error
+    if len(raw) > MOST:
+        raise OSError(f"it unpacks to more than {MOST / 2**30:g} GiB; unpack it yourself if that is right")
+    return raw
 
 
 def unreadable(file: str, error: OSError) -> Fault:
@@ -184,7 +212,11 @@ def read_csv(file: str, raw: bytes) -> tuple[CsvTable | None, list[Fault]]:
     blank = len(text) - len(text.lstrip("\n"))
     first, _, body = text[blank:].partition("\n")
     separator = _separator(first)
-    headers = tuple(cell.strip() for cell in next(csv.reader([first], delimiter=separator)))
+    try:
+        headers = tuple(cell.strip() for cell in next(csv.reader([first], delimiter=separator)))
+    except csv.Error as error:
+        cure = "is it a table with one line of headers?"
+        return None, [run_fault(file, f"the header cannot be read ({error})", cure, blank + 1)]
     if not body.strip():
         return None, [run_fault(file, "the file has a header but no rows", "export it again, or leave it out")]
     decimal = "," if separator != "," and "," in body else "."

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
+FULL = tuple(getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG") if hasattr(errno, name))  # the disk, or one's share
+
 
 @contextmanager
 def written(path: Path) -> Iterator[Path]:
@@ -23,7 +25,8 @@ def written(path: Path) -> Iterator[Path]:
         yield beside
         settle(beside, path)
     except OSError as error:
-        if error.filename == str(beside):  # nobody asked for that one
+        # nobody asked for the file beside; and a disk that is full names none
+        if error.filename == str(beside) or (error.filename is None and error.errno in FULL):
             error.filename, error.filename2 = str(path), None
         raise
     finally:

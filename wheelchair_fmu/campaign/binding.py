@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..faults import WARNING, Fault, run_fault, suggestion
+from ..faults import SHOWN, WARNING, Fault, run_fault, some, suggestion
 from ..units import UnitError, factor, same_dimension, split
 from .channels import BY_NAME, SOURCES, TIME, Channel
 from .devices import Device
 from .document import Document, number
+
+MANY = 1000  # headers among which a misspelt one is looked for
 
 
 @dataclass(frozen=True)
@@ -64,12 +67,13 @@ def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[st
     found: dict[str, Binding] = {}
     faults: list[Fault] = list(_twice(file, headers))
     absent: list[str] = []
+    places = _Places(headers)
     for channel in (TIME, *BY_NAME.values(), *SOURCES):
         want = wanted(device, channel.name)
-        matches = _matches(headers, want.header)
+        matches = places.of(want.header)
         if not matches and want.renamed:
             absent.append(channel.name)
-            want, matches = Wanted(channel.name), _matches(headers, channel.name)
+            want, matches = Wanted(channel.name), places.of(channel.name)
         if len({headers[i] for i in matches}) > 1:
             both = " and ".join(repr(headers[i]) for i in matches)
             cure = f"remove one, or choose one by its whole header in [columns] {channel.name}"
@@ -81,22 +85,30 @@ def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[st
     used = {binding.index for binding in found.values()}
     extra = [repr(header) for i, header in enumerate(headers) if i not in used and header and header not in taken]
     if extra:
-        what = f"column{'s' * (len(extra) > 1)} {', '.join(extra)} not used"
+        what = f"column{'s' * (len(extra) > 1)} {some(extra)} not used"
         faults.append(run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING))
     return Bindings(found, tuple(faults), tuple(absent))
 
 
-def _matches(headers: Sequence[str], header: str) -> list[int]:
-    """By the whole header first, then without the bracket."""
-    whole = [i for i, h in enumerate(headers) if h == header]
-    return whole or [i for i, h in enumerate(headers) if split(h)[0] == split(header)[0]]
+class _Places:
+    """Where each header stands: by the whole header first, then without the bracket."""
+
+    def __init__(self, headers: Sequence[str]):
+        self._whole, self._bare = defaultdict[str, list[int]](list), defaultdict[str, list[int]](list)
+        for i, header in enumerate(headers):
+            self._whole[header].append(i)
+            self._bare[split(header)[0]].append(i)
+
+    def of(self, header: str) -> list[int]:
+        return self._whole.get(header) or self._bare.get(split(header)[0], [])
 
 
 def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
-    for header in dict.fromkeys(headers):
-        if header and headers.count(header) > 1:
-            fact = f"the header {header!r} stands there {headers.count(header)} times"
-            yield run_fault(file, fact, "rename or remove all but one", 1)
+    often = [(header, n) for header, n in Counter(headers).items() if header and n > 1]
+    for header, n in often[:SHOWN]:
+        yield run_fault(file, f"the header {header!r} stands there {n} times", "rename or remove all but one", 1)
+    if len(often) > SHOWN:
+        yield run_fault(file, f"{len(often) - SHOWN} more headers like these", "rename or remove all but one each", 1)
 
 
 def _scaled(
@@ -144,4 +156,4 @@ def absent_fault(doc: Document, device: Device, name: str, headers: Sequence[str
     header = wanted(device, name).header
     of = f" of {device.name}" if device.name else ""
     fact = f"no run has the column {header!r} that [columns]{of} gives for {name}"
-    return doc.fault(f"{device.path}.{name}", fact, suggestion(header, [h for h in headers if h]), device.place)
+    return doc.fault(f"{device.path}.{name}", fact, suggestion(header, [h for h in headers if h][:MANY]), device.place)

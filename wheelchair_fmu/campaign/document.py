@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..faults import ERROR, Fault, not_utf8
+from ..given import toml, what_is
 
 FILE = "campaign.toml"
 REPEATED = ("run", "recording")  # written [[run]], each a list
@@ -19,9 +20,12 @@ Lines = dict[tuple[str, int | None], int]
 
 def number(value: Any) -> float | None:
     """A finite number as float; None for anything else (true and false are no numbers)."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return None
-    return float(value)
+    try:
+        return float(value) if isfinite(value) else None
+    except OverflowError:  # an integer of hundreds of digits
+        return None
 
 
 def flatten(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
@@ -124,6 +128,8 @@ def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
         if not path.is_file():
             what = f"no {FILE} in this folder"
             return None, [Fault(str(path.parent), None, None, what, "write one that names the chair and the runs")]
+    elif kind := what_is(path):
+        return None, [Fault(str(path), None, None, f"this is {kind}", "give a folder with campaign.toml, or that file")]
     try:
         raw = path.read_bytes()
     except OSError as error:
@@ -131,7 +137,7 @@ def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
         return None, [Fault(path.name, None, None, fact, "check the rights to read it")]
     try:
         text = raw.decode("utf-8-sig").replace("\r\n", "\n")
-        data = tomllib.loads(text)
+        data = toml(text)
     except UnicodeDecodeError as error:
         return None, [not_utf8(path.name, raw, error)]
     except tomllib.TOMLDecodeError as error:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +14,8 @@ import numpy as np
 import pandas as pd
 
 from ..errors import CampaignError, UsageError
-from ..faults import WARNING, Fault, run_fault
-from ..tables import Table, as_frame_table, read_bytes, read_csv, unreadable
+from ..faults import WARNING, Fault, once, run_fault
+from ..tables import Rows, Table, as_frame_table, numbers, read_bytes, read_csv, unreadable
 from .devices import Part
 from .document import number
 
@@ -29,9 +32,10 @@ def open_table(part: Part, path: Path) -> tuple[Table | None, list[Fault]]:
     if kind == "smartwheel":
         return _open_smartwheel(part, path)
     if kind == "parquet":
-        return _by_library(part.file, path, "pyarrow", lambda _: pd.read_parquet(path))
+        return _by_library(part.file, path, "pyarrow.parquet",
+                           lambda library: ParquetTable.of(part.file, library.ParquetFile(path)))  # fmt: skip
     if kind == "mdf":
-        return _by_library(part.file, path, "asammdf", lambda library: _mdf(library, path))
+        return _by_library(part.file, path, "asammdf", lambda library: as_frame_table(part.file, _mdf(library, path)))
     try:
         return read_csv(part.file, read_bytes(path))
     except OSError as error:
@@ -43,16 +47,51 @@ def _by_library(file: str, path: Path, name: str, read: Any) -> tuple[Table | No
     try:
         library = importlib.import_module(name)
     except ImportError:
-        fact = f"{path.suffix} files need the library {name}, which is not installed"
-        return None, [run_fault(file, fact, f"pip install {name}, or export the file as CSV")]
+        package = name.partition(".")[0]
+        fact = f"{path.suffix} files need the library {package}, which is not installed"
+        return None, [run_fault(file, fact, f"pip install {package}, or export the file as CSV")]
     try:
-        frame = read(library)
+        table = read(library)
     except Exception as error:  # these libraries have no common base for errors
-        what = " ".join(str(error).split()) or type(error).__name__
-        return None, [run_fault(file, f"{name} cannot read the file: {what}", "export it again")]
-    if frame.empty:
+        return None, [_broken(file, name, error)]
+    if not table.length:
         return None, [run_fault(file, "the file has no rows", "export it again, or leave it out")]
-    return as_frame_table(file, frame), []
+    return table, []
+
+
+def _broken(file: str, library: str, error: Exception) -> Fault:
+    what = " ".join(str(error).split()) or type(error).__name__
+    return run_fault(file, f"{library.partition('.')[0]} cannot read the file: {what}", "export it again")
+
+
+@dataclass
+class ParquetTable:
+    """A Parquet file, of which only those columns are read that are asked for."""
+
+    file: str
+    headers: tuple[str, ...]
+    columns: tuple[str, ...]  # their names as the file has them
+    length: int
+    opened: Any = field(repr=False)
+
+    @classmethod
+    def of(cls, file: str, opened: Any) -> ParquetTable:
+        columns = tuple(name for name in opened.schema_arrow.names if not re.fullmatch(r"__index_level_\d+__", name))
+        return cls(file, tuple(name.strip() for name in columns), columns, opened.metadata.num_rows, opened)
+
+    def rows(self, indices: Sequence[int]) -> Rows:
+        values: dict[int, np.ndarray] = {}
+        faults: list[Fault] = []
+        for i in indices:
+            try:
+                column = self.opened.read(columns=[self.columns[i]]).column(0).to_pandas()
+            except Exception as error:  # as above, where a page of the file is broken
+                values[i] = np.full(self.length, np.nan)
+                faults.append(_broken(self.file, "pyarrow", error))
+                continue
+            values[i], met = numbers(self.file, self.headers[i], column)
+            faults += met
+        return Rows(values, None, tuple(once(faults)))
 
 
 def _mdf(library: Any, path: Path) -> pd.DataFrame:

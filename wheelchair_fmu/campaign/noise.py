@@ -14,6 +14,7 @@ from .document import Document, number
 from .recorded import Recorded
 from .series import estimate
 
+QUIETEST, LOUDEST = 1e-13, 1e3  # noise, as a share of the largest plausible reading
 NAMES = (*CHANNEL_NAMES, *PUSH_NAMES)  # what [noise] may name
 
 
@@ -48,7 +49,7 @@ def gather(doc: Document, runs: Sequence[Recorded]) -> Noise:
         if name in sd or f"noise.{name}" in wrong:
             continue
         value = seen.get(name)
-        if value is not None:
+        if value is not None and _possible(name, value):
             sd[name] = value
             estimated.add(name)
         elif name in INPUT_NAMES:
@@ -96,4 +97,12 @@ def _sd(name: str, value: Any, runs: Sequence[Recorded]) -> float:
         sd = plain * (scales.pop() if scales else 1.0)
     if not sd > 0:
         raise UnitError(f"{value!r} is not positive", "give a standard deviation above 0")
+    if not _possible(name, sd):
+        raise UnitError(f"{sd:g} {unit} is no noise of a sensor", f"give a standard deviation in {unit}, or with its unit")
     return sd
+
+
+def _possible(name: str, sd: float) -> bool:
+    """Neither below the rounding of what is measured, nor far above all that is."""
+    high = BY_NAME[name].high
+    return QUIETEST * high < sd < LOUDEST * high

@@ -5,15 +5,17 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..errors import CampaignError
-from ..faults import ERROR, Fault, once
+from ..faults import ERROR, SHOWN, Fault, once
+from ..given import what_is
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
-from .checks.document import Known, parameter_tables
+from .checks.document import Known, crowded, parameter_tables
 from .devices import Part, parts, point_of
 from .document import Document, Entry, flatten, load, number
 from .draft import prepare
@@ -52,7 +54,7 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
     doc, faults = load(path)
     if doc is None:
         return None, faults
-    faults += _by_line(fault for judge in DOCUMENT_CHECKS for fault in judge(doc, known))
+    faults += crowded(doc) or _by_line(fault for judge in DOCUMENT_CHECKS for fault in _few(judge(doc, known)))
     runs, tables = [], dict[Any, Any]()
     of_run = [parts(doc, entry) for entry in doc.entries]
     left = Counter(part.file for some in of_run for part in some)
@@ -78,7 +80,8 @@ def _recorded(doc: Document, entry: Entry, some: Sequence[Part], tables: dict[An
     """The files of one run, and what is wrong with each of them and with all together."""
     drafts, faults = [], []
     for part in some:
-        if not (file := doc.folder / part.file).is_file():
+        file = doc.folder / part.file
+        if not part.file.strip() or what_is(file):
             continue  # a check of the document says so
         draft, met = prepare(doc, part, file, tables)
         if draft is not None:
@@ -92,6 +95,14 @@ def _recorded(doc: Document, entry: Entry, some: Sequence[Part], tables: dict[An
     if len(some) == 1:
         return run, _by_line((*faults[0], *of_run))
     return run, [*(fault for met in faults for fault in _by_line(met)), *of_run]
+
+
+def _few(faults: Iterable[Fault]) -> list[Fault]:
+    """Of one kind: those that a reader will read, and how many more there are."""
+    faults = list(faults)
+    if len(faults) <= SHOWN:
+        return faults
+    return [*faults[:SHOWN], replace(faults[SHOWN], fact=f"and {len(faults) - SHOWN} more like these")]
 
 
 def _by_line(faults: Iterable[Fault]) -> list[Fault]:
@@ -176,7 +187,7 @@ def _fingerprint(doc: Document) -> str:
     digest = hashlib.sha256(doc.raw)
     for file in dict.fromkeys(part.file for entry in doc.entries for part in parts(doc, entry)):
         digest.update(f"\0{file}\0".encode())
-        if (doc.folder / file).is_file():
+        if not what_is(doc.folder / file):
             with (doc.folder / file).open("rb") as recording:
                 digest.update(hashlib.file_digest(recording, "sha256").digest())
     return digest.hexdigest()

@@ -15,6 +15,7 @@ from .files import print_json
 from .group import Progress, console, working
 from .settings import catalogue, subject
 from .staircase import staircase_table, write_improved
+from .terminal import announce
 
 
 def register(app: typer.Typer) -> None:
@@ -50,4 +51,4 @@ def add(
     for name, se in standard_errors(better.fit).items():
         console().print(f"{name} = {value_text(better.fit.values[name], se, better.records[name].unit)}")
     for file in files:
-        print(file)
+        announce(file)

@@ -30,7 +30,7 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
 
 def done_with_a_bar(job: Job, output: Path, pool: Pool, words: str, known: Mapping[int, pa.Table] | None = None) -> None:
     """Complete the job, or what is left of it and not `known`; `words` are what the bar counts."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     try:
         with Progress(*columns, console=console(stderr=True)) as bar:
             task = bar.add_task(words, total=job.total)

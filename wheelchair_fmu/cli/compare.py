@@ -31,6 +31,7 @@ from ..writing import written
 from .files import print_json
 from .group import console, working
 from .settings import subject
+from .terminal import announce
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
 PIECE = 60.0  # s: a longer run is compared piece by piece
@@ -67,7 +68,7 @@ def compare(
     if output:
         offsets = {c: values[f"offset.{c}"] for c in measured.nuisance if f"offset.{c}" in values}
         for file in _figures(measured, comparison, offsets, output):
-            print(file)
+            announce(file)
 
 
 def _calibrated(measured: Campaign, chair: Variant, names: str) -> dict[str, float]:

@@ -27,6 +27,7 @@ from .files import write_json
 from .group import Progress, console, working
 from .settings import subject
 from .staircase import staircase_table
+from .terminal import announce
 
 LIKELIEST = 8  # effects, of which the table tells
 SENTENCES = {
@@ -69,7 +70,7 @@ def diagnose(
         _show_bootstrap(stable)
     if output:
         for file in _files(found, content, output):
-            print(file)
+            announce(file)
 
 
 def show(d: Diagnosis, content: dict[str, Any]) -> None:

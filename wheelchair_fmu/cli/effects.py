@@ -22,6 +22,7 @@ from ..writing import written
 from . import templates
 from .files import print_json
 from .group import console
+from .terminal import announce
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
 KINDS = ("force", "moment", "reading", "state")
@@ -99,7 +100,7 @@ def new(
         raise UsageError(f"there is an effect {effect!r} already; choose another name")
     with written(file) as beside:
         beside.write_text(template(kind, effect), encoding="utf-8")
-    print(file)
+    announce(file)
     where = f"--effects {quote(str(folder))}"
     print("It is a whole effect already; its first lines say what to change. Then check it, diagnose with it, add it:",
           f"  wheelchair effects show {effect} {where}",

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..writing import written
+from .terminal import printable_json
 
 
 def write_table(path: Path, columns: Mapping[str, np.ndarray]) -> None:
@@ -33,4 +34,4 @@ def print_json(content: Any) -> None:
 
 
 def _json(content: Any) -> str:
-    return json.dumps(content, indent=2, ensure_ascii=False)
+    return printable_json(json.dumps(content, indent=2, ensure_ascii=False))

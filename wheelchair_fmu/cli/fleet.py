@@ -21,6 +21,7 @@ from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .group import console
 from .settings import parse
+from .terminal import announce
 
 ENDINGS = (".parquet", ".csv")
 
@@ -57,7 +58,7 @@ def _tell(whole: Path, output: Path) -> None:
     found, (failed, first) = long(table), bad(whole)
     chairs = table.num_rows - failed
     together = summary(found, chairs) if chairs else pd.DataFrame()
-    print(whole)
+    announce(whole)
     if output != whole:
         _write(output, table.to_pandas())
     _write(output.with_name(f"{output.stem}-effects.csv"), found)
@@ -75,7 +76,7 @@ def _tell(whole: Path, output: Path) -> None:
 def _write(file: Path, table: pd.DataFrame) -> None:
     with written(file) as beside:
         table.to_csv(beside, index=False, float_format="%.6g", lineterminator="\n")
-    print(file)
+    announce(file)
 
 
 def _verdicts(table: pd.DataFrame) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,22 +10,19 @@ from functools import partial
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
+from rich.text import Text
 from typer.core import TyperGroup
 
 from ..errors import INTERRUPTED as SAID
 from ..errors import WheelchairError
+from ..writing import FULL
+from .terminal import console, printable
 
 Progress = Annotated[bool, typer.Option("--progress", help="Say each step on a line of its own on stderr.")]
-PIPED = 132  # columns where no terminal says how many there are
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+TRACEBACK = "WHEELCHAIR_TRACEBACK"  # set to anything, what nobody expected is shown with where it happened
 
-
-def console(*, stderr: bool = False) -> Console:
-    """Made anew each time, so that it writes to where stdout or stderr point now."""
-    file = sys.stderr if stderr else sys.stdout
-    width = None if file.isatty() else PIPED
-    return Console(stderr=stderr, highlight=False, soft_wrap=True, markup=False, width=width)
+__all__ = ["INTERRUPTED", "Group", "Progress", "console", "working"]
 
 
 @contextmanager
@@ -33,31 +31,69 @@ def working(words: str, *, lines: bool = False) -> Iterator[Callable[[str], None
     if lines:
         say = partial(print, file=sys.stderr, flush=True)
         say(words)
-        yield say
+        yield lambda text: say(printable(text))
     else:
-        with console(stderr=True).status(words) as status:
-            yield status.update
+        with console(stderr=True).status(Text(words)) as status:
+            yield lambda text: status.update(Text(printable(text)))
 
 
 class Group(TyperGroup):
-    """Turns errors that a user can cause and cure into one message and an exit code."""
+    """Turns whatever ends a command into one message and an exit code."""
 
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
-        except WheelchairError as error:
-            console(stderr=True).print(str(error))
-            raise typer.Exit(error.exit_code) from None
-        except OSError as error:  # a file that cannot be read or written; everything else is a bug
-            console(stderr=True).print(_file_message(error))
+        except (typer.Exit, typer.Abort):
+            raise
+        except BrokenPipeError:  # who reads our output has seen enough
+            _drop_output()
             raise typer.Exit(1) from None
-        except KeyboardInterrupt:
-            console(stderr=True).print(SAID)
-            raise typer.Exit(INTERRUPTED) from None
+        except SystemExit as error:
+            if isinstance(error.__context__, BrokenPipeError):  # as rich says it
+                _drop_output()
+                raise typer.Exit(1) from None
+            message = f"code that was run ended the command (exit code {error.code}); look for exit() in your effect files"
+            code = 1
+        except (Exception, KeyboardInterrupt) as error:
+            if hasattr(error, "show"):  # of the parser of options, which says it itself
+                raise
+            if os.environ.get(TRACEBACK):
+                raise
+            message, code = ending(error)
+        console(stderr=True).print(message)
+        raise typer.Exit(code) from None
+
+
+def ending(error: BaseException) -> tuple[str, int]:
+    """One sentence and the exit code for what ended a command."""
+    match error:
+        case WheelchairError():
+            return str(error), error.exit_code
+        case KeyboardInterrupt():
+            return SAID, INTERRUPTED
+        case MemoryError():
+            return "there is not enough memory for this; give it less at a time, or more memory", 1
+        case RecursionError():
+            return "something in a file is nested too deeply to be read; make it flatter", 1
+        case OSError():
+            return _file_message(error), 1
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return (f"an error that nobody expected ({what}); please report it with the command, its files and what it says with "
+            f"{TRACEBACK}=1 in the environment"), 1  # fmt: skip
 
 
 def _file_message(error: OSError) -> str:
     reason = (error.strerror or str(error)).lower()
+    place = "" if error.filename is None else f"{error.filename}: "
+    if error.errno in FULL:
+        return f"{place}{reason}; make room, or write to another disk"
     if error.filename is None:
         return f"{reason}; check the disk and the rights"
-    return f"{error.filename}: {reason}; give another place, or the rights to use this one"
+    return f"{place}{reason}; give another place, or the rights to use this one"
+
+
+def _drop_output() -> None:
+    """Nothing more goes to stdout, not even what is still to be flushed when the interpreter ends."""
+    sink = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(sink, sys.stdout.fileno())
+    os.close(sink)

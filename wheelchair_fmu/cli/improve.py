@@ -25,6 +25,7 @@ from .files import write_json
 from .group import console
 from .settings import subject
 from .staircase import staircase_table, write_improved
+from .terminal import announce
 
 MOST_PROPOSALS = 2
 ENDS = {
@@ -72,7 +73,7 @@ def improve(
     show(found, as_json(found))
     console().print(ENDS["missing" if found.verdict == "adequate" and found.included else found.verdict])
     for file in (*write_improved(output, better, found.ladder), *files):
-        print(file)
+        announce(file)
 
 
 @dataclass
@@ -92,7 +93,8 @@ class _Watch:
 @contextmanager
 def _watched() -> Iterator[_Watch]:
     """A bar and a live staircase on stderr while the loop works; gone afterwards."""
-    bar = Progress(TextColumn("{task.description}"), BarColumn(pulse_style="cyan"), TimeElapsedColumn(), auto_refresh=False)
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(pulse_style="cyan"), TimeElapsedColumn())
+    bar = Progress(*columns, auto_refresh=False)
     bar.add_task("reading", total=None)
     with Live(bar, console=console(stderr=True), transient=True, refresh_per_second=4) as live:
         yield _Watch(live, bar)

@@ -22,6 +22,7 @@ from ..writing import written
 from .files import print_json
 from .group import console
 from .settings import chair_of, parse
+from .terminal import announce
 
 LEAST = 0.0005  # %; less is not shown
 OPTION_FOR = {"speed.u": "--speed", "start.u": "--speed", "speed.mode": "--free-speed"}
@@ -55,7 +56,7 @@ def linearize_command(
         return
     _show(linear)
     if mat:
-        print(mat)
+        announce(mat)
 
 
 def steady_chair(given: dict[str, str], variant: Path | None, effects: str | None, equations: str | None) -> Chair:

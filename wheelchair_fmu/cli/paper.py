@@ -20,6 +20,7 @@ from ..writing import written
 from .files import print_json
 from .group import console
 from .settings import parse
+from .terminal import announce
 
 Ranges = dict[str, list[Range]]  # by statement id
 Findings = Mapping[str, Finding]
@@ -51,7 +52,7 @@ def paper(
         print_json(_record(findings, found))
         return
     for file in files:
-        print(file)
+        announce(file)
     _show(findings, found)
 
 

@@ -24,6 +24,7 @@ from ..report.words import particulars, sentence
 from ..writing import written
 from .group import Progress, working
 from .settings import subject
+from .terminal import announce
 
 
 def register(app: typer.Typer) -> None:
@@ -51,7 +52,7 @@ def report(
         html = _html(measured, _with_proposal(chair, told), told, fixed)
     with written(output) as beside:
         beside.write_text(html, encoding="utf-8")
-    print(output)
+    announce(output)
 
 
 def _html(measured: Campaign, chair: Variant, told: Mapping[str, Any], fixed: Sequence[str]) -> str:

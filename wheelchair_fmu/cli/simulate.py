@@ -23,6 +23,7 @@ from ..writing import written
 from .files import write_table
 from .group import console
 from .settings import chair_of, parse
+from .terminal import announce
 
 
 def register(app: typer.Typer) -> None:
@@ -58,7 +59,7 @@ def simulate(
     held = values.get("speed.mode") == 2
     _tell(result.warnings)
     for file in _write(course, result, output):
-        print(file)
+        announce(file)
     console().print(_table(key_numbers(result.columns, held=held)))
 
 

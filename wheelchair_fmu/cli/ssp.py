@@ -25,6 +25,7 @@ from ..writing import written
 from .files import print_json, write_table
 from .group import console
 from .settings import catalogue
+from .terminal import announce
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None,
                   help="Systems of FMUs by the SSP standard: the chair with a pusher and a floor.")  # fmt: skip
@@ -55,7 +56,7 @@ def build_ssp(
     chair = read_variant(variant, catalogue(effects)) if variant else None
     with console(stderr=True).status("building the FMUs"):
         path = build(system, output, version=version, variant=chair, parameters=parameters or (), recording=recording)
-    print(path)
+    announce(path)
 
 
 @app.command(name="run")
@@ -74,7 +75,7 @@ def run_ssp(
     for warning in trace.warnings:
         console(stderr=True).print(f"warning: {warning}")
     for path in _write(trace, output / file.stem.lower(), animation):
-        print(path)
+        announce(path)
     console().print(_table(trace))
 
 
@@ -92,7 +93,7 @@ def check_ssp(
     elif faults:
         raise SystemStructureError(faults)
     else:
-        print(f"{file}: no faults")
+        announce(f"{file}: no faults")
 
 
 @app.command()
@@ -107,7 +108,7 @@ def parameters(
     found = sources.parameter_set(source, catalogue(effects))[1]
     with written(output) as beside:
         beside.write_bytes(parameter_set.text(found, sources.version(version)))
-    print(output)
+    announce(output)
 
 
 def _write(trace: Trace, stem: Path, animated: bool) -> list[Path]:

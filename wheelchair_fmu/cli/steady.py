@@ -22,6 +22,7 @@ from .files import print_json, write_table
 from .group import console
 from .linearize import steady_chair, turn
 from .settings import parse
+from .terminal import announce
 
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # times the speed asked for
 LOCUS = (0.25, 4.0, 200)  # from and to, times the speed asked for, and how many
@@ -60,7 +61,7 @@ def steady(
         print_json(_record(state, found, ends, locus))
         return
     for file in files:
-        print(file)
+        announce(file)
     _show(state, found, ends, locus)
 
 

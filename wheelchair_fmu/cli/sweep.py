@@ -24,6 +24,7 @@ from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .compare import TUNING
 from .group import console
+from .terminal import announce
 
 
 def register(app: typer.Typer) -> None:
@@ -53,7 +54,7 @@ def run(
         with console(stderr=True).status("compiling"):
             prepare(job)
     done_with_a_bar(job, output, pool, "runs")
-    print(output)
+    announce(output)
     _tell_bad(output, planned.runs)
     table = indices(planned, output)
     if table is not None:
@@ -70,7 +71,7 @@ def _tell_indices(table: pd.DataFrame, output: Path) -> None:
     file = output.with_name(f"{output.stem}-indices.csv")
     with written(file) as beside:
         table.to_csv(beside, index=False, float_format="%.6g", lineterminator="\n")
-    print(file)
+    announce(file)
     total = "mu_star" if "mu_star" in table else "ST"
     for (variant, manoeuvre), case in table.dropna(subset=[total]).groupby(["variant", "manoeuvre"], sort=False):
         shown = Table(box=box.SIMPLE, title=f"{variant}, {manoeuvre}: {total}, by parameter", title_justify="left")

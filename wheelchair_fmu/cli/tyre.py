@@ -27,6 +27,7 @@ from ..tyres.tir import tir_text
 from ..writing import written
 from .files import print_json
 from .group import console
+from .terminal import announce
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Tyres identified from rig data.")
 File = Annotated[Path, typer.Argument(metavar="FILE", help="Rig data: .csv, TYDEX 1.3 (.tdx), or a tyre property file (.tir).")]
@@ -72,7 +73,7 @@ def plot(
             target = output / f"tyre-{name}{ending}"
             with written(target) as beside:
                 save(figure, beside)
-            print(target)
+            announce(target)
 
 
 @app.command()
@@ -96,7 +97,7 @@ def export(
     for target, text in zip(output, texts, strict=True):
         with written(target) as beside:
             beside.write_bytes(text)
-        print(target)
+        announce(target)
 
 
 def _exported(found: Identified, fit: ConditionFit, law: str, ending: str) -> bytes:

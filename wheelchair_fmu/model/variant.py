@@ -27,6 +27,7 @@ import numpy as np
 import tomli_w
 
 from ..errors import Failure, UsageError, unknown
+from ..given import toml
 from ..quantities import Parameter
 from . import caster, tyre
 from .effects import bundled
@@ -127,7 +128,7 @@ def number(records: Mapping[str, Parameter], name: str, value: float | str) -> f
 def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None) -> Variant:
     """The variant in a TOML file. Raises Failure or UsageError that name the file and the fault."""
     try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        table = toml(Path(path).read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise Failure(f"{path}: no such file; give a variant that `wheelchair add` wrote") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

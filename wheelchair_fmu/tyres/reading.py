@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import Failure, FileError, unknown
 from ..faults import ERROR, Fault
+from ..given import what_is
 from ..tables import read_bytes
 from .records import ISO, SAE, Sweep
 from .rig_csv import read_rig
@@ -36,8 +37,9 @@ def read(path: str | Path, axes: str = SAE) -> Measured:
     path = Path(path)
     if axes not in (SAE, ISO):
         raise unknown("axes", axes, (SAE, ISO))
-    if not path.is_file():
-        raise Failure(f"{path}: no such file; give rig data as {', '.join(READERS)}")
+    if kind := what_is(path):
+        there = "no such file" if kind == "no file" else f"this is {kind}"
+        raise Failure(f"{path}: {there}; give rig data as {', '.join(READERS)}")
     kind = path.with_suffix("").suffix if path.suffix == ".gz" else path.suffix
     if kind.lower() not in READERS:
         raise unknown("reader for tyre data that end in", kind, READERS)

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...faults import SHOWN, WARNING, Fault, run_fault
+from ...faults import ERROR, SHOWN, WARNING, Fault, run_fault
 from ..draft import COARSE, Draft
 
+LONGEST = 600.0  # s without a sample, over which nobody can foretell where the chair is
 _UNEVEN = 0.5  # share of the usual step by which one may differ
 
 
@@ -58,7 +59,10 @@ def uneven(draft: Draft) -> Iterator[Fault]:
         worst = f"the largest is {steps[i]:.4g} s after {time[i]:.10g} s"
         fact = f"{odd.size} time step{'s' * (odd.size > 1)} far from the usual {usual:.4g} s; {worst}"
         cure = "check the logger for lost samples"
-        yield run_fault(draft.file, fact, cure, draft.rows.line(int(rows[i + 1])), draft.header("time"), WARNING)
+        if steps[i] > LONGEST:
+            cure = "nothing is known of so long a time; make two runs of it by from and to, or check the unit of time"
+        severity = ERROR if steps[i] > LONGEST else WARNING
+        yield run_fault(draft.file, fact, cure, draft.rows.line(int(rows[i + 1])), draft.header("time"), severity)
 
 
 def coarse(draft: Draft) -> Iterator[Fault]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from ...faults import WARNING, Fault, suggestion
+from ...faults import SHOWN, WARNING, Fault, suggestion
+from ...given import what_is
 from ...units import UnitError
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
@@ -19,12 +20,22 @@ from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING
 
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
+MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
 def parameter_tables(known: Known | None) -> tuple[str, ...]:
     """Tables that hold parameters: the usual ones, and the first part of every known name."""
     others = {name.partition(".")[0] for name in known or () if "." in name}
     return (*PARAMETER_TABLES, *sorted(others.difference(PARAMETER_TABLES, OTHER_TABLES)))
+
+
+def crowded(doc: Document) -> list[Fault]:
+    """A table with more keys than there are names to give is no campaign's, and judging each would take for ever."""
+    tables = {"the file": doc.data, **{f"[{name}]": value for name, value in doc.data.items() if isinstance(value, Mapping)}}
+    tables |= {entry.title: entry.data for entry in doc.entries}
+    found = [(name, len(value)) for name, value in tables.items() if len(value) > MOST_KEYS]
+    return [doc.fault("", f"{name} has {count} keys, but at most {MOST_KEYS} make sense", "is this the right file?")
+            for name, count in found[:SHOWN]]  # fmt: skip
 
 
 def unknown_table(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -133,25 +144,37 @@ def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
     runs = doc.data.get("run")
     if isinstance(runs, Mapping):
         yield doc.fault("run", "[run] is one table, but runs are a list", "write [[run]] with two brackets")
+    elif isinstance(runs, list) and len(doc.entries) < len(runs):
+        yield doc.fault("run", f"{len(runs) - len(doc.entries)} of the runs are no tables", "write [[run]] above each")
     elif not doc.entries:
         yield doc.fault("run", "there are no runs", "add a [[run]] with file, manoeuvre and role for each recording")
 
 
 def no_file(doc: Document, known: Known | None) -> Iterator[Fault]:
     for entry in doc.entries:
-        if "file" not in entry.data and "files" not in entry.data:
-            yield doc.fault("run", f"{entry.title} names no file", 'add file = "..."', entry.place)
+        file = entry.data.get("file", "")
+        if "files" not in entry.data and isinstance(file, str) and not file.strip():
+            yield doc.fault("run.file", f"{entry.title} names no file", 'add file = "..."', entry.place)
 
 
 def missing_file(doc: Document, known: Known | None) -> Iterator[Fault]:
+    there: list[str] | None = None
     for entry in doc.entries:
-        for part in parts(doc, entry):
-            if not (doc.folder / part.file).is_file():
-                there = [p.relative_to(doc.folder).as_posix() for g in ("*.*", "*/*.*") for p in doc.folder.glob(g)]
-                there = sorted(name for name in there if not name.endswith(".toml"))
+        for part in (p for p in parts(doc, entry) if p.file.strip()):
+            kind, key = what_is(doc.folder / part.file), "run.file" if part.alone else "run.files"
+            of = "" if part.alone else f" as {part.file!r} of {part.device.name}"
+            if kind == "no file":
+                there = _recordings(doc) if there is None else there
                 cure = suggestion(part.file, there) if there else "put it beside campaign.toml"
-                what = "no such file" if part.alone else f"no such file as {part.file!r} of {part.device.name}"
-                yield doc.fault("run.file" if part.alone else "run.files", f"{entry.title}: {what}", cure, entry.place)
+                yield doc.fault(key, f"{entry.title}: no such file{of}", cure, entry.place)
+            elif kind:
+                yield doc.fault(key, f"{entry.title}: this is {kind}, not a recording", "name a file", entry.place)
+
+
+def _recordings(doc: Document) -> list[str]:
+    """Files beside campaign.toml and in folders there."""
+    names = (p.relative_to(doc.folder).as_posix() for g in ("*.*", "*/*.*") for p in doc.folder.glob(g) if p.is_file())
+    return sorted(name for name in names if not name.endswith(".toml"))
 
 
 def bad_role(doc: Document, known: Known | None) -> Iterator[Fault]:

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...faults import WARNING, Fault, run_fault
+from ...faults import ERROR, WARNING, Fault, run_fault
 from ..channels import BY_NAME, TIME
 from ..draft import Draft, constants
 from ..resampled import REPEATED
 
 FEWEST = 10  # samples of a run
+ABSURD = 1000.0  # times what is plausible: no wrong unit does more, and no simulation ends
 
 
 def too_short(draft: Draft) -> Iterator[Fault]:
@@ -77,7 +78,8 @@ def implausible(draft: Draft) -> Iterator[Fault]:
             side = "above" if value > channel.high else "below"
             fact = f"{name} reaches {value:.4g} {unit}, {side} any plausible {bound:g} {unit}"
             cure = f"check its unit (is it {channel.wrong_unit}?)"
-            yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), WARNING)
+            severity = ERROR if np.isfinite(value) and abs(value) > ABSURD * abs(bound or 1.0) else WARNING
+            yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), severity)
 
 
 def resampled(draft: Draft) -> Iterator[Fault]:

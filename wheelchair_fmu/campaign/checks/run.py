@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ...faults import WARNING, Fault, run_fault
+from ...faults import ERROR, WARNING, Fault, run_fault
 from ..channels import BY_NAME, PUSHES
 from ..recorded import Recorded
-from .file import FEWEST
+from .file import ABSURD, FEWEST
+
+FASTEST = 50.0  # m/s that a run may start at
 
 
 def no_push(run: Recorded) -> Iterator[Fault]:
@@ -43,7 +45,8 @@ def implausible_constant(run: Recorded) -> Iterator[Fault]:
         if not channel.low <= value <= channel.high:
             bound, side = (channel.high, "above") if value > channel.high else (channel.low, "below")
             fact = f"{name} reaches {value:.4g} {channel.unit.name}, {side} any plausible {bound:g} {channel.unit.name}"
-            yield run_fault(run.file, fact, f"check its unit (is it {channel.wrong_unit}?)", severity=WARNING)
+            severity = ERROR if abs(value) > ABSURD * abs(bound or 1.0) else WARNING
+            yield run_fault(run.file, fact, f"check its unit (is it {channel.wrong_unit}?)", severity=severity)
 
 
 def measured_twice(run: Recorded) -> Iterator[Fault]:
@@ -87,6 +90,10 @@ def no_start_speed(run: Recorded) -> Iterator[Fault]:
 
 
 def start_speed_differs(run: Recorded) -> Iterator[Fault]:
+    if abs(run.entry.number("u0") or 0.0) > FASTEST:
+        fact = f"u0 = {run.entry.number('u0'):g} m/s is no speed of a wheelchair"
+        yield run_fault(run.file, fact, "give it in m/s")
+        return
     stated, measured = run.entry.number("u0"), None if run.silent else run.first_speed
     if stated is not None and measured is not None and abs(stated - measured) > max(0.3, 0.5 * abs(measured)):
         fact = f"u0 = {stated:g} m/s, but the first measured speeds are {measured:.3g} m/s"

@@ -18,12 +18,15 @@ from lxml import etree
 
 from ...errors import Failure
 from ...fmu.parameter_set import NAMESPACE, ParameterSet, Setting, SspUnit, qualified
+from ...given import what_is
+from ...tables import MOST
 from .faults import Fault
 from .records import Binding, Component, Connection, Connector, MappingEntry, Scaling, System
 
 SCHEMAS = {"ssd": "SystemStructureDescription.xsd", "ssv": "SystemStructureParameterValues.xsd",
            "ssm": "SystemStructureParameterMapping.xsd"}  # fmt: skip
 ROOTS = {"ssd": "SystemStructureDescription", "ssv": "ParameterSet", "ssm": "ParameterMapping"}
+MOST_FILES = 10_000  # of an archive
 FMU_TYPES = ("application/x-fmu-sharedlibrary", "")
 
 
@@ -80,12 +83,15 @@ class Archive:
         return self._read[kind, file]
 
     def _root(self, kind: str, file: str) -> etree._Element | None:
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True)
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True)
         try:
             root = etree.fromstring((self.folder / file).read_bytes(), parser)
         except etree.XMLSyntaxError as error:
             self.blame(file, "", f"not well-formed XML: {error.msg}", "correct it, or build the archive again",
                        error.lineno or 0)  # fmt: skip
+            return None
+        if root.getroottree().docinfo.doctype:
+            self.blame(file, "", "it has a document type, whose entities are not read", "write it without <!DOCTYPE ...>")
             return None
         wanted = qualified(f"{kind}:{ROOTS[kind]}")
         if root.tag != wanted:
@@ -109,8 +115,9 @@ class Archive:
 def opened(path: Path) -> Iterator[Archive]:
     """The archive, unpacked for as long as it is in use. Raises Failure for a file that is no archive."""
     path = Path(path)
-    if not path.is_file():
-        raise Failure(f"{path}: no such file; build one with `wheelchair ssp build`")
+    if kind := what_is(path):
+        there = "no such file" if kind == "no file" else f"this is {kind}"
+        raise Failure(f"{path}: {there}; build one with `wheelchair ssp build`")
     with tempfile.TemporaryDirectory(prefix="wheelchair-") as folder:
         archive = Archive(path, Path(folder))
         try:
@@ -123,6 +130,10 @@ def opened(path: Path) -> Iterator[Archive]:
 
 
 def _unpack(packed: zipfile.ZipFile, archive: Archive) -> None:
+    size, count = sum(info.file_size for info in packed.infolist()), len(packed.infolist())
+    if size > MOST or count > MOST_FILES:
+        raise Failure(f"{archive.path}: unpacked it would be {count} files of {size / 2**30:.3g} GiB together; at most "
+                      f"{MOST_FILES} files of {MOST / 2**30:g} GiB are unpacked")  # fmt: skip
     for name in packed.namelist():
         if not (archive.folder / name).resolve().is_relative_to(archive.folder.resolve()):
             archive.blame(archive.path.name, name, "the name leads out of the archive", "pack files under relative names")
@@ -337,6 +348,11 @@ def _fmu(archive: Archive, file: str) -> Fmu | None:
 
     path = archive.folder / file
     try:
+        with zipfile.ZipFile(path) as packed:
+            if sum(info.file_size for info in packed.infolist()) > MOST:
+                return refuse(f"unpacked it would be more than {MOST / 2**30:g} GiB", "give one that is smaller")
+            if b"<!DOCTYPE" in packed.read("modelDescription.xml"):
+                return refuse("its modelDescription.xml has a document type, whose entities are not read", "write it without")
         description = fmpy.read_model_description(str(path))
     except Exception as error:  # fmpy raises whatever its parsers raise
         return refuse(f"not an FMU: {' '.join(str(error).split()) or type(error).__name__}",

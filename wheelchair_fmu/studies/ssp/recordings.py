@@ -9,6 +9,7 @@ import numpy as np
 from ...errors import Failure, FileError, UsageError
 from ...faults import run_fault, suggestion
 from ...fmu.companions import Recording
+from ...given import what_is
 from ...tables import CsvTable, read_bytes, read_csv
 from ...units import UnitError, factor, split
 
@@ -17,8 +18,9 @@ COLUMNS = {"time": "s", "F_rl": "N", "F_rr": "N"}
 
 def read_recording(path: Path) -> Recording:
     """The recording in a CSV file. Raises Failure, or FileError with every fault by line and column."""
-    if not path.is_file():
-        raise Failure(f"{path}: no such file; give a CSV with the columns {', '.join(COLUMNS)}")
+    if kind := what_is(path):
+        there = "no such file" if kind == "no file" else f"this is {kind}"
+        raise Failure(f"{path}: {there}; give a CSV with the columns {', '.join(COLUMNS)}")
     table, faults = read_csv(path.name, read_bytes(path))
     if table is None or faults:
         raise FileError(faults)

@@ -10,6 +10,7 @@ from typing import Any
 
 from ...errors import Failure, UsageError, unknown
 from ...fmu.parameter_set import ParameterSet, from_values, from_variant, reference
+from ...given import toml
 from ...model.stage import Effect
 from ...model.variant import number, read_variant
 from ...quantities import Parameter
@@ -111,7 +112,7 @@ def _path(name: str, folder: str, known: Iterable[str], kind: str) -> Path:
 
 def _load(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return toml(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise Failure(f"{path}: no such file; give a TOML file that is there") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

@@ -36,6 +36,7 @@ from typing import Any
 from ...contracts.own import checked
 from ...errors import FileError, WheelchairError
 from ...faults import Fault, not_utf8, suggestion
+from ...given import toml
 from ...handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
 from ...model.effects import sources
 from ...model.recipe import Recipe
@@ -158,7 +159,7 @@ class _Reader:
         try:
             raw = self.path.read_bytes()
             text = raw.decode("utf-8-sig").replace("\r\n", "\n")
-            self.data = tomllib.loads(text)
+            self.data = toml(text)
         except FileNotFoundError:
             self.fault("", "no such file", "check the path")
         except UnicodeDecodeError as error:
