@@ -71,7 +71,7 @@ def lab(tmp_path):
     tables = {
         "one_rims.csv": {"time [s]": time["rims"], "torque left": 0.3 * rims["push"] + noise("rims", 0.1),
                          "torque right": 0.3 * rims["push"] + noise("rims", 0.1),
-                         "angle": np.degrees(rims["turned"]) % 360},
+                         "angle": (np.degrees(rims["turned"]) + noise("rims", 0.02)) % 360},
         "one_imu.csv": {"time [s]": time["imu"], "gyro z": -np.degrees(imu["yaw_rate"]) + noise("imu", 0.3),
                         "acc": -0.01 * imu["push"] + noise("imu", 0.01)},
         "one_markers.csv": {"time [s]": time["cameras"]}
@@ -123,7 +123,7 @@ def test_a_wheels_speed_is_made_from_its_angle(lab):
     campaign = read(lab)
     speed = campaign.runs[0].channels["wheel_speed_l"]
     there = np.isfinite(speed)
-    np.testing.assert_allclose(speed[there], 1.0, atol=1e-6)
+    np.testing.assert_allclose(speed[there], 1.0, atol=0.02)
     assert there.sum() == pytest.approx(5 / 0.05, rel=0.1)
 
 
