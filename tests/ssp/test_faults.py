@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import re
 import zipfile
 
 import pytest
 
 from wheelchair_fmu.errors import Failure, SystemStructureError
+from wheelchair_fmu.studies.ssp import unpacking
 from wheelchair_fmu.studies.ssp.checking import check
 from wheelchair_fmu.studies.ssp.running import run
 
@@ -36,8 +38,8 @@ FAULTS = [
      "it leads from kind input to kind input; lead from an output to an input"),
     (MAIN, 'endElement="Chair" endConnector="push.F_rl"', 'endElement="Chair" endConnector="push.F_rr"',
      "another connection ends there too; leave one of them out"),
-    (MAIN, 'endElement="Chair" endConnector="push.F_rl"', 'endElement="Chair" endConnector="brake.rl"',
-     "it leads from N to 1, which is another dimension; connect what measures the same"),
+    (MAIN, 'endElement="Chair" endConnector="push.F_rl"', 'endElement="Chair" endConnector="floor.slope_x"',
+     "it leads from N to rad, which is another dimension; connect what measures the same"),
     (MAIN, 'stopTime="30"', 'stopTime="-1"', "DefaultExperiment: stopTime -1 s is not after startTime 0 s; give"),
     (MAIN, 'baseStepSize="0.005"', 'baseStepSize="0"', "baseStepSize 0 s is not above 0; give a step such as 0.01"),
     (MAIN, 'implementation="CoSimulation"', 'implementation="ModelExchange"', "Chair: ModelExchange is asked for; ask for"),
@@ -95,3 +97,56 @@ def test_no_file_is_written_outside_the_archive(slalom, tmp_path):
     with zipfile.ZipFile(path, "a") as archive:
         archive.writestr("../escaped.txt", "x")
     assert any("the name leads out of the archive" in str(f) for f in check(path))
+
+
+@pytest.mark.parametrize("declared", ['<!ENTITY who SYSTEM "file:///etc/hostname">', '<!ENTITY who "somebody">', ""])
+@pytest.mark.parametrize("file", [MAIN, CHAIR, HANDLES])
+def test_entities_are_refused_in_one_sentence(file, declared, altered):
+    begin = "encoding='UTF-8'?>\n"
+    faults = check(altered({file: (begin, f"{begin}<!DOCTYPE any [{declared}]>\n")}))
+    assert [f"{f.file}: {f.fact}" for f in faults if f.file == file] == [
+        f"{file}: it begins with a document type declaration (DTD), and entities are not read here"]  # fmt: skip
+
+
+def test_an_entity_in_use_is_refused_not_read(altered):
+    begin = "encoding='UTF-8'?>\n"
+    path = altered({CHAIR: ('name="chair.m">', 'name="chair.m">&who;')})
+    changed = path.with_name("entity.ssp")
+    with zipfile.ZipFile(path) as good, zipfile.ZipFile(changed, "w") as made:
+        for name in good.namelist():
+            text = good.read(name)
+            made.writestr(name, text.replace(begin.encode(), f'{begin}<!DOCTYPE s [<!ENTITY who "<x/>">]>'.encode())
+                          if name == CHAIR else text)  # fmt: skip
+    assert ["document type declaration" in f.fact for f in check(changed)] == [True]
+
+
+def test_processing_instructions_and_comments_are_passed_over(altered):
+    assert check(altered({CHAIR: ('name="chair.m">', 'name="chair.m"><?any word?><!-- word -->')})) == []
+
+
+@pytest.mark.parametrize(("limit", "value"), [("MOST_BYTES", 1000), ("MOST_FILES", 3)])
+def test_an_archive_that_unpacks_to_too_much_is_refused(limit, value, slalom, monkeypatch):
+    monkeypatch.setattr(unpacking, limit, value)
+    with pytest.raises(Failure, match=r"slalom.ssp: \d+ files of \d+ MB in all, unpacked, are more than .*; pack less"):
+        check(slalom)
+
+
+def test_an_fmu_that_unpacks_to_too_much_is_refused(altered, slalom, monkeypatch):
+    """A gigabyte of zeros is a megabyte in an archive."""
+    with zipfile.ZipFile(slalom) as good:
+        floor = good.read("resources/Floor.fmu")
+    large = io.BytesIO(floor)
+    with zipfile.ZipFile(large, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("resources/zeros", bytes(50_000_000))
+    monkeypatch.setattr(unpacking, "MOST_BYTES", 40_000_000)
+    faults = check(altered({"resources/Floor.fmu": large.getvalue()}))
+    assert [f.file for f in faults] == ["resources/Floor.fmu"] and "of 50 MB in all" in faults[0].fact
+
+
+def test_a_name_that_no_disk_takes_is_no_traceback(slalom, tmp_path):
+    path = tmp_path / "bad.ssp"
+    path.write_bytes(slalom.read_bytes())
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("x" * 300, "x")
+    with pytest.raises(Failure, match=r"bad.ssp: not a zip archive that can be read"):
+        check(path)

@@ -46,7 +46,7 @@ class Recorded:
         """What its files' names have in common, unless the run has a name of its own."""
         stems = [Path(d.file).name.partition(".")[0] for d in self.drafts]
         alike = takewhile(lambda letters: len(set(letters)) == 1, zip(*stems, strict=False))
-        shared = re.sub(r"[\W_]+$", "", "".join(letters[0] for letters in alike))
+        shared = stems[0] if len(stems) == 1 else re.sub(r"[\W_]+$", "", "".join(letters[0] for letters in alike))
         return self.entry.text("name") or shared or f"run-{self.entry.place + 1}"
 
     @cached_property

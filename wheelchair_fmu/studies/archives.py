@@ -21,15 +21,17 @@ PACKAGE = Path(__file__).parent.parent
 MAKERS = ("quantities.py", "model", "engine", "fmu", "../fmu_src")  # what an archive's content comes from
 
 
-def fmu_of(variant: Variant, effects: str | Iterable[str] = "default") -> Path:
+def fmu_of(variant: Variant, effects: str | Iterable[str] = "default", *, with_starts: bool = False) -> Path:
     """The FMU of a variant's laws and effects, and of `effects` as `build_fmu.py` knows them.
 
-    Its start values are the defaults: a variant's values are set when it runs, so one file serves them all.
+    Its start values are the defaults: a variant's values are set when it runs, so one file serves them all. With
+    `with_starts` they are the variant's values, for importers that set none.
 
     Raises UsageError for an unknown effect and BuildError where it cannot be built.
     """
-    bare = replace(with_chosen_effects(variant, effects), values={}, notes={})
-    words = (_makers(), repr(bare.choice), *(effect_key(e) for e in bare.active()))
+    values = dict(sorted(variant.values.items())) if with_starts else {}
+    bare = replace(with_chosen_effects(variant, effects), values=values, notes={})
+    words = (_makers(), repr(bare.choice), *([repr(values)] if values else ()), *(effect_key(e) for e in bare.active()))
     key = hashlib.sha256("\n".join(words).encode()).hexdigest()[:24]
     return kept(f"Wheelchair-{key}", ".fmu", lambda path: build(bare, path, effects="none"))
 

@@ -19,14 +19,13 @@ from lxml import etree
 from ...errors import Failure
 from ...fmu.parameter_set import NAMESPACE, ParameterSet, Setting, SspUnit, qualified
 from ...given import what_is
-from ...tables import MOST
 from .faults import Fault
 from .records import Binding, Component, Connection, Connector, MappingEntry, Scaling, System
+from .unpacking import too_much, unpack
 
 SCHEMAS = {"ssd": "SystemStructureDescription.xsd", "ssv": "SystemStructureParameterValues.xsd",
            "ssm": "SystemStructureParameterMapping.xsd"}  # fmt: skip
 ROOTS = {"ssd": "SystemStructureDescription", "ssv": "ParameterSet", "ssm": "ParameterMapping"}
-MOST_FILES = 10_000  # of an archive
 FMU_TYPES = ("application/x-fmu-sharedlibrary", "")
 
 
@@ -83,15 +82,16 @@ class Archive:
         return self._read[kind, file]
 
     def _root(self, kind: str, file: str) -> etree._Element | None:
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True)
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True)
         try:
             root = etree.fromstring((self.folder / file).read_bytes(), parser)
         except etree.XMLSyntaxError as error:
             self.blame(file, "", f"not well-formed XML: {error.msg}", "correct it, or build the archive again",
                        error.lineno or 0)  # fmt: skip
             return None
-        if root.getroottree().docinfo.doctype:
-            self.blame(file, "", "it has a document type, whose entities are not read", "write it without <!DOCTYPE ...>")
+        if root.getroottree().docinfo.internalDTD is not None:  # entities could stand for other files, or for gigabytes
+            self.blame(file, "", "it begins with a document type declaration (DTD), and entities are not read here",
+                       "take the declaration out and write what its entities stand for")
             return None
         wanted = qualified(f"{kind}:{ROOTS[kind]}")
         if root.tag != wanted:
@@ -120,25 +120,9 @@ def opened(path: Path) -> Iterator[Archive]:
         raise Failure(f"{path}: {there}; build one with `wheelchair ssp build`")
     with tempfile.TemporaryDirectory(prefix="wheelchair-") as folder:
         archive = Archive(path, Path(folder))
-        try:
-            with zipfile.ZipFile(path) as packed:
-                _unpack(packed, archive)
-        except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as error:
-            raise Failure(f"{path}: not a zip archive that can be read ({error}); an .ssp is one, with SystemStructure.ssd "
-                          "in it") from None  # fmt: skip
+        for name in unpack(path, archive.folder):
+            archive.blame(path.name, name, "the name leads out of the archive", "pack files under relative names")
         yield archive
-
-
-def _unpack(packed: zipfile.ZipFile, archive: Archive) -> None:
-    size, count = sum(info.file_size for info in packed.infolist()), len(packed.infolist())
-    if size > MOST or count > MOST_FILES:
-        raise Failure(f"{archive.path}: unpacked it would be {count} files of {size / 2**30:.3g} GiB together; at most "
-                      f"{MOST_FILES} files of {MOST / 2**30:g} GiB are unpacked")  # fmt: skip
-    for name in packed.namelist():
-        if not (archive.folder / name).resolve().is_relative_to(archive.folder.resolve()):
-            archive.blame(archive.path.name, name, "the name leads out of the archive", "pack files under relative names")
-        else:
-            packed.extract(name, archive.folder)
 
 
 @cache
@@ -349,12 +333,10 @@ def _fmu(archive: Archive, file: str) -> Fmu | None:
     path = archive.folder / file
     try:
         with zipfile.ZipFile(path) as packed:
-            if sum(info.file_size for info in packed.infolist()) > MOST:
-                return refuse(f"unpacked it would be more than {MOST / 2**30:g} GiB", "give one that is smaller")
-            if b"<!DOCTYPE" in packed.read("modelDescription.xml"):
-                return refuse("its modelDescription.xml has a document type, whose entities are not read", "write it without")
+            if fact := too_much(packed):
+                return refuse(fact, "pack less into one FMU")
         description = fmpy.read_model_description(str(path))
-    except Exception as error:  # fmpy raises whatever its parsers raise
+    except Exception as error:  # fmpy raises whatever its parsers raise, zipfile what zlib does
         return refuse(f"not an FMU: {' '.join(str(error).split()) or type(error).__name__}",
                       "give a file that `fmpy validate` accepts")  # fmt: skip
     if description.fmiVersion != "2.0" or description.coSimulation is None:
