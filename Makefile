@@ -15,7 +15,7 @@ help:
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
-	@echo "make importers   the FMUs in other people's importers, as a table; these go into $(VENV)-importers"
+	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
 	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
 	@echo "make nightly     what takes up to an hour: every platform, importers, fuzzing, kills and damage, a few hidden truths, matrix"
 	@echo "make clean   remove what the others made, but for $(VENV)"
@@ -65,7 +65,7 @@ bench: setup
 	$(BIN)/python -m benchmarks.bench
 
 importers: setup $(VENV)-importers/.ready
-	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m benchmarks.importers
+	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m benchmarks.importers $(ARGS)
 
 $(VENV)-importers/.ready: benchmarks/importers/requirements.txt
 	$(PYTHON) -m venv $(VENV)-importers

@@ -37,6 +37,6 @@ for row in rows[:-1]:
     if pushes:
         manipulator.slave_real_values(chair, [at[name] for name in pushes], list(pushes.values()))
     if not execution.step():
-        sys.exit(f"libcosimpy: {execution.status()}")
+        sys.exit("libcosimpy: a step failed")
 end = observer.last_real_values(watched, [at[name] for name in names])
 print(json.dumps({"tool": "libcosimpy", "version": version("libcosimpy"), "end": dict(zip(names, end, strict=True))}))

@@ -1,4 +1,4 @@
-"""The importers that are not Python's FMPy, each in the environment that `make importers` sets up."""
+"""The importers that are not Python's FMPy, each in the environment that `make importers` sets up, and the tables of all."""
 
 from __future__ import annotations
 
@@ -6,22 +6,50 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.importers.__main__ import OTHERS, REFERENCE, TWO, coupled, drive, plain_host, reference
+from benchmarks.importers import page
+from benchmarks.importers.cases import cases
+from benchmarks.importers.driving import OTHERS, on_fmu, on_ssp, plain_host
+from benchmarks.importers.rows import FMU_HEAD, SSP_HEAD, STROKES, Row, fmu_rows, head, ssp_rows
 
-pytestmark = pytest.mark.nightly
 needs_others = pytest.mark.skipif(not OTHERS, reason="no $IMPORTERS_PYTHON: `make importers` sets it up")
+ROWS = {"fmu": (*fmu_rows("2"), *fmu_rows("3")), "ssp": ssp_rows()}
+NOT_THERE = {"libcosimpy": "3"}  # reads FMI 1.0 and 2.0 only
 
 
+@pytest.mark.parametrize(("kind", "names"), [("fmu", FMU_HEAD), ("ssp", SSP_HEAD)])
+def test_the_documentation_shows_every_row_with_a_result(kind, names):
+    table = page.shown(kind)
+    rows = page.cells(table)
+    assert table.startswith(head(names))
+    assert [(row[0], *row[2:-1]) for row in rows] == [row.key for row in ROWS[kind]]
+    assert all(row[-1] for row in rows)
+
+
+def _named(row: Row) -> str:
+    return " ".join(row.key)
+
+
+@pytest.mark.nightly
 @needs_others
-@pytest.mark.parametrize("run", [REFERENCE, TWO])
-@pytest.mark.parametrize(("script", "fmi"), [("libcosimpy", "2"), ("cofmupy", "2"), ("cofmupy", "3")])
-def test_others_get_the_reference(script, fmi, run, native, native3, tmp_path: Path):
-    archive = (native if fmi == "2" else native3).path
-    expected = reference(archive, tmp_path)
-    result = drive(OTHERS, script, archive, tmp_path, fmi, "CoSimulation", run, expected if run == REFERENCE else coupled())
+@pytest.mark.parametrize("row", [r for r in ROWS["fmu"] if r.script and NOT_THERE.get(r.tool) != r.fmi], ids=_named)
+def test_others_get_what_is_right(row, native, native3, tmp_path: Path):
+    archive = (native if row.fmi == "2" else native3).path
+    result = on_fmu(row, archive, cases(archive, tmp_path)[row.run])
     assert result.good, result.verdict
 
 
+@pytest.mark.nightly
+@needs_others
+@pytest.mark.parametrize("row", [r for r in ROWS["ssp"] if r.script], ids=_named)
+def test_others_run_the_same_system(row, tmp_path: Path):
+    from wheelchair_fmu.studies.ssp.building import build
+
+    result = on_ssp(row, build(row.run, tmp_path / f"{row.run}.ssp"))
+    assert result.good, result.verdict
+
+
+@pytest.mark.nightly
 @pytest.mark.parametrize("fmi", ["2", "3"])
 def test_a_host_in_c_gets_what_the_engine_gives(fmi, native, native3, tmp_path: Path):
-    assert plain_host((native if fmi == "2" else native3).path, fmi, tmp_path).good
+    row = next(r for r in fmu_rows(fmi) if r.run == STROKES)
+    assert plain_host(row, (native if fmi == "2" else native3).path, tmp_path).good

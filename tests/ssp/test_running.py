@@ -222,9 +222,13 @@ def test_a_recording_is_replayed_into_the_chair(tmp_path):
 
 def test_a_variant_is_the_chair_with_its_laws_and_values(tmp_path):
     variant = Variant().with_values({"tyre.law": "magic_formula", "chair.m": 100.0, "effect.relaxation_length.sigma": 0.1})
-    trace = run(build("strokes", tmp_path / "variant.ssp", variant=variant), stop=0.1)
+    path = build("strokes", tmp_path / "variant.ssp", variant=variant)
+    trace = run(path, stop=0.1)
     told = ("tyre.law", "chair.m", "effect.relaxation_length.sigma", "tyre.C_lambda", "start.u")
     assert [trace.parameters[f"Chair.{name}"] for name in told] == [3, 100, 0.1, 5038, 0]
+    with opened(path) as archive:
+        starts = archive.fmu("resources/Wheelchair.fmu").variables
+    assert [float(starts[name].start) for name in told] == [3, 100, 0.1, 5038, 0]  # for importers that read no sets
 
 
 def test_the_floor_acts_on_the_chair(tmp_path):

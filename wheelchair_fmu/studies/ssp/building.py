@@ -23,8 +23,9 @@ from ...fmu.parameter_set import ParameterSet
 from ...model.variant import Variant
 from ..archives import fmu_of
 from . import checking, sources, writing
+from .page import page
 from .records import MAIN
-from .structure import FMUS, Model, plain_system, with_interface
+from .structure import FMUS, Model, plain_system, usual_file, with_interface
 
 INTERFACE = "Interface.ssd"
 BOUND = "initialValues"  # what the bound sets are called: Ecos applies sets of one name together, and its examples this one
@@ -52,14 +53,12 @@ def build(
     sets = _bound(source, chair, parameters)
     with TemporaryDirectory() as folder:
         models = {c: Model.of(f) for c, f in _fmus(Path(folder), sets, chair, recording).items()}
-    files = _files(source, models, {c: _numbers(s) for c, s in sets.items()}, written_as)
-    path = target or Path("dist") / f"{source.name.title().replace('-', '')}.ssp"
+    path = target or Path("dist") / usual_file(source.name)
+    files = _files(source, models, sets, written_as)
     return package.write(path, files, lambda made: [str(fault) for fault in checking.check(made)])
 
 
-def _fmus(
-    folder: Path, sets: dict[str, ParameterSet], chair: Variant, recording: Recording | None
-) -> dict[str, Path]:
+def _fmus(folder: Path, sets: dict[str, ParameterSet], chair: Variant, recording: Recording | None) -> dict[str, Path]:
     """The FMUs, which start with the values of the sets."""
     starts = {c: {name: s.value for name, s in bound.settings.items()} for c, bound in sets.items()}
     if recording:
@@ -90,13 +89,12 @@ def _numbers(parameters: ParameterSet) -> ParameterSet:
     return replace(parameters, settings=plain)
 
 
-def _files(
-    source: sources.Source, models: dict[str, Model], sets: dict[str, ParameterSet], version: str
-) -> dict[str, bytes]:
+def _files(source: sources.Source, models: dict[str, Model], sets: dict[str, ParameterSet], version: str) -> dict[str, bytes]:
     plain = plain_system(source, models, version)
-    outer, handles, entries = with_interface(plain, models, sets)
+    bound = {c: _numbers(s) for c, s in sets.items()}
+    outer, handles, entries = with_interface(plain, models, bound)
     known = {name: sources.parameter_set(name)[1] for name in sources.parameter_sets()}
-    all_sets = {**known, **sets, handles.name: handles}
+    all_sets = {**known, **bound, handles.name: handles}
     written = {f"resources/{name}.ssv": parameter_set.text(s, version) for name, s in all_sets.items()}
     return {
         MAIN: writing.description(plain),
@@ -104,5 +102,6 @@ def _files(
         **{f"resources/{FMUS[c]}.fmu": m.archive for c, m in models.items()},
         **written,
         "resources/handles.ssm": writing.mapping(entries, version),
+        "documentation/index.html": page(plain, models, sets, handles, entries),
         "documentation/licenses/license.txt": LICENCE.read_bytes(),
     }

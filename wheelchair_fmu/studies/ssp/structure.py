@@ -66,13 +66,18 @@ def _same_names(components: tuple[Component, ...]) -> Iterable[Connection]:
 def _without_loose_ends(components: Iterable[Component], connections: Iterable[Connection]) -> Iterable[Component]:
     """Components with the connectors that lead somewhere, and the outputs that the interface shows."""
     ends = [((c.start_element, c.start_connector), (c.end_element, c.end_connector)) for c in connections]
-    used = {end for pair in ends for end in pair} | {_parted(path) for path in sources.interface()["outputs"].values()}
+    used = {end for pair in ends for end in pair} | {parted(path) for path in sources.interface()["outputs"].values()}
     for component in components:
         kept = tuple(k for k in component.connectors if (component.name, k.name) in used)
         yield replace(component, connectors=kept)
 
 
-def _parted(path: str) -> tuple[str, str]:
+def usual_file(name: str) -> str:
+    """What the archive of a system is called where nobody says otherwise."""
+    return f"{name.title().replace('-', '')}.ssp"
+
+
+def parted(path: str) -> tuple[str, str]:
     """The element and its variable in `Element.variable`."""
     element, _, inner = path.partition(".")
     return element, inner
@@ -87,7 +92,7 @@ def with_interface(
     settings, units, shown = {}, {u.name: u for u in plain.units}, {c: [] for c in models}
     for kind in ("input", "output"):
         for name, path in table[f"{kind}s"].items():
-            element, inner = _parted(path)
+            element, inner = parted(path)
             unit = models[element].variable(inner).unit
             units[unit] = models[element].units()[unit]
             connectors.append(Connector(name, kind, "Real", unit))
@@ -96,7 +101,7 @@ def with_interface(
             outer = ("", name), (element, inner)
             connections.append(Connection(*(outer[0] + outer[1] if kind == "input" else outer[1] + outer[0])))
     for handle, (path, unit) in table["parameters"].items():
-        element, inner = _parted(path)
+        element, inner = parted(path)
         variable, name = models[element].variable(inner), handle.rpartition(".")[2]
         own = models[element].units()[variable.unit]
         units[unit] = own if unit == own.name else SspUnit(unit, own.exponents, own.factor * factor(unit, own.name))

@@ -39,4 +39,5 @@ def too_much(packed: zipfile.ZipFile) -> str:
     size = sum(entry.file_size for entry in entries)
     if len(entries) <= MOST_FILES and size <= MOST_BYTES:
         return ""
-    return f"{len(entries)} files of {size / 1e6:.0f} MB in all, unpacked, are more than {MOST_FILES} files or {MOST_BYTES / 1e6:.0f} MB"
+    return (f"{len(entries)} files of {size / 1e6:.0f} MB in all, unpacked, are more than {MOST_FILES} files or "
+            f"{MOST_BYTES / 1e6:.0f} MB")  # fmt: skip
