@@ -32,9 +32,10 @@ class Case:
 
 def cases(archive: Path, folder: Path) -> dict[str, Case]:
     """Every case that needs files, by what was run, for one archive."""
-    for name in ("reference_in.csv", "reference.csv"):
-        with zipfile.ZipFile(archive) as z:
-            (folder / name).write_bytes(z.read(f"documentation/{name}"))
+    with zipfile.ZipFile(archive) as z:
+        for name in ("reference_in.csv", "reference.csv"):
+            inside = next(n for n in z.namelist() if n.rpartition("/")[2] == name)
+            (folder / name).write_bytes(z.read(inside))
     with open(folder / "reference.csv") as file:
         rows = list(csv.DictReader(file))
     end = {name: float(value) for name, value in rows[-1].items() if name != "time"}
