@@ -7,8 +7,9 @@ import gzip
 import io
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from math import nan
 from pathlib import Path
 from typing import Any, Literal, Protocol
@@ -16,11 +17,15 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import pandas as pd
 
-from .faults import SHOWN, Fault, not_utf8, run_fault
+from .clocks import Clock, ClockError, Seconds, count_over, counted, is_date, is_stamp, named_time, stamps
+from .dialect import GAPS as _GAPS
+from .dialect import grouped
+from .faults import SHOWN, Fault, run_fault
 from .given import what_is
+from .texts import Text, parse
+from .units import split, suffixed, unit_of
 
 MOST = 2**30  # bytes that a packed recording may have unpacked: a day at 100 Hz has less
-_GAPS = ("", "NaN", "nan", "NAN")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?inf(inity)?", re.IGNORECASE)
 
 
@@ -37,10 +42,19 @@ class Rows:
 
 
 class Table(Protocol):
-    """What every format is read into."""
+    """What every format is read into.
+
+    `headers` are the raw texts; `units` stand beside them as the file gives them, None where it gives none. `notes` are
+    sentences about what was found. `time` is the place of the column that the file itself calls its time, None where none
+    does; where the file has stamps, that column is in s from the recording's own zero, and `started` is what the zero was.
+    """
 
     file: str
     headers: tuple[str, ...]
+    units: tuple[str | None, ...]
+    notes: tuple[str, ...]
+    started: datetime | None
+    time: int | None
 
     def rows(self, indices: Sequence[int]) -> Rows: ...
 
@@ -52,6 +66,14 @@ class FrameTable:
     file: str
     headers: tuple[str, ...]
     frame: pd.DataFrame
+    units: tuple[str | None, ...] = ()  # by default as the headers give them
+    notes: tuple[str, ...] = ()
+    started: datetime | None = None
+    time: int | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.units) != len(self.headers):
+            self.units = tuple(map(unit_of, self.headers))
 
     @property
     def length(self) -> int:
@@ -84,16 +106,41 @@ class CsvTable:
     separator: str
     decimal: str
     header_line: int = 1
+    units: tuple[str | None, ...] = ()
+    notes: tuple[str, ...] = ()
+    started: datetime | None = None
+    time: int | None = None
+    first_line: int = 2  # of the body
+    rate: float | None = None  # Hz: then the last header is a time made from the rows, or from the column `counter`
+    counter: tuple[int, float] | None = None  # its place, and where it starts again at 0
+    clocks: dict[int, Clock] = field(default_factory=dict, repr=False)
+    stamped: dict[int, np.ndarray] = field(default_factory=dict, repr=False)  # columns of stamps, read already
     _known: dict[tuple[int, ...], Rows] = field(default_factory=dict, repr=False)
 
     def rows(self, indices: Sequence[int]) -> Rows:
         key = tuple(indices)
         if key not in self._known:
-            self._known[key] = self._fast(key) or self._careful(key)
+            made = len(self.headers) - 1 if self.rate else None
+            asked = tuple(i for i in key if i != made)
+            if made in key and self.counter and self.counter[0] not in asked:
+                asked = (*asked, self.counter[0])
+            rows = self._fast(asked) or self._careful(asked)
+            for i, clock in self.clocks.items():
+                if i in rows.values:
+                    rows.values[i] = clock.seconds(rows.values[i]).values
+            if made in key and self.rate:
+                count = np.arange(len(rows.lines if rows.lines is not None else ()), dtype=float)
+                if self.counter:
+                    count = count_over(rows.values[self.counter[0]], self.counter[1])
+                rows.values[made] = count / self.rate
+            self._known[key] = rows
         return self._known[key]
 
     def words(self, index: int) -> list[str]:
         """A column of text, one word for each row of `rows`."""
+        if '"' not in self.body:
+            lines = (line.split(self.separator) for line in self.body.split("\n") if line.strip(f" \t{self.separator}"))
+            return [row[index].strip() if index < len(row) else "" for row in lines]
         filled = (row for row in self._cells() if any(cell.strip() for cell in row))
         return [row[index].strip() if index < len(row) else "" for row in filled]
 
@@ -103,19 +150,23 @@ class CsvTable:
         rows = body.count("\n") + 1
         if not body or '"' in body or "\n\n" in body or body[0] in "\r\n" or "\n\r" in body:
             return None
-        if body.count(self.separator) != rows * (len(self.headers) - 1):
+        separators, width = body.count(self.separator), len(self.headers) - bool(self.rate)
+        trailing = separators == rows * width and body.count(self.separator + "\n") + body.endswith(self.separator) == rows
+        if separators != rows * (width - 1) and not trailing:
             return None
+        numbers = [i for i in indices if i not in self.stamped]
         try:
             frame = pd.read_csv(
-                io.StringIO(body), sep=self.separator, decimal=self.decimal, header=None, usecols=list(indices),
-                dtype=float, keep_default_na=False, na_values=list(_GAPS), index_col=False,
+                io.StringIO(body), sep=self.separator, decimal=self.decimal, header=None, usecols=numbers or [0],
+                dtype=float if numbers else str, keep_default_na=False, na_values=list(_GAPS), index_col=False,
             )  # fmt: skip
         except ValueError:  # ParserError is one
             return None
-        if len(frame) != rows:
+        known = [self.stamped[i] for i in indices if i in self.stamped]
+        if len(frame) != rows or any(len(times) != rows or np.isnan(times).any() for times in known):
             return None
-        lines = np.arange(rows) + self.header_line + 1
-        values = {i: frame[i].to_numpy() for i in indices}
+        lines = np.arange(rows) + self.first_line
+        values = {i: self.stamped[i] if i in self.stamped else frame[i].to_numpy() for i in indices}
         return Rows(values, lines, tuple(self._infinite(values, lines)))
 
     def _careful(self, indices: tuple[int, ...]) -> Rows:
@@ -125,26 +176,27 @@ class CsvTable:
         lines: list[int] = []
         bad: dict[int, list[tuple[int, str]]] = {i: [] for i in indices}
         ragged: list[tuple[int, str]] = []
+        width = len(self.headers) - bool(self.rate)
         while True:
             try:
                 row = next(reader)
             except StopIteration:
                 break
             except csv.Error as error:
-                line = reader.line_num + self.header_line
+                line = reader.line_num + self.first_line - 1
                 too_long.append(run_fault(self.file, f"the row cannot be read ({error})", "export the file again", line))
                 break
             if not any(cell.strip() for cell in row):
                 continue
-            line = reader.line_num + self.header_line
-            lines.append(line)
-            if len(row) != len(self.headers) and any(cell.strip() for cell in row[len(self.headers) :] or ["short"]):
-                ragged.append((line, f"{len(row)} cells, but the header has {len(self.headers)}"))
+            line = reader.line_num + self.first_line - 1
+            if len(row) != width and any(cell.strip() for cell in row[width:] or ["short"]):
+                ragged.append((line, f"{len(row)} cells, but the header has {width}"))
             for i in indices:
                 text = row[i].strip() if i < len(row) else ""
-                cells[i].append(self._number(text))
+                cells[i].append(float(self.stamped[i][len(lines)]) if i in self.stamped else self._number(text))
                 if np.isnan(cells[i][-1]) and text not in _GAPS:
-                    bad[i].append((line, f"{text!r} is not a number"))
+                    bad[i].append((line, f"{text!r} is not {'a time' if i in self.stamped else self._numeric(text)}"))
+            lines.append(line)
         values = {i: np.array(cells[i], dtype=float) for i in indices}
         faults = too_long + self._listed(ragged, None, "write one cell for each column")
         for i in indices:
@@ -160,8 +212,14 @@ class CsvTable:
         return csv.QUOTE_NONE if self.body.count('"') % 2 else csv.QUOTE_MINIMAL
 
     def _number(self, text: str) -> float:
-        text = text.replace(",", ".") if self.decimal == "," else text
+        if self.decimal == ",":
+            if "." in text and grouped(text + ","):
+                return nan  # 1.234 among decimal commas
+            text = text.replace(",", ".")
         return float(text) if _NUMBER.fullmatch(text) else nan
+
+    def _numeric(self, text: str) -> str:
+        return "a number without separators of thousands" if grouped(text) else "a number"
 
     def _infinite(self, values: dict[int, np.ndarray], lines: np.ndarray) -> list[Fault]:
         faults = []
@@ -200,33 +258,95 @@ def unreadable(file: str, error: OSError) -> Fault:
     return run_fault(file, f"the file cannot be read ({what})", "check the file and the rights to read it")
 
 
-def read_csv(file: str, raw: bytes) -> tuple[CsvTable | None, list[Fault]]:
-    """A CSV table from its bytes; separator and decimal sign are found by looking."""
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        return None, [not_utf8(file, raw, error, in_run=True)]
-    if not text.strip():
-        return None, [run_fault(file, "the file is empty", "export it again, or leave it out")]
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    blank = len(text) - len(text.lstrip("\n"))
-    first, _, body = text[blank:].partition("\n")
-    separator = _separator(first)
-    try:
-        headers = tuple(cell.strip() for cell in next(csv.reader([first], delimiter=separator)))
-    except csv.Error as error:
-        cure = "is it a table with one line of headers?"
-        return None, [run_fault(file, f"the header cannot be read ({error})", cure, blank + 1)]
-    if not body.strip():
-        return None, [run_fault(file, "the file has a header but no rows", "export it again, or leave it out")]
-    decimal = "," if separator != "," and "," in body else "."
-    return CsvTable(file, headers, body, separator, decimal, blank + 1), []
+def read_csv(file: str, raw: bytes, options: Mapping[str, Any] | None = None) -> tuple[CsvTable | None, list[Fault]]:
+    """A table from the bytes of a text file; how it is written is found by looking, where `options` do not say it.
+
+    These may hold encoding, separator, decimal, skip, dates (day first or month first) and rate (Hz).
+    """
+    text, faults = parse(file, raw, options)
+    if text is None:
+        return None, faults
+    table = CsvTable(file, text.headers, text.body, text.separator, text.decimal, text.header_line, text.units, text.notes,
+                     first_line=text.first_line)  # fmt: skip
+    return _timed(table, text, options or {})
 
 
-def _separator(header: str) -> str:
-    """The separator that the header holds most often; a comma where there is none."""
-    bare = re.sub(r'\[[^\]]*\]|"[^"]*"', "", header)
-    return max(",;\t", key=bare.count)
+def _timed(table: CsvTable, text: Text, options: Mapping[str, Any]) -> tuple[CsvTable | None, list[Fault]]:
+    """The table with its column of time in s, where it has one."""
+    columns = [[row[i] for row in text.rows if i < len(row) and row[i]] for i in range(len(table.headers))]
+    dated = [i for i, cells in enumerate(columns) if cells and 2 * sum(map(is_stamp, cells)) > len(cells)]
+    try:
+        for i in dated:
+            _stamp(table, i, dated, columns, str(options.get("dates") or ""))
+    except ClockError as error:
+        return None, [run_fault(table.file, error.fact, error.cure, text.first_line, table.headers[i])]
+    called = [i for i, header in enumerate(table.headers) if named_time(_bare(header))]
+    called = [i for i in called if i in dated or i in text.numeric] or called
+    exact = [i for i in called if split(table.headers[i])[0] == "time"]
+    table.time = next(iter(exact or [i for i in called if i in table.stamped] or called or list(table.stamped)), None)
+    if table.time is not None and table.time not in table.stamped:
+        _counted(table, table.time, columns[table.time])
+    return _rated(table, options.get("rate"))
+
+
+def _bare(header: str) -> str:
+    """A header without its unit."""
+    return suffixed(split(header)[0])[0]
+
+
+def _stamp(table: CsvTable, i: int, dated: list[int], columns: list[list[str]], order: str) -> None:
+    """Column i, of stamps, becomes seconds; a column of dates alone goes with the first one of times of day."""
+    if all(map(is_date, columns[i])) and len(dated) > 1:
+        return  # its time of day stands beside it
+    words = table.words(i)
+    days = [d for d in dated if d != i and all(map(is_date, columns[d]))]
+    if days and not any(map(is_date, (word.split()[0] for word in columns[i][:1]))):
+        words = [f"{day} {word}" for day, word in zip(table.words(days[0]), words, strict=True)]
+    found = stamps(words, order, european=table.decimal == ",")
+    table.stamped[i] = found.values
+    table.units = _with(table.units, i, "s")
+    _noted(table, i, found)
+
+
+def _counted(table: CsvTable, i: int, cells: list[str]) -> None:
+    """Column i, of numbers, becomes seconds where it counts from 1970, from midnight or in days."""
+    sample = np.array([table._number(cell) for cell in cells])
+    clock = counted(table.headers[i], table.units[i], sample)
+    if clock is not None:
+        table.clocks[i] = clock
+        table.units = _with(table.units, i, clock.unit)
+        _noted(table, i, clock.seconds(sample))
+
+
+def _noted(table: CsvTable, i: int, found: Seconds) -> None:
+    table.started = table.started or found.started
+    table.notes += (f"column {table.headers[i]!r}: {found.note}",) if found.note else ()
+
+
+def _with(units: tuple[str | None, ...], i: int, unit: str | None) -> tuple[str | None, ...]:
+    return (*units[:i], unit, *units[i + 1 :])
+
+
+_COUNTERS = {"packetcounter": 65536.0, "counter": 65536.0, "sample": 1e12, "sample number": 1e12, "frame": 1e12, "frame#": 1e12}
+
+
+def _rated(table: CsvTable, rate: Any) -> tuple[CsvTable | None, list[Fault]]:
+    """With a rate, a last column of time is made from the counter of samples, else from the rows."""
+    if not isinstance(rate, int | float) or isinstance(rate, bool):
+        return table, []
+    if rate <= 0:
+        return None, [run_fault(table.file, f"a rate of {rate:g} Hz", "give the samples per second")]
+    if table.time is not None:
+        fact = f"the rate {rate:g} Hz is given, but the file has a time of its own"
+        return None, [run_fault(table.file, fact, "leave out one of them", table.header_line, table.headers[table.time])]
+    names = [split(header)[0].casefold() for header in table.headers]
+    place = next((i for i, name in enumerate(names) if name in _COUNTERS), None)
+    table.counter = None if place is None else (place, _COUNTERS[names[place]])
+    table.headers, table.units, table.rate = (*table.headers, "time [s]"), (*table.units, "s"), float(rate)
+    table.time = len(table.headers) - 1
+    by = "the rows" if place is None else f"the counter {table.headers[place]!r}"
+    table.notes += (f"time made from {by} at {rate:g} Hz",)
+    return table, []
 
 
 def as_frame_table(file: str, frame: Any) -> FrameTable:

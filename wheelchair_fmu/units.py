@@ -121,12 +121,55 @@ def quantity(text: str, si: str) -> float:
     return float(match[1]) * factor(match[2] or si, si)
 
 
+_SUFFIXES = {
+    "_degps": "deg/s", "_deg_s": "deg/s", "_dps": "deg/s", "_radps": "rad/s", "_rad_s": "rad/s", "_rpm": "rpm",
+    "_mps2": "m/s2", "_m_s2": "m/s2", "_ms2": "m/s2", "_mps": "m/s", "_m_s": "m/s", "_kmh": "km/h", "_km_h": "km/h",
+    "_kph": "km/h", "_Nm": "N.m", "_N_m": "N.m", "_N": "N", "_ns": "ns", "_us": "us", "_ms": "ms", "_s": "s", "_mm": "mm",
+    "_cm": "cm", "_m": "m", "_deg": "deg", "_rad": "rad", "_g": "g",
+}  # fmt: skip
+_ELECTRIC = ("uT", "µT", "V", "mV", "A", "mA", "degC", "°C", "°", "counts", "-")
+
+
 def split(header: str) -> tuple[str, str | None]:
-    """'yaw_rate [deg/s]' is ('yaw_rate', 'deg/s'); no bracket, no unit."""
+    """'yaw_rate [deg/s]' is ('yaw_rate', 'deg/s'), and so is 'yaw_rate (deg/s)'; no bracket, no unit.
+
+    What stands in a bracket is a unit, whatever it says; in parentheses only what is known as one: 'speed (left)' is a name.
+    """
     name, bracket, unit = header.partition("[")
     if bracket and unit.rstrip().endswith("]"):
         return name.strip(), unit.rstrip()[:-1].strip()
+    found = re.fullmatch(r"(.*?)\s*\(([^()]+|[^()]*\([^()]*\)[^()]*)\)\s*", header)
+    if found and found[1] and is_unit(found[2].strip()):
+        return found[1].strip(), found[2].strip()
     return header.strip(), None
+
+
+def suffixed(header: str) -> tuple[str, str | None]:
+    """'yaw_rate_dps' is ('yaw_rate', 'deg/s'), by the usual endings; no such ending, no unit."""
+    for suffix in sorted(_SUFFIXES, key=len, reverse=True):
+        if header.endswith(suffix) and len(header) > len(suffix):
+            return header[: -len(suffix)], _SUFFIXES[suffix]
+    return header, None
+
+
+def unit_of(header: str) -> str | None:
+    """The unit that a header gives, by its bracket, its parenthesis or its ending."""
+    name, unit = split(header)
+    return unit if unit is not None else suffixed(name)[1]
+
+
+@cache
+def is_unit(text: str) -> bool:
+    """Is this text a unit of something that loggers log? A single letter may be a side or a direction."""
+    if text in _GRAVITY or text in SI_OF or text in _ASIDE or text in _ELECTRIC:
+        return bool(text)
+    if len(text) < 2 or not re.search(r"[A-Za-zµΩ°]", text):
+        return text in ("h", "W", "°")
+    try:
+        coherent(text)
+    except UnitError:
+        return False
+    return True
 
 
 def _dimension(unit: Any) -> str:

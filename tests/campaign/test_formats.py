@@ -60,7 +60,7 @@ def test_mdf_by_asammdf(campaign, monkeypatch):
     folder = campaign(runs=RUNS.replace("a.csv", "a.mf4"), files={"a.mf4": b""})
     assert check(folder) == []
     np.testing.assert_allclose(read(folder).runs[0].channels["a_y"], motion()[:, 6])
-    folder = campaign(runs=RUNS.replace("a.csv", "bad.mf4"), files={"bad.mf4": b""})
+    folder = campaign(runs=RUNS.replace("a.csv", "bad.mf4"), files={"bad.mf4": b"MDF"})
     assert [str(f) for f in check(folder)] == [
         "run bad.mf4: asammdf cannot read the file: not a valid MDF file; export it again"
     ]

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..faults import SHOWN, WARNING, Fault, run_fault, some, suggestion
-from ..units import UnitError, factor, same_dimension, split
+from ..tables import Table
+from ..units import UnitError, factor, same_dimension, split, suffixed
 from .channels import BY_NAME, SOURCES, TIME, Channel
 from .devices import Device
 from .document import Document, number
@@ -61,9 +62,10 @@ class Bindings:
     absent: tuple[str, ...]
 
 
-def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[str] = ()) -> Bindings:
-    """Matches a table's headers to time, channels and inputs, and to what channels are made from; `taken` are headers that
-    somebody else reads."""
+def bind(device: Device, table: Table, taken: Collection[str] = ()) -> Bindings:
+    """Matches a table's headers to time, channels and inputs, and to what channels are made from; the time, too, where the file
+    itself calls a column that. `taken` are headers that somebody else reads."""
+    file, headers = table.file, table.headers
     found: dict[str, Binding] = {}
     faults: list[Fault] = list(_twice(file, headers))
     absent: list[str] = []
@@ -74,12 +76,15 @@ def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[st
         if not matches and want.renamed:
             absent.append(channel.name)
             want, matches = Wanted(channel.name), places.of(channel.name)
+        if not matches and channel is TIME and table.time is not None:
+            want, matches = Wanted(headers[table.time], renamed=True), [table.time]
+            absent = [name for name in absent if name != TIME.name]
         if len({headers[i] for i in matches}) > 1:
             both = " and ".join(repr(headers[i]) for i in matches)
             cure = f"remove one, or choose one by its whole header in [columns] {channel.name}"
             faults.append(run_fault(file, f"{channel.name} could be {both}", cure, 1))
         if matches:
-            binding, met = _scaled(device, file, channel, want, headers[matches[0]], matches[0])
+            binding, met = _scaled(device, table, channel, want, matches[0])
             found[channel.name] = binding
             faults += met
     used = {binding.index for binding in found.values()}
@@ -91,16 +96,19 @@ def bind(device: Device, file: str, headers: Sequence[str], taken: Collection[st
 
 
 class _Places:
-    """Where each header stands: by the whole header first, then without the bracket."""
+    """Where each header stands: by the whole header first, then without the bracket, then without an ending that tells the
+    unit."""
 
     def __init__(self, headers: Sequence[str]):
-        self._whole, self._bare = defaultdict[str, list[int]](list), defaultdict[str, list[int]](list)
+        self._ways = [defaultdict[str, list[int]](list) for _ in range(3)]
         for i, header in enumerate(headers):
-            self._whole[header].append(i)
-            self._bare[split(header)[0]].append(i)
+            bare = split(header)[0]
+            for known, name in zip(self._ways, (header, bare, suffixed(bare)[0]), strict=True):
+                known[name].append(i)
 
     def of(self, header: str) -> list[int]:
-        return self._whole.get(header) or self._bare.get(split(header)[0], [])
+        whole, *bare = self._ways
+        return next((found for found in (whole.get(header), *(way.get(split(header)[0]) for way in bare)) if found), [])
 
 
 def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
@@ -111,16 +119,19 @@ def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
         yield run_fault(file, f"{len(often) - SHOWN} more headers like these", "rename or remove all but one each", 1)
 
 
-def _scaled(
-    device: Device, file: str, channel: Channel, want: Wanted, header: str, index: int
-) -> tuple[Binding, list[Fault]]:
+def _scaled(device: Device, table: Table, channel: Channel, want: Wanted, index: int) -> tuple[Binding, list[Fault]]:
     """The binding with its factor to SI; 1 where there is none, and then a fault."""
-    own, asked = split(header)[1], split(want.header)[1]
+    file, header = table.file, table.headers[index]
+    own, asked = table.units[index], split(want.header)[1]
     faults = []
     if own is not None and asked is not None and own != asked and want.unit is None:
         fact = f"[columns] {channel.name} says [{asked}], the file says [{own}]"
         faults.append(run_fault(file, fact, "correct one of them, or settle it by unit = ...", 1, header))
     unit = next((u for u in (want.unit, own, asked) if u is not None), None)
+    if unit is None and want.renamed:
+        fact = f"the column that is {channel.name} gives no unit"
+        cure = f'write [columns] {channel.name} = {{ column = "{header}", unit = "{channel.unit.name}" }} with its unit'
+        return Binding(channel, index, header, 1.0), [run_fault(file, fact, cure, 1, header)]
     if unit is None:
         fact = f"no unit given, {channel.unit.name} assumed"
         cure = f"write the header as '{split(header)[0]} [{channel.unit.name}]'"

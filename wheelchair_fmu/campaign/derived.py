@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from ..faults import Fault, run_fault, suggestion
+from ..tables import Table
 from ..units import UnitError, factor, split
 from .devices import Part
 from .document import Document, number
@@ -43,21 +44,21 @@ def wheel_speed(time: np.ndarray, angle: np.ndarray, radius: float) -> tuple[np.
     return speed, radius * np.sqrt(2) * (noise or 0.0) / (2 * half * step)
 
 
-def marker_columns(part: Part, headers: Sequence[str]) -> tuple[dict[str, tuple[int, float]], list[Fault]]:
+def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float]], list[Fault]]:
     """Places and factors to m of the columns that the device's markers need, by "axle_l.x" and so on; and what is missing."""
     found: dict[str, tuple[int, float]] = {}
     faults: list[Fault] = []
     for end in (e for e in ENDS if part.device.markers):
         for room, (axis, sign) in _room(part).items():
             name = f"{part.device.markers.get(end, end)}.{axis}"
-            at = next((i for i, h in enumerate(headers) if split(h)[0].lower() == name.lower()), None)
+            at = next((i for i, h in enumerate(table.headers) if split(h)[0].lower() == name.lower()), None)
             if at is None:
-                faults.append(run_fault(part.file, f"no column {name!r} for the marker {end}", suggestion(name, headers), 1))
+                faults.append(run_fault(part.file, f"no column {name!r} for the marker {end}", suggestion(name, table.headers), 1))
                 continue
             try:
-                found[f"{end}.{room}"] = at, sign * factor(split(headers[at])[1] or "m", "m")
+                found[f"{end}.{room}"] = at, sign * factor(table.units[at] or "m", "m")
             except UnitError as error:
-                faults.append(run_fault(part.file, error.fact, error.cure, 1, headers[at]))
+                faults.append(run_fault(part.file, error.fact, error.cure, 1, table.headers[at]))
     return (found, faults) if len(found) == len(ENDS) * len(ROOM) else ({}, faults)
 
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .document import Document, Entry, number
+from .formats import known_options
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def _device(doc: Document, name: str, place: int, table: Mapping[str, Any]) -> D
 
 
 def _nameless(doc: Document, entry: Entry) -> Device:
-    options = {k: entry.data[k] for k in entry.data if k in ("format", "side", "radius")}
+    options = {k: entry.data[k] for k in ("format", *known_options()) if k in entry.data}
     return Device("", columns=doc.table("columns"), options=options, axes=doc.axes, radius=number(doc.table("wheel").get("R")))
 
 

@@ -19,7 +19,7 @@ from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, SOURCES, Channel
 from .derived import marker_columns, pose, unwrapped, wheel_speed
 from .devices import Part
 from .document import Document, Entry, number
-from .formats import open_table
+from .formats import open_recording
 from .resampled import Resampled, resampled
 from .series import only, spikes, tells, without
 
@@ -122,12 +122,12 @@ def prepare(doc: Document, part: Part, path: Path, known: dict[Any, Any]) -> tup
     """Reads, binds, converts, turns and cuts. `known` keeps tables, so that a file is read once."""
     key = (path, repr(part.device.options))
     if key not in known:
-        known[key] = open_table(part, path)
+        known[key] = open_recording(path, part.file, part.device.options)
     table, faults = known[key]
     if table is None:
         return None, list(faults)
-    markers, met = marker_columns(part, table.headers)
-    bindings = bind(part.device, part.file, table.headers, [table.headers[i] for i, _ in markers.values()])
+    markers, met = marker_columns(part, table)
+    bindings = bind(part.device, table, [table.headers[i] for i, _ in markers.values()])
     rows = table.rows(sorted({*(b.index for b in bindings.found.values()), *(i for i, _ in markers.values())}))
     faults = [*faults, *met, *bindings.faults, *rows.faults]
     return _converted(doc, part, table, bindings, rows, markers), faults

@@ -26,8 +26,7 @@ from uuid import uuid4
 from ..campaign import CHANNELS, INPUTS, check, read
 from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
-from ..campaign.document import Entry
-from ..campaign.formats import open_table
+from ..campaign.formats import open_recording
 from ..campaign.layout import relaid
 from ..contracts.own import load
 from ..errors import CampaignError, Failure, UsageError
@@ -141,7 +140,7 @@ class Session:
         """Every header there is, with the files that have it."""
         found: dict[str, list[str]] = {}
         for name in self.files():
-            table, _ = open_table(Entry(0, {"file": name}), self.campaign / name)
+            table, _ = open_recording(self.campaign / name, name, {})
             for header in table.headers if table else ():
                 if header:
                     found.setdefault(header, []).append(name)

@@ -13,7 +13,7 @@ from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
 from ..devices import devices, parts, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
-from ..formats import FORMATS, OPTIONS
+from ..formats import formats, known_options
 from ..noise import NAMES as NOISE_NAMES
 from ..recorded import PUSHES_CLOCK
 from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
@@ -62,9 +62,15 @@ def _device_title(place: int, table: Mapping[str, Any]) -> str:
     return f"recording {place + 1}" + (f" ({name})" if isinstance(name, str) and name else "")
 
 
+def _kinds(record: TableRecord) -> dict[str, str]:
+    """The keys of a table, options of formats among them where it describes files, and the kind of each."""
+    options = {} if record is CAMPAIGN else {"format": "text"} | {name: o.kind for name, o in known_options().items()}
+    return options | {k.name: k.kind for k in record.keys}
+
+
 def unknown_key(doc: Document, known: Known | None) -> Iterator[Fault]:
     for record, title, place, table in _tables(doc):
-        allowed = [k.name for k in record.keys] + ([*OPTIONS] if record is RECORDING else [])
+        allowed = _kinds(record)
         for key in table:
             if key not in allowed:
                 fact = f"no key {key!r} in {title}" if place is None else f"{title} has no key {key!r}"
@@ -73,14 +79,11 @@ def unknown_key(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 def wrong_type(doc: Document, known: Known | None) -> Iterator[Fault]:
     for record, title, place, table in _tables(doc):
-        for key in record.keys:
-            if key.name in table and not fits(table[key.name], key.kind):
-                if place is None:
-                    yield doc.fault(f"{record.name}.{key.name}", f"{key.name} = {table[key.name]!r} is no {key.kind}",
-                                    "put it in quotes")  # fmt: skip
-                    continue
-                fact = f"{title} has {key.name} = {table[key.name]!r}, which is no {key.kind}"
-                yield doc.fault(f"{record.name}.{key.name}", fact, f"give a {key.kind}", place)
+        for key, kind in _kinds(record).items():
+            if key in table and not fits(table[key], kind):
+                of, cure = (f"{title} has ", f"give a {kind}") if place is not None else ("", "put it in quotes")
+                fact = f"{of}{key} = {table[key]!r}{', which' if of else ''} is no {kind}"
+                yield doc.fault(f"{record.name}.{key}", fact, cure, place)
 
 
 def bad_recording(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -208,8 +211,13 @@ def no_manoeuvre(doc: Document, known: Known | None) -> Iterator[Fault]:
 def unknown_format(doc: Document, known: Known | None) -> Iterator[Fault]:
     for record, title, place, table in _tables(doc):
         kind = table.get("format")
-        if record is not CAMPAIGN and isinstance(kind, str) and kind and kind not in FORMATS:
-            yield doc.fault(f"{record.name}.format", f"{title}: no format {kind!r}", suggestion(kind, FORMATS), place)
+        if record is not CAMPAIGN and isinstance(kind, str) and kind and kind not in formats()[0]:
+            yield doc.fault(f"{record.name}.format", f"{title}: no format {kind!r}", suggestion(kind, formats()[0]), place)
+
+
+def own_formats(doc: Document, known: Known | None) -> Iterator[Fault]:
+    """Formats of the user's own that cannot be used."""
+    yield from formats()[1]
 
 
 def empty_cut(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -346,6 +354,6 @@ def unknown_noise(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...] = (
     unknown_table, unknown_key, wrong_type, no_runs, bad_recording, bad_files, bad_point, no_file, missing_file, bad_role,
-    no_fit_run, no_holdout_run, no_manoeuvre, unknown_format, empty_cut, shared_samples, bad_axes, bad_parameter, bad_set,
-    bad_prior, bad_column, bad_constant, unknown_noise,
+    no_fit_run, no_holdout_run, no_manoeuvre, unknown_format, own_formats, empty_cut, shared_samples, bad_axes, bad_parameter,
+    bad_set, bad_prior, bad_column, bad_constant, unknown_noise,
 )  # fmt: skip
