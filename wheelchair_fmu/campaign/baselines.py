@@ -2,9 +2,9 @@
 
     recorded torque = true torque + baseline + ripple · sin(wheel angle + phase)
 
-Both are found where no hand is on the rim: at a standstill before the first push, between pushes, when coasting. The signal says
-where that is: hands make it leave the band of its own noise, a ripple does not. The baseline belongs to one run; the ripple is
-the instrument's, and several runs can share it.
+Both are found where no hand is on the rim: at a standstill before the first push, between pushes, when coasting. The signal
+says where that is: hands make it leave the band of its own noise, a ripple does not. The baseline belongs to one run; the
+ripple is the instrument's, and several runs can share it.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ CLOSING = 0.8  # times each round, down to
 CALM = 4.0  # standard deviations of a block's mean
 ROUNDS = 40
 ENOUGH = 1.0  # s hands off, and
+SURE = 0.2  # N m to which a baseline must be known, a push having ten or more
 SECTORS, TURNED = 12, 6  # of so many sectors of a turn so many must have been seen for a ripple
 
 
@@ -63,8 +64,8 @@ Recording = tuple[np.ndarray, np.ndarray, np.ndarray | None]  # time (s), torque
 
 
 def baseline(time: np.ndarray, torque: np.ndarray, angle: np.ndarray | None = None) -> Baseline:
-    """Of one run: torque (n,) in N m at times (n,) in s, NaN in gaps; with the wheel's angle (n,) in rad, from any zero, the ripple
-    too."""
+    """Of one run: torque (n,) in N m at times (n,) in s, NaN in gaps; with the wheel's angle (n,) in rad, from any zero, the
+    ripple too."""
     return baselines({"": (time, torque, angle)})[""]
 
 
@@ -125,7 +126,10 @@ def _together(runs: Mapping[str, Recording]) -> dict[str, Baseline]:
     normal = pool.design[off][:, columns]
     spread = _spread(rest, normal.shape[1])
     covariance = np.zeros((pool.design.shape[1],) * 2)
-    covariance[np.ix_(columns, columns)] = spread * np.linalg.pinv(normal.T @ normal)
+    if np.isfinite(spread):
+        covariance[np.ix_(columns, columns)] = spread * np.linalg.pinv(normal.T @ normal)
+    else:
+        np.fill_diagonal(covariance, np.inf)
     return {name: _baseline(pool, i, off, found, covariance) for i, name in enumerate(pool.names)}
 
 
@@ -142,18 +146,22 @@ def _baseline(pool: _Pool, i: int, off: np.ndarray, found: np.ndarray, covarianc
     own, n = pool.run == i, len(pool.names)
     seconds = float((own & off).sum() * pool.interval[i])
     share = float((own & off).sum() / max(own.sum(), 1))
-    why = "" if seconds >= ENOUGH else (
-        f"only {seconds:.1f} s of {pool.names[i] or 'the run'} are without a hand on the rim, and {ENOUGH:g} s are needed: "
-        "let the chair stand, hands in the lap, before the first push")  # fmt: skip
     at = [i, n, n + 1]
+    se, where = float(np.sqrt(covariance[i, i])), f" of {pool.names[i]}" if pool.names[i] else ""
+    cure = "let the chair stand, hands in the lap, before the first push"
+    why = ""
+    if seconds < ENOUGH:
+        why = f"only {seconds:.1f} s{where} are without a hand on the rim, and {ENOUGH:g} s are needed: {cure}"
+    elif not se < SURE:
+        why = f"no stretch{where} is plainly without a hand on the rim (the baseline would be known to {se:.2g} N m): {cure}"
     return Baseline(*(float(found[j]) for j in at), covariance[np.ix_(at, at)], share, not why, why)
 
 
 def _hands_off(pool: _Pool) -> np.ndarray:
     """Which samples (n,) were recorded without a hand on the rim.
 
-    A band about baseline and ripple closes in on the samples in it, from one that is wider than any ripple to one that blocks of
-    mere noise do not leave. What a hand begins or ends in is not counted, either.
+    A band about baseline and ripple closes in on the samples in it, from one that is wider than any ripple to one that blocks
+    of mere noise do not leave. What a hand begins or ends in is not counted, either.
     """
     calm, width = _first(pool), WIDE
     for _ in range(ROUNDS):

@@ -53,7 +53,8 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
             name = f"{part.device.markers.get(end, end)}.{axis}"
             at = next((i for i, h in enumerate(table.headers) if split(h)[0].lower() == name.lower()), None)
             if at is None:
-                faults.append(run_fault(part.file, f"no column {name!r} for the marker {end}", suggestion(name, table.headers), 1))
+                fact = f"no column {name!r} for the marker {end}"
+                faults.append(run_fault(part.file, fact, suggestion(name, table.headers), 1))
                 continue
             try:
                 found[f"{end}.{room}"] = at, sign * factor(table.units[at] or "m", "m")

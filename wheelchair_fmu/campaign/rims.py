@@ -71,7 +71,7 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
 
 
 def _shapes(time: np.ndarray, draft: Draft, name: str, rim: Rim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What a baseline and a ripple of 1 add to the push at `time` (n, m), how much there is of each (m,), and its covariance."""
+    """What a baseline and a ripple of 1 add to the push at `time` (n, m), how much there is of each (m,), its covariance."""
     angle, found = _angle(draft, name), rim.found
     one = np.ones((len(time), 1)) / rim.arm
     if angle is None or not found.covariance[1, 1]:

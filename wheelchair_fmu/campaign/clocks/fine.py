@@ -48,8 +48,8 @@ class Fine:
 
 
 def refine(equations: Sequence[Equation], start: float, step: float, drifting: Fine | None = None) -> Fine | None:
-    """From a lag `start` that is right to about a grid `step` (s) to the least of Σ residuals² / variance; with `drifting`, a fit
-    without drift, from there with one."""
+    """From a lag `start` that is right to about a grid `step` (s) to the least of Σ residuals² / variance; with `drifting`, a
+    fit without drift, from there with one."""
     middle = drifting.middle if drifting else 0.0
     at = np.array([start, 0.0]) if drifting else np.array([start])
     before = np.inf
@@ -68,6 +68,12 @@ def refine(equations: Sequence[Equation], start: float, step: float, drifting: F
         if abs(at[0] - start) > FARTHEST * step:
             return None
     return _judged(at, parts, weights)
+
+
+def left(e: Equation, lag: float) -> float:
+    """Mean square that an equation leaves at a lag (s), infinite where nothing can be read there."""
+    part = _part(e, np.array([lag]), 0.0)
+    return part.rest_power / float(np.isfinite(part.rest).sum()) if part else np.inf
 
 
 def _change(parts: Sequence[Part], weights: Sequence[float], size: int, middle: float) -> np.ndarray | None:

@@ -20,7 +20,7 @@ MATTERS = 0.02  # s, by which a pair may miss what the others say of it before n
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """`offset` is to be added to the device's file time to give the reference's (s), which besides runs faster by `drift` (s/s):
+    """`offset` is to be added to the device's file time to give the reference's (s), which runs faster by `drift` (s/s):
     common = offset + (1 + drift) · file time. With standard errors. Where not `sure`, `why` says in a sentence what is missing
     and what cures it, and the offset is the best guess (NaN where there is none), not to be used unseen. `evidence` are the
     pairs that this device is in."""

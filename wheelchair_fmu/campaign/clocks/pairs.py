@@ -9,15 +9,15 @@ import numpy as np
 from .equation import Equation
 from .lag import CRYSTAL, Lag, find
 from .signals import Device, Signal, band, rate
-from .views import BODY_LAG, MOTION, PART, PUSHES, equation, views
+from .views import BODY_LAG, PUSHES, equation, views
 
 LEVELS = {"x": 2, "y": 2, "yaw": 2, "wheel_speed_l": 1, "wheel_speed_r": 1, "u": 1, "v": 1, "yaw_rate": 1}  # else 0
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """What devices `a` and `b` say of their clocks: `lag` is by how much (s) the clock of `a` is ahead of that of `b` at time 0,
-    so that offset of b − offset of a = lag, with its standard error; `drift` the same of their rates, s/s.
+    """What devices `a` and `b` say of their clocks: `lag` is by how much (s) the clock of `a` is ahead of that of `b` at time
+    0, so that offset of b − offset of a = lag, with its standard error; `drift` the same of their rates, s/s.
 
     `kind` says whether motion, pushes or a part of the motion was compared, `how` what with what. `gains` (each view's, by
     feature) are 1, the track, 1/mass, or show a sign or a unit that is wrong. `rival` is the next best lag, and `ahead` the
@@ -92,11 +92,10 @@ def alike(a: Signal, b: Signal, width: float | None = None) -> Match | None:
     slowest = max(float(np.median(np.diff(time))) for time, _ in series)
     first, second = (Device(s.device, {s.quantity: of}, width or band(slowest)) for s, of in zip((a, b), series, strict=True))
     target = first.smooth(a.quantity)
-    lag = find([Equation(target.time, target.value, target.slope, np.ones((1, len(target.value))), (second.smooth(b.quantity),))])
+    constant = np.ones((1, len(target.value)))
+    lag = find([Equation(target.time, target.value, target.slope, constant, (second.smooth(b.quantity),))])
     if lag is None:
         return None
     gain = float(lag.gains[0][0])
     return Match(*lag.at_zero(), gain, float(np.copysign(lag.correlation, gain)), lag.unique)
 
-
-__all__ = ["MOTION", "PART", "PUSHES", "Match", "Pair", "alike", "pair"]

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .equation import Equation
+from .fine import left
 from .lag import Lag, find
 from .signals import Device, Signal, devices
 from .smoothing import Smooth
@@ -23,7 +24,9 @@ WAYS = (FORWARDS, TURNS)
 ENOUGH = 3  # runs that must tell a shift before one of them can be odd
 ODD = 5.0  # standard errors from the others, and
 LEAST = 0.012  # s, below which nobody puts a file together anew
+EXPLAINED = 0.5  # share of a run's squared error that its shift may leave: else it is something else that is wrong
 ALIKE = 4.0  # standard errors that the two equations may differ by in one run: a clock shifts both
+STILL = 1e-6  # SI; what changes less in all runs (rolling resistance of a chair that never stops) tells nothing
 REWEIGHTED = 8  # times
 ROUNDS = 2  # of coefficients at the shift that is common, which needs coefficients
 
@@ -33,13 +36,15 @@ Equations = Mapping[View, Equation]  # of one run and one way
 @dataclass(frozen=True)
 class Shift:
     """`seconds` to be added to the time of a run's pushes, so that they make the motion that was read, beside what is to be
-    added in all runs; with its standard error, which holds the scatter between runs. `way` says what told it. Where not `unique`
-    another shift does nearly as well (strokes that are all alike), and `seconds` is a guess."""
+    added in all runs; with its standard error, which holds the scatter between runs. `way` says what told it. Where not
+    `unique` another shift does nearly as well (strokes that are all alike), and `seconds` is a guess. `left` is the share of
+    the squared error at the common shift that this one leaves."""
 
     seconds: float
     se: float
     unique: bool
     way: str
+    left: float
 
 
 def odd_ones_out(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
@@ -67,7 +72,7 @@ def push_shifts(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
 
 
 def _is_odd(s: Shift) -> bool:
-    return s.unique and abs(s.seconds) > max(ODD * s.se, LEAST)
+    return s.unique and s.left < EXPLAINED and abs(s.seconds) > max(ODD * s.se, LEAST)
 
 
 def _ready(runs: Mapping[str, Iterable[Signal]]) -> dict[str, dict[str, Equations]]:
@@ -91,11 +96,12 @@ def _relative(ready: Mapping[str, Mapping[str, Equations]], pool: Sequence[str])
     ways: dict[str, list[Shift]] = {}
     for way in WAYS:
         lags = _lags({n: e[way] for n, e in ready.items() if e[way]}, pool)
-        for name, lag in lags.items():
-            others = [o for n, o in lags.items() if n in pool and n != name and o.unique]
+        for name, (lag, known) in lags.items():
+            others = [o for n, (o, _) in lags.items() if n in pool and n != name and o.unique]
             if len(others) + 1 >= ENOUGH:
                 common, se = _common(others)
-                away = Shift(lag.seconds - common, float(np.hypot(lag.se, se)), lag.unique, way)
+                share = min(left(e, lag.seconds) / left(e, common) for e in known)
+                away = Shift(lag.seconds - common, float(np.hypot(lag.se, se)), lag.unique, way, share)
                 ways.setdefault(name, []).append(away)
     return {name: _together(found) for name, found in ways.items()}
 
@@ -106,21 +112,24 @@ def _together(found: Sequence[Shift]) -> Shift:
     weights = np.array([1 / s.se**2 for s in telling])
     mean = float(weights @ [s.seconds for s in telling] / weights.sum())
     agree = all(abs(s.seconds - mean) < ALIKE * s.se for s in telling)
-    return Shift(mean, float(weights.sum() ** -0.5), agree and telling[0].unique, " and ".join(s.way for s in telling))
+    return Shift(mean, float(weights.sum() ** -0.5), agree and telling[0].unique, " and ".join(s.way for s in telling),
+                 min(s.left for s in telling))  # fmt: skip
 
 
-def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, Lag]:
-    """Each run's lag with the coefficients of the other runs in the pool, by which only an offset of its own is free."""
+def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, tuple[Lag, list[Equation]]]:
+    """Each run's lag with the coefficients of the other runs in the pool, by which only an offset of its own is free; and the
+    equations with these coefficients."""
     common, lags = 0.0, {}
     for _ in range(ROUNDS):
         grams = {n: {v: _gram(e, common) for v, e in of.items()} for n, of in runs.items()}
         lags = {}
         for name, own in runs.items():
             others = [of for n, of in grams.items() if n != name and n in pool]
-            lag = find([_known(e, _coefficients([of[v] for of in others if v in of])) for v, e in own.items()])
+            known = [_known(e, _coefficients([of[v] for of in others if v in of])) for v, e in own.items()]
+            lag = find(known)
             if lag is not None:
-                lags[name] = lag
-        telling = [lag for n, lag in lags.items() if lag.unique and n in pool]
+                lags[name] = lag, known
+        telling = [lag for n, (lag, _) in lags.items() if lag.unique and n in pool]
         before, common = common, _common(telling)[0] if telling else 0.0
         if abs(common - before) < LEAST:
             break
@@ -145,9 +154,9 @@ def _coefficients(grams: Sequence[tuple[np.ndarray, int]]) -> np.ndarray | None:
     for _ in range(REWEIGHTED):
         total = sum(w * g for w, (g, _) in zip(weights, grams, strict=True))
         size = np.sqrt(np.diag(total)[:-1])
-        size[size == 0] = 1.0  # a column that no run moves
-        normal, right = total[:-1, :-1] / np.outer(size, size), total[:-1, -1] / size
-        found = np.linalg.lstsq(normal, right, rcond=1e-9)[0] / size
+        live = size > STILL * np.sqrt(float(weights @ [n for _, n in grams]))
+        normal = total[:-1, :-1][np.ix_(live, live)] / np.outer(size[live], size[live])
+        found[live] = np.linalg.lstsq(normal, total[:-1, -1][live] / size[live], rcond=1e-9)[0] / size[live]
         left = np.append(found, -1.0)
         power = np.array([float(left @ g @ left) / n for g, n in grams])
         weights = 1 / np.maximum(power, max(float(np.median(power)), 1e-300))

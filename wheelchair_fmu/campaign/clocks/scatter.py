@@ -12,7 +12,8 @@ def long_run(scores: np.ndarray, whitened: bool = True) -> tuple[float, float]:
     is to be widened.
 
     Newey and West (1987) with the Bartlett kernel, if wanted after whitening by a first-order autoregression (Andrews and
-    Monahan 1992), and with the bandwidth of Andrews (1991) for what is left. The factor makes up for the lags that a short record does not
+    Monahan 1992), and with the bandwidth of Andrews (1991) for what is left. The factor makes up
+    for the lags that a short record does not
     show: critical values of Kiefer and Vogelsang (2005), table 1, beside those of the normal distribution.
     """
     s = np.asarray(scores, float)

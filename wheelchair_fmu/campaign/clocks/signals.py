@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-
 from scipy.signal import lsim
 
 from .smoothing import NODES, WIDTH, Smooth, smooth
@@ -89,7 +88,7 @@ class Device:
     def _fitted(self, s: Smooth) -> Smooth:
         first, end = self._grid
         value, slope = np.full((2, end - first), np.nan)
-        at = int(round(s.start / s.step)) - first
+        at = round(s.start / s.step) - first
         room = slice(max(at, 0), min(at + len(s.value), end - first))
         there = slice(room.start - at, room.stop - at)
         value[room], slope[room] = s.value[there], s.slope[there]

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .equation import Equation
-from .signals import (ALONG, APART, FORWARD, LEFT, MEAN, PUSH_L, PUSH_R, RIGHT, SWAY, SWAYING, TURN, TURN2, Device)
+from .signals import ALONG, APART, FORWARD, LEFT, MEAN, PUSH_L, PUSH_R, RIGHT, SWAY, SWAYING, TURN, TURN2, Device
 
 MOTION, PUSHES, PART = KINDS = "motion", "pushes", "a part of the motion"
 FORWARDS, TURNS = "speeding up", "turning"

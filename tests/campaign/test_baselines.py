@@ -1,0 +1,69 @@
+"""Baselines and ripples of push rims, that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.campaign.baselines import baseline, baselines, corrected
+
+from .riding import coloured, strokes
+
+
+def rim(seed: int, a: float = 0.0, offset: float = 0.8, ripple: float = 1.1, phase: float = 2.0, sides: int = 1):
+    """Time, recorded torque, angle and true torque of 10 s with pushes (of both signs, where `sides` is 2)."""
+    rng = np.random.default_rng(seed)
+    t, force = strokes(rng, 10)
+    force = np.where(t > 5, -force, force) if sides == 2 else force
+    time = np.arange(0, 10, 1 / 240)
+    angle = rng.uniform(0, 6) + np.cumsum(np.clip(0.6 * time - 0.6, 0, 4)) / 240
+    torque = 0.3 * np.interp(time, t, force)
+    noise = coloured(rng, len(time), 0.25, a)
+    return time, torque + offset + ripple * np.sin(angle + phase) + noise, angle, torque
+
+
+@pytest.mark.parametrize("sides", [1, 2])
+def test_offset_ripple_and_phase_are_found_and_taken_away(sides):
+    time, recorded, angle, true = rim(0, sides=sides)
+    found = baseline(time, recorded, angle)
+    assert found.enough and 0.2 < found.share_hands_off < 0.8
+    assert found.offset == pytest.approx(0.8, abs=4 * found.offset_se) and found.offset_se < 0.05
+    assert found.ripple == pytest.approx(1.1, abs=4 * found.ripple_se)
+    assert found.phase == pytest.approx(2.0, abs=0.05)
+    assert np.std(corrected(recorded, angle, found) - true) < 0.26
+
+
+@pytest.mark.parametrize("a", [0.0, 0.9])
+def test_standard_errors_cover_the_truth(a):
+    z = []
+    for seed in range(80):
+        time, recorded, angle, _ = rim(seed, a)
+        found = baseline(time, recorded, angle)
+        z.append((found.offset - 0.8) / found.offset_se)
+    assert np.mean(np.abs(z) < 1.96) >= 0.87
+    assert 0.75 < np.sqrt(np.mean(np.square(z))) < 1.35
+
+
+def test_runs_share_the_ripple_and_keep_their_offsets():
+    runs = {f"run{i}": rim(i, offset=o)[:3] for i, o in enumerate((0.2, -0.6, 1.4))}
+    found = baselines(runs)
+    assert len({b.ripple for b in found.values()}) == 1
+    for b, offset in zip(found.values(), (0.2, -0.6, 1.4), strict=True):
+        assert b.offset == pytest.approx(offset, abs=4 * b.offset_se)
+    alone = baseline(*runs["run0"])
+    assert found["run0"].ripple_se < alone.ripple_se
+
+
+def test_without_an_angle_only_the_offset_is_told():
+    time, recorded, _, _ = rim(3, ripple=0.0)
+    found = baseline(time, recorded)
+    assert found.ripple == 0.0 and found.ripple_se == 0.0
+    assert found.offset == pytest.approx(0.8, abs=4 * found.offset_se)
+
+
+def test_a_hand_that_never_leaves_the_rim_is_said():
+    time = np.arange(0, 6, 1 / 240)
+    found = baseline(time, 12 + 9 * np.sin(7 * time) + np.random.default_rng(0).normal(size=len(time)) * 0.2)
+    assert not found.enough and "without a hand" in found.why and "stand" in found.why
+    gone = baseline(time, np.full(len(time), np.nan))
+    assert not gone.enough
