@@ -42,11 +42,11 @@ class Seconds:
 
 @dataclass(frozen=True)
 class Clock:
-    """How a column becomes seconds: `text` where its cells are stamps, not numbers. `unit` is what `seconds` gives."""
+    """How a column of numbers becomes what `unit` says: seconds, or as it was where it is no `moment` but may pass midnight."""
 
-    text: bool
     seconds: Callable[[Sequence[str] | np.ndarray], Seconds]
     unit: str | None = "s"
+    moment: bool = True
 
 
 class ClockError(ValueError):
@@ -186,10 +186,10 @@ def counted(name: str, unit: str | None, sample: np.ndarray) -> Clock | None:
         return None
     for epoch, scale in _EPOCHS:
         if _within(sample * scale, _EPOCH_RANGE) and unit in (None, epoch, "us" if epoch == "µs" else epoch):
-            return Clock(False, partial(_since, scale=scale, zero=datetime(1970, 1, 1, tzinfo=UTC), what=f"{epoch} since 1970"))
+            return Clock(partial(_since, scale=scale, zero=datetime(1970, 1, 1, tzinfo=UTC), what=f"{epoch} since 1970"))
     steps = np.diff(sample)
     if unit in (None, "d", "days") and _within(sample, _SERIAL_RANGE) and steps.size and 0 < np.median(steps) < _SERIAL_STEP:
-        return Clock(False, lambda v: _since(v, DAY, _SERIAL_ZERO, "days of a spreadsheet"))
+        return Clock(lambda v: _since(v, DAY, _SERIAL_ZERO, "days of a spreadsheet"))
     factor = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "µs": 1e-6, "us": 1e-6}.get(unit or "")
     midnight = any(word in name.casefold().replace("_", " ") for word in _MIDNIGHT)
     if midnight and unit is None and re.search(r"\bm(illi)?s(ec|econds|ekunden)?\b", name.casefold().replace("_", " ")):
@@ -198,8 +198,8 @@ def counted(name: str, unit: str | None, sample: np.ndarray) -> Clock | None:
         return None
     day = DAY / factor
     if midnight:
-        return Clock(False, lambda v: _since(over_midnight(np.asarray(v, dtype=float), day), factor, None, "time of day"))
-    return Clock(False, lambda v: Seconds(over_midnight(np.asarray(v, dtype=float), day)), unit)
+        return Clock(lambda v: _since(over_midnight(np.asarray(v, dtype=float), day), factor, None, "time of day"))
+    return Clock(lambda v: Seconds(over_midnight(np.asarray(v, dtype=float), day)), unit, False)
 
 
 def _within(values: np.ndarray, span: tuple[float, float]) -> bool:

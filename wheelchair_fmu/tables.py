@@ -46,7 +46,8 @@ class Table(Protocol):
 
     `headers` are the raw texts; `units` stand beside them as the file gives them, None where it gives none. `notes` are
     sentences about what was found. `time` is the place of the column that the file itself calls its time, None where none
-    does; where the file has stamps, that column is in s from the recording's own zero, and `started` is what the zero was.
+    does. Columns of stamps and of counts from 1970 or midnight, `moments`, are in s from the recording's own zero, whatever
+    their headers say, and `started` is what the zero was.
     """
 
     file: str
@@ -55,6 +56,7 @@ class Table(Protocol):
     notes: tuple[str, ...]
     started: datetime | None
     time: int | None
+    moments: frozenset[int]
 
     def rows(self, indices: Sequence[int]) -> Rows: ...
 
@@ -70,6 +72,7 @@ class FrameTable:
     notes: tuple[str, ...] = ()
     started: datetime | None = None
     time: int | None = None
+    moments: frozenset[int] = frozenset()
 
     def __post_init__(self) -> None:
         if len(self.units) != len(self.headers):
@@ -135,6 +138,10 @@ class CsvTable:
                 rows.values[made] = count / self.rate
             self._known[key] = rows
         return self._known[key]
+
+    @property
+    def moments(self) -> frozenset[int]:
+        return frozenset((*self.stamped, *(i for i, clock in self.clocks.items() if clock.moment)))
 
     def words(self, index: int) -> list[str]:
         """A column of text, one word for each row of `rows`."""
@@ -283,7 +290,8 @@ def _timed(table: CsvTable, text: Text, options: Mapping[str, Any]) -> tuple[Csv
     called = [i for i, header in enumerate(table.headers) if named_time(_bare(header))]
     called = [i for i in called if i in dated or i in text.numeric] or called
     exact = [i for i in called if split(table.headers[i])[0] == "time"]
-    table.time = next(iter(exact or [i for i in called if i in table.stamped] or called or list(table.stamped)), None)
+    clocks = [i for i in table.stamped if not all(map(is_date, columns[i]))]
+    table.time = next(iter(exact or [i for i in called if i in clocks] or called or clocks), None)
     if table.time is not None and table.time not in table.stamped:
         _counted(table, table.time, columns[table.time])
     return _rated(table, options.get("rate"))
@@ -297,6 +305,7 @@ def _bare(header: str) -> str:
 def _stamp(table: CsvTable, i: int, dated: list[int], columns: list[list[str]], order: str) -> None:
     """Column i, of stamps, becomes seconds; a column of dates alone goes with the first one of times of day."""
     if all(map(is_date, columns[i])) and len(dated) > 1:
+        table.stamped[i] = stamps(table.words(i), order, european=table.decimal == ",").values
         return  # its time of day stands beside it
     words = table.words(i)
     days = [d for d in dated if d != i and all(map(is_date, columns[d]))]

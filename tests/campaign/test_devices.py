@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from wheelchair_fmu.campaign import check, read
-from wheelchair_fmu.campaign.derived import wheel_speed
+from wheelchair_fmu.campaign.angles import wheel_speed
 
 TOML = """[campaign]
 name = "lab"

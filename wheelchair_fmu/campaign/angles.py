@@ -2,32 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from .series import estimate
+from .series import scatter, third_differences
 
+SPAN = 0.05  # s over which a wheel's speed is taken from its angle: shorter is noise, longer loses the yaw motion
+TURN = 2 * np.pi
 _FAR = 0.02  # turns by which a reading must be off both neighbours to be a glitch,
 _TIMES = 4.0  # and times what these differ from each other
-_DIFFERENCES = np.sqrt(2.0)  # sd of a difference of two readings, in units of the sd of one
-
-
-@dataclass(frozen=True)
-class WheelSpeed:
-    """Speed of a rim from its angle: differences of neighbours, at the times between them.
-
-    `time` and `speed` are (n - 1,), in s and m/s, with NaN where a reading is missing. `sd` is that of the noise in `speed`,
-    by the encoder's step and by what the readings scatter, whichever is larger. Each reading is in two differences, with
-    opposite signs: the noise is a moving average of order one whose neighbours correlate by `correlation`, and the sum of the
-    speeds over a time is no worse than two readings of the angle. `glitches` are the places of readings left out.
-    """
-
-    time: np.ndarray
-    speed: np.ndarray
-    sd: float
-    glitches: np.ndarray
-    correlation: float = -0.5
 
 
 def unwrapped(angle: np.ndarray, turn: float) -> np.ndarray:
@@ -53,30 +35,33 @@ def glitches(angle: np.ndarray, turn: float) -> np.ndarray:
     return finite[1:-1][(off > _FAR * turn) & (off > _TIMES * across)]
 
 
-def wheel_speed(time: np.ndarray, angle: np.ndarray, turn: float, radius: float) -> WheelSpeed:
-    """Speed at the rim from a wrapped wheel angle. `time` in s and `angle` are (n,); `radius` in m; a `turn` is 360 or 2 pi.
-
-    The sign is the angle's: where it falls as the chair rolls forward, give -angle.
-    """
+def cleaned(angle: np.ndarray, turn: float = TURN) -> tuple[np.ndarray, np.ndarray]:
+    """An angle (n,) unwrapped and without its glitches, and the places of these."""
     bad = glitches(angle, turn)
-    clean = np.array(angle, dtype=float)
-    clean[bad] = np.nan
-    scale = 2 * np.pi / turn * radius
-    way = unwrapped(clean, turn) * scale
-    steps = np.diff(time)
-    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else np.nan
-    with np.errstate(divide="ignore", invalid="ignore"):
-        speed = np.where(steps > 0, np.diff(way) / steps, np.nan)
-    return WheelSpeed(time[:-1] + steps / 2, speed, _DIFFERENCES * _reading_sd(clean, way, scale) / usual, bad)
+    rest = np.array(angle, dtype=float)
+    rest[bad] = np.nan
+    return unwrapped(rest, turn), bad
+
+
+def wheel_speed(time: np.ndarray, angle: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
+    """Speed (n,) of a wheel's rim of contact from its unwrapped angle (n,), NaN between the spans it is taken over, and the
+    standard deviation of its noise.
+
+    Over a span it is the mean speed, and stands at the middle. Spans do not overlap, so that the noise of one hardly tells that
+    of another. `radius` in m; the sign is the angle's.
+    """
+    speed = np.full(len(time), np.nan)
+    if len(time) < 3:
+        return speed, 0.0
+    step = float(np.median(np.diff(time)))
+    half = max(1, round(SPAN / (2 * step)))
+    middle = np.arange(half, len(time) - half, 2 * half)
+    span = time[middle + half] - time[middle - half]
+    speed[middle] = radius * (angle[middle + half] - angle[middle - half]) / span
+    noise = scatter(third_differences(angle))
+    return speed, radius * np.sqrt(2) * (noise or 0.0) / (2 * half * step)
 
 
 def _short(steps: np.ndarray, turn: float) -> np.ndarray:
     """The same steps the short way round."""
     return (steps + turn / 2) % turn - turn / 2
-
-
-def _reading_sd(angle: np.ndarray, way: np.ndarray, scale: float) -> float:
-    """Standard deviation of one reading, in m: the encoder's step / sqrt(12), or what third differences scatter."""
-    values = np.unique(angle[np.isfinite(angle)])
-    step = float(np.diff(values).min()) * scale if values.size > 1 else 0.0
-    return max(step / np.sqrt(12.0), estimate([way]) or 0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..faults import SHOWN, WARNING, Fault, run_fault, some, suggestion
@@ -124,6 +124,8 @@ def _scaled(device: Device, table: Table, channel: Channel, want: Wanted, index:
     file, header = table.file, table.headers[index]
     own, asked = table.units[index], split(want.header)[1]
     faults = []
+    if index in table.moments:  # read into seconds already
+        want, own, asked = replace(want, unit=None), "s", None
     if own is not None and asked is not None and own != asked and want.unit is None:
         fact = f"[columns] {channel.name} says [{asked}], the file says [{own}]"
         faults.append(run_fault(file, fact, "correct one of them, or settle it by unit = ...", 1, header))

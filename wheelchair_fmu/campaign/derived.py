@@ -1,4 +1,4 @@
-"""Channels made from what a device records instead: a wheel's speed from its angle, the chair's pose from markers."""
+"""The chair's pose from markers at the ends of its rear axle."""
 
 from __future__ import annotations
 
@@ -9,39 +9,13 @@ import numpy as np
 from ..faults import Fault, run_fault, suggestion
 from ..tables import Table
 from ..units import UnitError, factor, split
+from .angles import TURN, unwrapped
 from .devices import Part
 from .document import Document, number
-from .series import scatter, third_differences
 
-TURN = 2 * np.pi
-SPAN = 0.05  # s over which a wheel's speed is taken from its angle: shorter is noise, longer loses the yaw motion
 ENDS = ("axle_l", "axle_r")  # markers on the rear axle
 ROOM = ("x", "y")
 _DEFAULT_B = 0.2  # m, from the axle to the centre of mass where the campaign does not say, as the model has it
-
-
-def unwrapped(angle: np.ndarray) -> np.ndarray:
-    """An angle (n,) in rad without its jumps of a turn, gaps kept."""
-    out, there = angle.copy(), np.isfinite(angle)
-    out[there] = np.unwrap(angle[there], period=TURN)
-    return out
-
-
-def wheel_speed(time: np.ndarray, angle: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
-    """Speed (n,) of a wheel's rim of contact from its unwrapped angle (n,), NaN between the spans it is taken over, and the
-    standard deviation of its noise.
-
-    Over a span it is the mean speed, and stands at the middle. Spans do not overlap, so that the noise of one hardly tells that
-    of another.
-    """
-    speed = np.full(len(time), np.nan)
-    step = float(np.median(np.diff(time)))
-    half = max(1, round(SPAN / (2 * step)))
-    middle = np.arange(half, len(time) - half, 2 * half)
-    span = time[middle + half] - time[middle - half]
-    speed[middle] = radius * (angle[middle + half] - angle[middle - half]) / span
-    noise = scatter(third_differences(angle))
-    return speed, radius * np.sqrt(2) * (noise or 0.0) / (2 * half * step)
 
 
 def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float]], list[Fault]]:
@@ -69,7 +43,7 @@ def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[s
         return {}
     left, right = (np.stack([markers[f"{end}.{axis}"] for axis in ROOM]) for end in ENDS)
     across, middle = right - left, (right + left) / 2  # the axle points to the right
-    yaw = unwrapped(np.arctan2(-across[0], across[1]))
+    yaw = unwrapped(np.arctan2(-across[0], across[1]), TURN)
     b = number(doc.table("chair").get("b"))
     forward = (_DEFAULT_B if b is None else b) * np.stack([np.cos(yaw), np.sin(yaw)])
     return {"x": middle[0] + forward[0], "y": middle[1] + forward[1], "yaw": yaw}

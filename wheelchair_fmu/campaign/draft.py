@@ -13,10 +13,11 @@ import pandas as pd
 from ..faults import Fault
 from ..tables import FrameTable, Rows, Table
 from ..units import UnitError, quantity
+from .angles import cleaned, wheel_speed
 from .axes import to_sae
 from .binding import Bindings, bind
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, SOURCES, Channel
-from .derived import marker_columns, pose, unwrapped, wheel_speed
+from .derived import marker_columns, pose
 from .devices import Part
 from .document import Document, Entry, number
 from .formats import open_recording
@@ -50,6 +51,7 @@ class Draft:
     time: np.ndarray | None
     values: Mapping[str, np.ndarray]
     angles: Mapping[str, np.ndarray]  # rad, of the wheels that it tells, without jumps
+    glitches: Mapping[str, np.ndarray]  # rows of the cut run where an angle was left out
     noise: Mapping[str, float]  # standard deviations of channels that were made from others
     gaps: Mapping[str, tuple[Gap, ...]]
     resampled: Mapping[str, Resampled]  # by channel, whose repeats are left out of `values`
@@ -146,8 +148,10 @@ def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows
     values = to_sae(series, part.device.axes)
     values |= pose(part, {name: rows.values[i][kept] * scale for name, (i, scale) in markers.items()}, doc)
     noise: dict[str, float] = {}
+    glitched: dict[str, np.ndarray] = {}
     if time is not None:
-        angles = {name: unwrapped(angle) for name, angle in angles.items()}
+        for name, angle in angles.items():
+            angles[name], glitched[name] = cleaned(angle)
         for name, angle in angles.items():
             speed = name.replace("angle", "speed")
             if speed not in values and part.device.radius:
@@ -161,7 +165,7 @@ def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, noise, gaps, slower, spiked)
+    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked)
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

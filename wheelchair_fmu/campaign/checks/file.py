@@ -109,6 +109,15 @@ def spike(draft: Draft) -> Iterator[Fault]:
         yield run_fault(draft.file, fact, cure, draft.line(i), draft.header(name), WARNING)
 
 
+def glitch(draft: Draft) -> Iterator[Fault]:
+    for name, found in draft.glitches.items():
+        if found.size and draft.time is not None:
+            times = f"{len(found)} reading{'s' * (len(found) > 1)} of {name}"
+            fact = f"{times} stand far from both neighbours, the first at {draft.time[found[0]]:.5g} s, and are left out"
+            cure = "none is needed: encoders spoil a reading where a turn ends"
+            yield run_fault(draft.file, fact, cure, draft.line(int(found[0])), draft.header(name), WARNING)
+
+
 def absent_column(draft: Draft) -> Iterator[Fault]:
     """Only a warning: another run may have it. That no run has it is an error of the campaign."""
     for name in draft.bindings.absent:
@@ -118,5 +127,5 @@ def absent_column(draft: Draft) -> Iterator[Fault]:
 
 
 FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, absent_column,
+    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, glitch, absent_column,
 )  # fmt: skip

@@ -28,7 +28,7 @@ def read_sheets(path: Path, file: str, options: Mapping[str, Any], engine: str, 
         asked = options.get("sheet")
         if asked is not None and asked not in names:
             return one(file, f"there is no sheet {asked!r}", f"the sheets are {_listed(names)}")
-        grids = {name: book.parse(name, header=None, dtype=object) for name in ([asked] if asked else names)}
+        grids = pd.read_excel(book, sheet_name=[asked] if asked else names, header=None, dtype=object)
     filled = [name for name, grid in grids.items() if asked or _has_numbers(grid)]
     if not filled:
         return one(file, f"no sheet has rows of numbers, of {_listed(names)}", EMPTY)

@@ -63,6 +63,7 @@ def framed(
         if found is not None:
             frame = frame.assign(**{frame.columns[i]: found.values}) if headers.count(header) == 1 else frame
             units_found[i] = "s" if clock is None else clock.unit
+            table.moments |= {i} if clock is None or clock.moment else frozenset()
             table.started = table.started or found.started
             table.notes += (f"column {header!r}: {found.note}",) if found.note else ()
         if named_time(name) or found is not None:
