@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import partial
@@ -84,7 +85,11 @@ def stamps(cells: Sequence[str], order: str = "", european: bool = False) -> Sec
 
     Raises ClockError where nothing does.
     """
-    parts = pd.Series(list(cells), dtype=str).str.strip().str.extract(_STAMP)
+    texts = pd.Series(list(cells), dtype=str).str.strip()
+    if texts.size and re.match(r"\d{4}-", texts.iloc[0]):
+        with suppress(ValueError):  # written in another way, or in several: part by part, then
+            return datetimes(pd.to_datetime(texts, format="ISO8601"))
+    parts = texts.str.extract(_STAMP)
     dates = parts["iso"].fillna(parts["local"])
     day = dates.map(_days(dates.dropna().unique(), parts, order, european)).to_numpy(dtype=float)
     clock = [parts[name].fillna(parts[f"only_{name}"]) for name in ("h", "min", "s", "half")]

@@ -54,14 +54,14 @@ def run_fault(
     return Fault(file, line, column, fact, cure, severity, in_run=True)
 
 
-def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError, in_run: bool = False) -> Fault:
+def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError) -> Fault:
     """The fault of bytes that are no UTF-8."""
     line = error.object[: error.start].count(b"\n") + 1
     fact = f"byte {error.start} (0x{error.object[error.start]:02X}) is not UTF-8 text"
     cure = "save the file as UTF-8"
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         cure = "it looks like UTF-16; save the file as UTF-8"
-    return Fault(file, line, None, fact, cure, in_run=in_run)
+    return Fault(file, line, None, fact, cure)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ import io
 import re
 import zlib
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
 from math import nan
@@ -145,9 +146,14 @@ class CsvTable:
 
     def words(self, index: int) -> list[str]:
         """A column of text, one word for each row of `rows`."""
-        if '"' not in self.body:
-            lines = (line.split(self.separator) for line in self.body.split("\n") if line.strip(f" \t{self.separator}"))
-            return [row[index].strip() if index < len(row) else "" for row in lines]
+        blank = re.search(rf"^[ \t\f\v{re.escape(self.separator)}]*$", self.body.strip("\n"), re.MULTILINE)
+        if '"' not in self.body and not blank:
+            with suppress(ValueError):  # rows of different length: cell by cell, then
+                words = pd.read_csv(
+                    io.StringIO(self.body), sep=self.separator, header=None, usecols=[index], dtype=str, na_filter=False,
+                    index_col=False, quoting=csv.QUOTE_NONE,
+                )  # fmt: skip
+                return words[index].str.strip().tolist()
         filled = (row for row in self._cells() if any(cell.strip() for cell in row))
         return [row[index].strip() if index < len(row) else "" for row in filled]
 
@@ -200,7 +206,7 @@ class CsvTable:
                 ragged.append((line, f"{len(row)} cells, but the header has {width}"))
             for i in indices:
                 text = row[i].strip() if i < len(row) else ""
-                cells[i].append(float(self.stamped[i][len(lines)]) if i in self.stamped else self._number(text))
+                cells[i].append(self._moment(i, len(lines)) if i in self.stamped else self._number(text))
                 if np.isnan(cells[i][-1]) and text not in _GAPS:
                     bad[i].append((line, f"{text!r} is not {'a time' if i in self.stamped else self._numeric(text)}"))
             lines.append(line)
@@ -218,9 +224,12 @@ class CsvTable:
         """A quote that is never closed would swallow the rest of the file: then quotes are plain characters."""
         return csv.QUOTE_NONE if self.body.count('"') % 2 else csv.QUOTE_MINIMAL
 
+    def _moment(self, i: int, row: int) -> float:
+        return float(self.stamped[i][row]) if row < len(self.stamped[i]) else nan
+
     def _number(self, text: str) -> float:
         if self.decimal == ",":
-            if "." in text and grouped(text + ","):
+            if "." in text and grouped(text + ",0"):
                 return nan  # 1.234 among decimal commas
             text = text.replace(",", ".")
         return float(text) if _NUMBER.fullmatch(text) else nan

@@ -211,7 +211,7 @@ def _said(separator: str, decimal: str, header: int, lines: Sequence[str], units
 def _body(body: str, separator: str) -> tuple[str, int]:
     """The rows with comments made blank, so that lines keep their count, and one sign between cells."""
     comments = 0
-    if re.search(r"^[ \t]*(#|%|//)", body, re.MULTILINE):
+    if any(sign in body for sign in ("#", "%", "//")):
         body, comments = re.subn(r"^[ \t]*(#|%|//).*$", "", body, flags=re.MULTILINE)
     if separator == SPACES:
         body = re.sub(r"(?<=\S)[ \t]+(?=\S)", "\t", re.sub(r"^[ \t]+|[ \t]+$", "", body, flags=re.MULTILINE))

@@ -125,8 +125,8 @@ def mf4(path: Path, frame: pd.DataFrame) -> None:
 
 
 WRITERS = {
-    "german.csv": german, "utf16.txt": utf16, "iso.csv": iso, "local.csv": local, "midnight.csv": midnight, "a.parquet": parquet,
-    "a.xlsx": xlsx, "a.ods": ods, "v5.mat": mat_5, "v73.mat": mat_73, "a.mf4": mf4,
+    "german.csv": german, "utf16.txt": utf16, "iso.csv": iso, "local.csv": local, "midnight.csv": midnight,
+    "a.parquet": parquet, "a.xlsx": xlsx, "a.ods": ods, "v5.mat": mat_5, "v73.mat": mat_73, "a.mf4": mf4,
 }  # fmt: skip
 
 
