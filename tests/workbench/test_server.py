@@ -63,7 +63,9 @@ def test_a_loggers_own_columns_are_mapped(client):
     assert any(f["severity"] == "error" for f in state["faults"])
     content = state["campaign"]
     assert content["columns"]["yaw_rate"] == {"column": "Gyro Z [deg/s]"}, "guessed"
-    content["columns"] |= {"F_rl": {"column": "left hand", "unit": "N"}, "F_rr": {"column": "right hand", "unit": "lbf"},
+    content["columns"] |= {"time": {"column": "Time", "unit": "s"},
+                           "F_rl": {"column": "left hand", "unit": "N"},
+                           "F_rr": {"column": "right hand", "unit": "lbf"},
                            "wheel_speed_l": {"column": "left", "unit": "m/s"}}  # fmt: skip
     state = client.put(f"{client.base}/campaign", json=content).json()
     assert not [f for f in state["faults"] if f["severity"] == "error" and "holdout" not in f["text"]], state["faults"]

@@ -26,6 +26,7 @@ from uuid import uuid4
 from ..campaign import CHANNELS, INPUTS, check, read
 from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
+from ..campaign.formats import bundled as bundled_formats
 from ..campaign.formats import open_recording
 from ..campaign.layout import relaid
 from ..contracts.own import load
@@ -35,7 +36,7 @@ from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
 from ..writing import written
 
-SUFFIXES = (".csv", ".toml", ".parquet", ".mf4", ".mdf", ".gz", ".txt", ".dat")
+SUFFIXES = (".toml", ".gz", *sorted({suffix for record in bundled_formats().values() for suffix in record.suffixes}))
 MOST_BYTES = 200_000_000  # of one file
 MANOEUVRES = ("coast-down", "slalom", "straight", "steady", "random", "strokes", "spin")
 KEPT = 90  # days for which work is kept after it was last looked at
