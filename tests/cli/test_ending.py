@@ -27,7 +27,7 @@ def ended(monkeypatch, error: BaseException):
         raise error
 
     monkeypatch.delenv(TRACEBACK, raising=False)
-    monkeypatch.setattr(check, "faults_of", fails)
+    monkeypatch.setattr(check, "judged", fails)
     done = CliRunner().invoke(app, ["check", SAMPLE])
     assert isinstance(done.exception, SystemExit) and "Traceback" not in done.output
     assert len(done.output.splitlines()) <= 1

@@ -11,10 +11,10 @@ from ..faults import Fault
 from .axes import to_sae
 from .channels import BY_NAME, CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
-from .reading import check, fingerprint, read, recorded
+from .reading import Judged, check, fingerprint, judged, read
 from .recorded import Recorded
 from .records import Baseline, Campaign, Clock, Run
 from .windows import pieces, windows
 
-__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Baseline", "Campaign", "Channel", "Clock", "Fault", "Recorded", "Run", "check",
-           "fingerprint", "pieces", "read", "read_smartwheel", "recorded", "to_sae", "windows"]  # fmt: skip
+__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Baseline", "Campaign", "Channel", "Clock", "Fault", "Judged", "Recorded", "Run",
+           "check", "fingerprint", "judged", "pieces", "read", "read_smartwheel", "to_sae", "windows"]  # fmt: skip

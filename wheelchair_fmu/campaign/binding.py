@@ -89,7 +89,7 @@ def bind(device: Device, table: Table, taken: Collection[str] = ()) -> Bindings:
             faults += met
     used = {binding.index for binding in found.values()}
     extra = [repr(header) for i, header in enumerate(headers) if i not in used and header and header not in taken]
-    if extra:
+    if extra and not device.name:  # of a device one reads what one wants
         what = f"column{'s' * (len(extra) > 1)} {some(extra)} not used"
         faults.append(run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING))
     return Bindings(found, tuple(faults), tuple(absent))

@@ -165,7 +165,8 @@ def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked)
+    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower,
+                 spiked)  # fmt: skip
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,22 +31,32 @@ def read(path: str | Path, known_parameters: Known | None = None) -> Campaign:
     `known_parameters` maps dotted names to (lower, upper) in SI; with it, unknown and impossible parameters are
     found too. Raises CampaignError with every error that `check` finds; warnings are in the campaign.
     """
+    found = judged(path, known_parameters)
+    if found.campaign is None:
+        raise CampaignError([fault for fault in found.faults if fault.severity == ERROR])
+    return found.campaign
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """The campaign, None where it has errors; every run that can be read, as its devices recorded it; and every fault."""
+
+    campaign: Campaign | None
+    runs: tuple[Recorded, ...]
+    faults: list[Fault]
+
+
+def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
+    """What `read` and `check` say of a campaign; recordings are read once."""
     assembly, faults = _assess(path, known_parameters)
-    errors = [fault for fault in faults if fault.severity == ERROR]
-    if errors or assembly is None:
-        raise CampaignError(errors)
-    return _campaign(assembly, known_parameters, tuple(faults))
+    if assembly is None or any(fault.severity == ERROR for fault in faults):
+        return Judged(None, assembly.runs if assembly else (), faults)
+    return Judged(_campaign(assembly, known_parameters, tuple(faults)), assembly.runs, faults)
 
 
 def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:
     """Every fault of a campaign at once, errors and warnings; empty where there is nothing to say."""
     return _assess(path, known_parameters)[1]
-
-
-def recorded(path: str | Path, known_parameters: Known | None = None) -> tuple[tuple[Recorded, ...], list[Fault]]:
-    """Every run that can be read, as its devices recorded it, also of a campaign that has faults; and these."""
-    assembly, faults = _assess(path, known_parameters)
-    return (assembly.runs if assembly else ()), faults
 
 
 def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, list[Fault]]:

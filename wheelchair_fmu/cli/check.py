@@ -12,7 +12,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, read, recorded
+from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, judged, read
 from ..faults import ERROR
 from ..loop.subject import known_parameters
 from ..report import preview
@@ -48,18 +48,18 @@ def check(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where to draw.")] = Path("out"),
 ) -> None:
     """Read a campaign and print all its faults: place, fact, cure. Exits with 1 where there are errors."""
-    known = known_parameters()
-    runs, faults = recorded(campaign, known)
+    found = judged(campaign, known_parameters())
+    faults = found.faults
     if plot:
-        draw(campaign.name, runs, faults, out)
+        draw(campaign.name, found.runs, faults, out)
     errors = sum(fault.severity == ERROR for fault in faults)
     counts = {"errors": errors, "warnings": len(faults) - errors}
     if as_json:
         print_json({"campaign": str(campaign), **counts, "faults": [asdict(fault) for fault in faults]})
     else:
         _show(campaign, faults, counts)
-        if not errors:
-            _tell(read(campaign, known))
+        if found.campaign:
+            _tell(found.campaign)
     if errors:
         raise typer.Exit(1)
 

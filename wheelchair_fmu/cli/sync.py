@@ -11,7 +11,7 @@ from rich import box
 from rich.table import Table
 
 from ..campaign.document import load
-from ..campaign.reading import recorded
+from ..campaign.reading import judged
 from ..campaign.syncing import RunClocks, find, write
 from ..errors import CampaignError
 from ..faults import ERROR
@@ -35,10 +35,10 @@ def sync(
 ) -> None:
     """Find the offset of each device's clock in each run, and write what is sure into campaign.toml."""
     doc, _ = load(campaign)
-    runs, faults = recorded(campaign, known_parameters())
-    if doc is None or not runs:
-        raise CampaignError([fault for fault in faults if fault.severity == ERROR])
-    found = find(runs)
+    seen = judged(campaign, known_parameters())
+    if doc is None or not seen.runs:
+        raise CampaignError([fault for fault in seen.faults if fault.severity == ERROR])
+    found = find(seen.runs)
     if found:
         with written(out / "clocks.png") as beside:
             save(sync_figure(found), beside)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...faults import ERROR, WARNING, Fault
 from ..binding import absent_fault
 from ..channels import BY_NAME
-from ..document import Document
+from ..document import FILE, Document
 from ..noise import Noise
 from ..recorded import Recorded
 from ..rims import Rim
@@ -84,6 +84,19 @@ def noise_against_data(all_: Assembly) -> Iterator[Fault]:
         yield all_.doc.fault(f"noise.{name}", fact, cure, severity=WARNING)
 
 
+def glitches(all_: Assembly) -> Iterator[Fault]:
+    """Once for each wheel: encoders spoil a reading where a turn ends, and there are as many as turns."""
+    found: dict[str, list[tuple[str, int]]] = {}
+    for draft in (d for run in all_.runs for d in run.drafts):
+        for name, places in draft.glitches.items():
+            found.setdefault(name, []).append((draft.file, len(places)))
+    for name, counts in found.items():
+        if total := sum(n for _, n in counts):
+            file = next(file for file, n in counts if n)
+            fact = f"{name} has {total} readings far from both neighbours, the first in {file}, which are left out"
+            yield Fault(FILE, None, None, fact, "none is needed if there is one for each turn", WARNING)
+
+
 CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
-    column_in_no_run, nobody_speaks, bad_noise, noise_unknown, noise_estimated, noise_against_data,
+    column_in_no_run, nobody_speaks, glitches, bad_noise, noise_unknown, noise_estimated, noise_against_data,
 )  # fmt: skip

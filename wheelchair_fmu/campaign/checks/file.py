@@ -7,12 +7,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import ERROR, WARNING, Fault, run_fault
-from ..channels import BY_NAME, TIME
+from ..channels import BY_NAME, INPUT_NAMES, TIME
 from ..draft import Draft, constants
 from ..resampled import REPEATED
 
 FEWEST = 10  # samples of a run
-ABSURD = 1000.0  # times what is plausible: no wrong unit does more, and no simulation ends
+ABSURD = 1000.0  # times what is plausible: no wrong unit does more
+PUSHED_HARD = 3.0  # the same of an input, which is simulated: a chair at the speed of a bullet takes minutes, and tells nothing
 
 
 def too_short(draft: Draft) -> Iterator[Fault]:
@@ -78,8 +79,13 @@ def implausible(draft: Draft) -> Iterator[Fault]:
             side = "above" if value > channel.high else "below"
             fact = f"{name} reaches {value:.4g} {unit}, {side} any plausible {bound:g} {unit}"
             cure = f"check its unit (is it {channel.wrong_unit}?)"
-            severity = ERROR if np.isfinite(value) and abs(value) > ABSURD * abs(bound or 1.0) else WARNING
+            severity = ERROR if np.isfinite(value) and abs(value) > absurd(name) * abs(bound or 1.0) else WARNING
             yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), severity)
+
+
+def absurd(name: str) -> float:
+    """Times what is plausible of a channel or an input, above which it is an error."""
+    return PUSHED_HARD if name in INPUT_NAMES else ABSURD
 
 
 def resampled(draft: Draft) -> Iterator[Fault]:
@@ -109,15 +115,6 @@ def spike(draft: Draft) -> Iterator[Fault]:
         yield run_fault(draft.file, fact, cure, draft.line(i), draft.header(name), WARNING)
 
 
-def glitch(draft: Draft) -> Iterator[Fault]:
-    for name, found in draft.glitches.items():
-        if found.size and draft.time is not None:
-            times = f"{len(found)} reading{'s' * (len(found) > 1)} of {name}"
-            fact = f"{times} stand far from both neighbours, the first at {draft.time[found[0]]:.5g} s, and are left out"
-            cure = "none is needed: encoders spoil a reading where a turn ends"
-            yield run_fault(draft.file, fact, cure, draft.line(int(found[0])), draft.header(name), WARNING)
-
-
 def absent_column(draft: Draft) -> Iterator[Fault]:
     """Only a warning: another run may have it. That no run has it is an error of the campaign."""
     for name in draft.bindings.absent:
@@ -127,5 +124,5 @@ def absent_column(draft: Draft) -> Iterator[Fault]:
 
 
 FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, glitch, absent_column,
+    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, absent_column,
 )  # fmt: skip

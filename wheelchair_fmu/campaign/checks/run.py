@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from ...faults import ERROR, WARNING, Fault, run_fault
 from ..channels import BY_NAME, PUSHES
 from ..recorded import Recorded
-from .file import ABSURD, FEWEST
+from .file import FEWEST, absurd
 
 FASTEST = 50.0  # m/s that a run may start at
 
@@ -45,7 +45,7 @@ def implausible_constant(run: Recorded) -> Iterator[Fault]:
         if not channel.low <= value <= channel.high:
             bound, side = (channel.high, "above") if value > channel.high else (channel.low, "below")
             fact = f"{name} reaches {value:.4g} {channel.unit.name}, {side} any plausible {bound:g} {channel.unit.name}"
-            severity = ERROR if abs(value) > ABSURD * abs(bound or 1.0) else WARNING
+            severity = ERROR if abs(value) > absurd(name) * abs(bound or 1.0) else WARNING
             yield run_fault(run.file, fact, f"check its unit (is it {channel.wrong_unit}?)", severity=severity)
 
 

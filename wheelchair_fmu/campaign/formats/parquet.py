@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...clocks import named_time
+from ...clocks import is_stamp, named_time
 from ...faults import Fault, once, run_fault
 from ...tables import FrameTable, Rows, numbers
 from ...units import split, suffixed
@@ -31,6 +31,7 @@ class ParquetTable:
     notes: tuple[str, ...]
     started: datetime | None
     time: int | None
+    moments: frozenset[int]
     times: Mapping[int, Any] = field(repr=False)
     columns: tuple[str, ...] = field(repr=False)  # their names in the file
     opened: Any = field(repr=False)
@@ -58,19 +59,30 @@ def _recognises(path: Path, head: bytes) -> bool:
     return head[:4] == b"PAR1"
 
 
-def _may_be_time(name: str, kind: str) -> bool:
-    return not kind.startswith(_PLAIN) or named_time(suffixed(split(name)[0])[0].rpartition(".")[2])
+def _may_be_time(opened: Any, name: str, kind: str) -> bool:
+    """By its name or its type; text, by what stands in its first row."""
+    if named_time(suffixed(split(name)[0])[0].rpartition(".")[2]):
+        return True
+    if "string" not in kind:
+        return not kind.startswith(_PLAIN)
+    first = next(opened.iter_batches(batch_size=1, columns=[name])).column(0).to_pylist()
+    return any(is_stamp(str(cell)) for cell in first)
 
 
 def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
-    return by_library(path, file, "pyarrow.parquet", lambda pq: _table(pq.ParquetFile(path), file, options))
+    def read(_: Any) -> Read:
+        from pyarrow.parquet import ParquetFile
+
+        return _table(ParquetFile(path), file, options)
+
+    return by_library(path, file, "pyarrow", read)
 
 
 def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
     if not opened.metadata.num_rows:
         return None, [run_fault(file, "the file has no rows", EMPTY)]
     fields = list(opened.schema_arrow)
-    places = [i for i, f in enumerate(fields) if _may_be_time(f.name, str(f.type))]
+    places = [i for i, f in enumerate(fields) if _may_be_time(opened, f.name, str(f.type))]
     frame = opened.read(columns=[fields[i].name for i in places]).to_pandas(ignore_metadata=True)
     if options.get("rate") is not None and not places:
         frame["rows"] = np.arange(opened.metadata.num_rows, dtype=float)
@@ -79,7 +91,8 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
     given = [(f.metadata or {}).get(b"unit") or (f.metadata or {}).get(b"units") or b"" for f in fields]
     units = [stated(h, unit.decode(errors="replace")) for h, unit in zip(headers, given, strict=True)]
     if frame.empty:
-        return ParquetTable(file, headers, tuple(units), (), None, None, {}, tuple(f.name for f in fields), opened), []
+        return ParquetTable(file, headers, tuple(units), (), None, None, frozenset(), {},
+                            tuple(f.name for f in fields), opened), []  # fmt: skip
     found, faults = framed(file, frame, options, [units[i] for i in places] if places else [None])
     if not isinstance(found, FrameTable):
         return found, faults
@@ -90,7 +103,8 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
         units[i] = found.units[k + made]
     time = None if found.time is None else len(fields) if found.time < made else places[found.time - made]
     more = (("time [s]",), ("s",)) if made else ((), ())
-    return ParquetTable(file, headers + more[0], (*units, *more[1]), found.notes, found.started, time, columns,
+    moments = frozenset(places[i - made] for i in found.moments if i >= made)
+    return ParquetTable(file, headers + more[0], (*units, *more[1]), found.notes, found.started, time, moments, columns,
                         tuple(f.name for f in fields), opened), faults  # fmt: skip
 
 
