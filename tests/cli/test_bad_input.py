@@ -19,7 +19,7 @@ from wheelchair_fmu import tables
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.given import DEEPEST
 
-SOON = 20.0  # s; on an idle machine none takes two
+SOON = 60.0  # s, also on a machine that is busy with something else
 
 
 def wheelchair(*words: object):
@@ -84,7 +84,7 @@ def test_an_odd_campaign_file(small, name):
 RECORDINGS = {
     "a long cell": (lambda: csv_text(SI, [["1" * 200_000, *row[1:]] if i == 3 else row for i, row in enumerate(rows(motion()))])
                     .replace("0.05", '"0.05"', 1), "field larger than field limit (131072)"),
-    "a long header": (lambda: "x" * 200_000 + csv_text(SI, rows(motion())), "the header cannot be read"),
+    "a long header": (lambda: "x" * 200_000 + csv_text(SI, rows(motion())), "no time column among"),
     "a gap of 30 years": (lambda: data(100, 0, 1e9), "the largest is 1e+09 s"),
     "a push of a trillion newton": (lambda: data(50, 1, 1e12), "F_rl reaches 1e+12 N, above any plausible 2000 N"),
     "a hundred thousand columns": (
