@@ -7,25 +7,34 @@ from __future__ import annotations
 
 import math
 import re
-import tokenize
-from functools import cache
-from typing import Any
+from collections.abc import Callable
+from functools import cache, lru_cache, wraps
+from threading import RLock
+from typing import Any, ParamSpec, TypeVar
+
+from . import unit_text
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 _GRAVITY = {
     **dict.fromkeys(("g", "G", "g0", "gn"), STANDARD_GRAVITY),
     "mg": STANDARD_GRAVITY / 1e3,
 }  # pint: gram, gauss, milligram
-_ASIDE = {"Nm": "N.m", "N·m": "N.m", "N-m": "N.m", "-": "1", "": "1", "m/s²": "m/s2", "m/s^2": "m/s2"}
+_FOOT_POUND = ("ft-lb", "ft.lb", "ft·lb", "ft lb", "ft*lb", "lb-ft", "lb.ft", "lb·ft", "lb ft", "lb*ft")
+_ASIDE = {
+    **dict.fromkeys(("Nm", "N·m", "N-m", "N m", "N*m"), "N.m"),
+    **dict.fromkeys(("", "-", "dimensionless"), "1"),
+    **dict.fromkeys(("m/s²", "m/s^2"), "m/s2"),
+    **dict.fromkeys(_FOOT_POUND, "lbf.ft"),  # nobody means a mass times a length
+}
 USUAL = {
     ("ms", "s"): 1e-3, ("mm", "m"): 1e-3, ("cm", "m"): 1e-2, ("km/h", "m/s"): 1 / 3.6, ("deg", "rad"): math.radians(1),
     ("deg/s", "rad/s"): math.radians(1), ("rpm", "rad/s"): math.pi / 30, ("%", "1"): 1e-2,
 }  # fmt: skip
-_STUMBLES = (ValueError, TypeError, AttributeError, KeyError, SyntaxError, AssertionError, ArithmeticError, IndexError)
 _EXAMPLES = {
     "s": "s or ms", "m": "m or mm", "m/s": "m/s or km/h", "m/s2": "m/s2 or g", "rad": "rad or deg",
     "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %", "bar": "bar or kPa",
 }  # fmt: skip
+KEPT = 4096  # units that are remembered
 _PLAIN = {"rad": "1"}  # an angle is a plain number
 SI_OF = {**{si: si for si in _EXAMPLES}, **{text: si for text, si in USUAL}}
 
@@ -38,6 +47,22 @@ class UnitError(ValueError):
         super().__init__(f"{fact}; {cure}")
 
 
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
+_turn = RLock()
+
+
+def _alone(asks: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """One thread at a time: pint's registry grows while it is asked, and units of two registries do not meet."""
+
+    @wraps(asks)
+    def alone(*args: _Given.args, **options: _Given.kwargs) -> _Found:
+        with _turn:
+            return asks(*args, **options)
+
+    return alone
+
+
 @cache
 def _registry() -> Any:
     import pint
@@ -45,20 +70,54 @@ def _registry() -> Any:
     return pint.UnitRegistry(cache_folder=None)
 
 
-@cache
+@lru_cache(KEPT)
 def _parse(text: str) -> Any:
-    """A pint unit, or None where the text is no unit."""
+    """A pint unit, or None where the text is no unit. Pint is asked for one name at a time, and evaluates nothing."""
+    powers = {} if text == "1" else unit_text.parsed(_ASIDE.get(text, text))
+    if powers is None:
+        return None
+    registry = _registry()
+    found: dict[str, int] = {}
+    for name, exponent in powers.items():
+        known = _known_name(name)
+        if known is None:
+            return None
+        found[known] = found.get(known, 0) + exponent
+    return registry.Unit(registry.UnitsContainer(found))
+
+
+def _known_name(name: str) -> str | None:
+    """What pint calls this unit; None where it knows none."""
     import pint
 
-    text = re.sub(r"\brev\b", "revolution", _ASIDE.get(text, text))
-    powers = re.sub(r"(?<=[A-Za-zµΩ°])\^?(-?\d+)", r"**\1", text)
     try:
-        return _registry().parse_units(powers.replace("·", "*").replace("⋅", "*"))
-    except (pint.PintError, tokenize.TokenError, *_STUMBLES):
-        return None  # whatever pint stumbled over, the text is no unit, and the caller says so
+        return str(_registry().get_name(name)) or None
+    except pint.PintError:
+        return None
 
 
-@cache
+def _unknown(text: str, cure: str) -> UnitError:
+    if len(text) > unit_text.LONGEST:
+        return UnitError(f"{text[:20]!r}… is {len(text)} characters long, which no unit is", cure)
+    return UnitError(f"unit {text!r} is unknown", cure)
+
+
+def _in(target: Any, unit: Any) -> float | None:
+    """How much of `target`, of the same dimension, one of `unit` is; None where it is no finite multiple of it."""
+    import pint
+
+    one = _registry().Quantity(1.0, unit)
+    if not one._is_multiplicative:  # such as °C and dB
+        return None
+    try:
+        found = float(one.to(target).magnitude)
+    except (pint.PintError, ArithmeticError, TypeError, ValueError):  # beyond what a float can hold
+        return None
+    return found if math.isfinite(found) and found != 0 else None
+
+
+@lru_cache(KEPT)
+@_alone
 def factor(text: str, si: str) -> float:
     """`value in SI = factor · value in text`.
 
@@ -74,31 +133,39 @@ def factor(text: str, si: str) -> float:
         return _GRAVITY[text]
     unit = _parse(text)
     if unit is None:
-        raise UnitError(f"unit {text!r} is unknown", f"write it as, for example, {_EXAMPLES[si]}")
+        raise _unknown(text, f"write it as, for example, {_EXAMPLES[si]}")
     target = _parse(si)
     if unit.dimensionality != target.dimensionality:
         raise UnitError(
             f"unit {text!r} measures {_dimension(unit)}, but {si!r} is needed, which measures {_dimension(target)}",
             f"give a unit such as {_EXAMPLES[si]}",
         )
-    return float(_registry().Quantity(1.0, unit).to(target).magnitude)
+    found = _in(target, unit)
+    if found is None:
+        raise UnitError(f"unit {text!r} is no multiple of {si!r}", f"give a unit such as {_EXAMPLES[si]}")
+    return found
 
 
+@lru_cache(KEPT)
+@_alone
 def coherent(text: str) -> tuple[float, int, int, int]:
     """`value in SI = factor · value in text`, and the exponents of kg, m, s that it has there; angles are plain numbers.
 
     Raises UnitError for an unknown unit, and for one that needs more than mass, length and time, in whole powers.
     """
-    cure = "write a unit of mass, length, time or angle, such as N.m, km/h or deg"
-    unit = _parse(text.strip()) if text.strip() else None
+    text, cure = text.strip(), "write a unit of mass, length, time or angle, such as N.m, km/h or deg"
+    unit = _parse(text) if text else None
     if unit is None:
-        raise UnitError(f"unit {text.strip()!r} is unknown", cure)
+        raise _unknown(text, cure)
     exponents = dict(unit.dimensionality)
     powers = [exponents.pop(name, 0) for name in ("[mass]", "[length]", "[time]")]
-    if exponents or any(p != int(p) for p in powers) or not _registry().Quantity(1.0, unit)._is_multiplicative:
-        raise UnitError(f"unit {text.strip()!r} is not made of whole powers of mass, length and time", cure)
-    kg, m, s = map(int, powers)
-    return float(_registry().Quantity(1.0, unit).to_base_units().to(f"kg**{kg} * m**{m} * s**{s}").magnitude), kg, m, s
+    if not exponents and all(p == int(p) for p in powers):
+        kg, m, s = map(int, powers)
+        target = {name: p for name, p in zip(("kilogram", "meter", "second"), (kg, m, s), strict=True) if p}
+        found = _in(_registry().Unit(_registry().UnitsContainer(target)), unit)
+        if found is not None:
+            return found, kg, m, s
+    raise UnitError(f"unit {text!r} is not made of whole powers of mass, length and time", cure)
 
 
 def same_dimension(text: str, si: str) -> bool:
@@ -173,10 +240,11 @@ def is_unit(text: str) -> bool:
 
 
 def _dimension(unit: Any) -> str:
+    """What a unit measures, in words where there are any."""
     names = {
         "m": "a length", "s": "a time", "m/s": "a speed", "m/s2": "an acceleration", "N": "a force",
         "N.m": "a torque", "1": "an angle or a plain number", "rad/s": "an angular rate", "kg": "a mass",
-        "Pa": "a pressure",
+        "Pa": "a pressure", "V": "a voltage", "A": "a current", "K": "a temperature", "W": "a power",
     }  # fmt: skip
     for si, name in names.items():
         if _parse(si).dimensionality == unit.dimensionality:

@@ -11,7 +11,7 @@ import casadi as cs
 import numpy as np
 
 from ..model.dimensions import named
-from ..model.expression import law_of_constants
+from ..model.expression import ExpressionLaw, law_of_constants
 from ..model.stage import Effect, Law
 from ..quantities import ONE, Quantity, Unit
 from .places import Place, evaluate
@@ -68,7 +68,7 @@ def _line(words: str, laws: Sequence[Law], known: Mapping[str, Quantity], unit: 
     fixed: dict[str, np.ndarray] = {}
     terms = []
     for i, law in enumerate(laws):
-        inner, constants = law_of_constants(law.expression) if hasattr(law, "expression") else (law, {})
+        inner, constants = law_of_constants(law.given) if isinstance(law, ExpressionLaw) else (law, {})
         arguments = []
         for n in signature(inner).parameters:
             name = f"{n} of {i}" if n in constants else n

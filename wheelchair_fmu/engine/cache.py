@@ -13,6 +13,7 @@ from pathlib import Path
 
 from ..children import side_by_side
 from ..errors import BuildError
+from ..model.expression import ExpressionLaw
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
@@ -104,11 +105,12 @@ def sources() -> str:
 
 
 def effect_key(effect: Effect) -> str:
-    """An effect by its files' content and its laws' code, so that an edited file is a new effect."""
+    """An effect by its files' content and its laws' code or expressions, so that an edited file is a new effect."""
     laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
-    codes = [law.__code__ for law in laws]
+    said = [(law.expression, law.arguments) for law in laws if isinstance(law, ExpressionLaw)]
+    codes = [law.__code__ for law in laws if not isinstance(law, ExpressionLaw)]
     files = {c.co_filename: "".join(linecache.getlines(c.co_filename)) for c in codes}
-    words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]])
+    words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]] + said)
     targets = repr([(c.to, c.factor) for c in effect.contributions])
     texts = "".join(files[name] for name in sorted(files))
     return f"{effect.id} {targets} {words} {hashlib.sha256(texts.encode()).hexdigest()}"

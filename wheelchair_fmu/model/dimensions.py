@@ -18,6 +18,7 @@ import numpy as np
 from ..errors import ModelError, UsageError, unknown
 from ..quantities import ONE, UNITS, Parameter, Quantity, Unit
 from . import expression
+from .arithmetic import shown
 from .stage import Effect, adds
 from .wheelchair import Choice, Model, assemble
 
@@ -56,16 +57,17 @@ def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
 def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice) -> None:
     """An expression must assemble: it reads only what is known, and has the shape of what it acts on."""
     if "q" not in signature(law).parameters:
-        raise UsageError(f"{text!r} has no q in it; q is the size that is estimated, as in -q * u")
+        raise UsageError(f"{shown(text)} has no q in it; q is the size that is estimated, as in -q * u")
     q = Parameter("q", ONE, off=0.0, smallest_interesting=1.0)
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
     except ModelError as error:
         raise UsageError(str(error).partition("; known here")[0].replace("effect typed", "the expression")) from None
     except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
-        raise UsageError(f"{text!r} cannot be evaluated: {str(error).splitlines()[-1]}") from None
+        raise UsageError(f"{shown(text)} cannot be evaluated: {str(error).splitlines()[-1]}") from None
 
 
+@np.errstate(all="ignore")  # what is not finite is refused in words
 def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]:
     rng = np.random.default_rng(5)
     law, constants = expression.law_of_constants(text)
@@ -76,6 +78,8 @@ def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]
     for _ in range(PLACES):
         place = {n: rng.uniform(0.3, 1.3, known[n].size) for n in names} | fixed
         whole = _value(law, place, 1.0)
+        if not np.all(np.isfinite(whole)):
+            raise UsageError(f"{shown(text)} has no finite value: something is divided by zero, or grows without bound")
         if np.any(abs(_value(law, place, 2.0) - 2 * whole) > NEAR * abs(whole)):
             raise UsageError("q must be a factor of the whole: write q times something")
         found.append([_power(law, place, units, whole, **{unit: FACTOR}) for unit in SYMBOLS])

@@ -6,105 +6,115 @@ A number may have a unit in brackets behind it, "-q * tanh(u / 3 [km/h])"; it co
 from __future__ import annotations
 
 import ast
-import re
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from inspect import Parameter, Signature
 from typing import Any
 
-import casadi as cs
-
 from ..errors import UsageError
-from ..quantities import UNITS, Unit
-from ..units import UnitError, coherent
-from .smooth import direction, grip, magnitude
+from ..quantities import Unit
+from . import arithmetic
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {
-    name: getattr(cs, name)
-    for name in ("sin", "cos", "tan", "atan", "atan2", "exp", "log", "sqrt", "tanh", "fmin", "fmax", "fabs", "sum1", "vertcat")
-} | {"magnitude": magnitude, "direction": direction, "grip": grip}
-ALLOWED = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Load, ast.Constant, ast.Subscript, ast.Add,
-           ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd)  # fmt: skip
+KEPT = 1024  # laws that are kept, so that one who types for hours fills no memory
 
 
-WITH_UNIT = re.compile(r"(?<![\w.\])])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*\[([\w\s.·⋅*/^°²³µΩ%-]*)\]")
+@dataclass(frozen=True)
+class ExpressionLaw:
+    """A law whose arguments are the quantities that an expression names, in the order of its text.
+
+    `expression` is what it says, in one way of writing and in SI: two laws are the same where it is. `given` is the same with
+    numbers in the units they were given in.
+    """
+
+    expression: str
+    given: str = field(compare=False)
+    arguments: tuple[str, ...]
+    tree: ast.expr = field(compare=False, repr=False)
+    numbers: Mapping[int, float] = field(compare=False, repr=False)
+    names: Mapping[int, str] = field(compare=False, repr=False)  # of numbers that are arguments too
+    __signature__: Signature = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        found = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in self.arguments])
+        object.__setattr__(self, "__signature__", found)
+
+    def __call__(self, *values: Any, **named: Any) -> Any:
+        known = self.__signature__.bind(*values, **named).arguments
+        known = {name: float(v) if isinstance(v, int) else v for name, v in known.items()}
+        return arithmetic.value(self.tree, known, {**self.numbers, **{place: known[n] for place, n in self.names.items()}})
 
 
-@cache
-def law(expression: str) -> Callable[..., Any]:
+@lru_cache(KEPT)
+def law(expression: str) -> ExpressionLaw:
     """The expression as a function of the quantities it names.
 
-    Raises UsageError for anything but arithmetic, numbers (with units), names and the functions above.
+    Raises UsageError for anything but arithmetic, numbers (with units), names and the known functions.
     """
-    made = _function(WITH_UNIT.sub(lambda number: repr(_in_si(number)[0]), expression))
-    made.__dict__["expression"] = expression  # from which the units of its numbers can be read
-    return made
+    tree, numbers = arithmetic.parsed(expression)
+    values = {place: number.value for place, number in numbers.items()}
+    in_si = _written(expression, lambda number: repr(number.value))
+    return ExpressionLaw(in_si, canonical(expression), arithmetic.names(tree), tree, values, {})
 
 
-def law_of_constants(expression: str) -> tuple[Callable[..., Any], dict[str, tuple[float, Unit]]]:
+def law_of_constants(expression: str) -> tuple[ExpressionLaw, dict[str, tuple[float, Unit]]]:
     """The law as a function of its numbers with units too; by their names there, those numbers in SI and their units."""
-    constants: dict[str, tuple[float, Unit]] = {}
-
-    def named(number: re.Match[str]) -> str:
-        name = f"constant_{len(constants)}"
-        constants[name] = _in_si(number)
-        return name
-
-    return _function(WITH_UNIT.sub(named, expression)), constants
-
-
-def _in_si(number: re.Match[str]) -> tuple[float, Unit]:
-    if number[2].strip() in UNITS:
-        return float(number[1]), UNITS[number[2].strip()]
-    try:
-        factor, kg, m, s = coherent(number[2])
-    except UnitError as error:
-        raise UsageError(f"{number[0]}: {error}") from None
-    return float(number[1]) * factor, Unit(number[2].strip(), kg=kg, m=m, s=s)
+    tree, numbers = arithmetic.parsed(expression)
+    names = {place: f"_{i}" for i, place in enumerate(numbers)}  # which no quantity is called
+    constants = {}
+    for place, number in numbers.items():
+        kg, m, s = number.exponents
+        constants[names[place]] = number.value, Unit(number.unit, kg=kg, m=m, s=s)
+    arguments = (*arithmetic.names(tree), *names.values())
+    return ExpressionLaw(canonical(expression), canonical(expression), arguments, tree, {}, names), constants
 
 
-def _function(expression: str) -> Callable[..., Any]:
-    try:
-        tree = ast.parse(expression, mode="eval")
-    except SyntaxError as error:
-        raise UsageError(f"{expression!r} is no expression: {error.msg} at place {error.offset}") from None
-    names: dict[str, None] = {}
-    called = {id(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)}
-    for node in ast.walk(tree):
-        if not isinstance(node, ALLOWED):
-            raise UsageError(f"{expression!r}: {type(node).__name__} is not allowed; use numbers, + − * / **, "
-                             f"quantities and {', '.join(FUNCTIONS)}")  # fmt: skip
-        if isinstance(node, ast.Name) and id(node) in called and node.id not in FUNCTIONS:
-            raise UsageError(f"{expression!r}: no function {node.id!r}; known: {', '.join(FUNCTIONS)}")
-        if isinstance(node, ast.Name) and node.id not in FUNCTIONS:
-            names[node.id] = None
-    made: Callable[..., Any] = eval(f"lambda {', '.join(names)}: {expression}", {"__builtins__": {}, **FUNCTIONS})
-    return made
+def canonical(expression: str) -> str:
+    """The expression in one way of writing, units as they were given. Raises UsageError as `law` does."""
+    return _written(expression, lambda number: number.written)
 
 
-FILE = '''"""{title}:  {to} += {expression}"""
+def _written(expression: str, words: Callable[[arithmetic.Number], str]) -> str:
+    """The text of the checked tree, with these words for the numbers that have units."""
+    tree, numbers = arithmetic.parsed(expression)
+
+    class Worded(ast.NodeTransformer):
+        def visit_Constant(self, node: ast.Constant) -> ast.expr:
+            return ast.Name(words(numbers[node.col_offset])) if node.col_offset in numbers else node
+
+    return ast.unparse(Worded().visit(tree))
+
+
+FILE = '''{heading!r}
 
 from wheelchair_fmu.model.expression import law
-from wheelchair_fmu.model.stage import Effect, adds
-from wheelchair_fmu.quantities import Parameter, Unit
+from wheelchair_fmu.model.stage import Effect, {kind}
+from wheelchair_fmu.quantities import {records}
 
 UNIT = {unit!r}
-Q = Parameter("q", UNIT, "size of: {title}", off=0.0, smallest_interesting={size!r}, lower={lower!r}, upper={upper!r},
-              source="{source}")
+Q = Parameter("q", UNIT, {size_of!r}, off=0.0, smallest_interesting={size!r}, lower={lower!r}, upper={upper!r},
+              source={source!r})
 
 EFFECT = Effect(
-    "{id}",
-    "{title}",
+    {id!r},
+    {title!r},
     parameters=(Q,),
-    contributions=({kind}("{to}", law("{expression}")),),
+    contributions=({kind}({to!r}, law({expression!r})),),
 )
 '''
 
 
 def effect_file(id: str, title: str, to: str, unit: Unit, expression: str, *, size: float, lower: float, upper: float,
                 source: str = "proposed", factor: bool = False) -> str:  # fmt: skip
-    """The text of an effect file that adds `expression`, which has q in it, to the quantity `to` (or scales it)."""
-    text = FILE.format(title=title, to=to, expression=expression, unit=unit, size=size, lower=lower, upper=upper,
-                       source=source, id=id, kind="scales" if factor else "adds")  # fmt: skip
-    imports = "DisplayUnit, Parameter, Unit" if unit.display else "Parameter, Unit"
-    text = text.replace("Parameter, Unit\n", imports + "\n", 1)
-    return text.replace("import Effect, adds", "import Effect, scales") if factor else text
+    """The text of an effect file that adds `expression`, which has q in it, to the quantity `to` (or scales it).
+
+    An effect file is a program, so every word from outside is written as a literal that it cannot leave, and the expression
+    as its checked tree reads. Raises UsageError for words that cannot be printed and for what is no expression.
+    """
+    for word in (id, title, to, source):
+        if not word.isprintable():
+            raise UsageError(f"{arithmetic.shown(word)} has characters that cannot be printed; use plain words")
+    expression, kind = canonical(expression), "scales" if factor else "adds"
+    return FILE.format(heading=f"{title}:  {to} += {expression}", id=id, title=title, to=to, unit=unit, expression=expression,
+                       size_of=f"size of: {title}", size=float(size), lower=float(lower), upper=float(upper), source=source,
+                       kind=kind, records="DisplayUnit, Parameter, Unit" if unit.display else "Parameter, Unit")  # fmt: skip
