@@ -26,7 +26,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=env, cwd=folder) as server:
         assert server.stdout
-        yield server.stdout.readline().split()[0]
+        yield server.stdout.readline().split()[0]  # with its token, which the browser keeps as a cookie
         server.terminate()
 
 

@@ -78,8 +78,8 @@ def test_a_unit_that_no_number_can_hold_is_refused():
         units.coherent("lightyear^9.parsec^9.Ym^9")
 
 
-PIECES = ["m", "s", "N", "lbf", "km", "deg", "rev", "per", "1", "9", "2", "-", "^", "**", "*", "/", ".", "·", "²", "⁻", "(", ")",
-          " ", "%", "°", "µ", "_", "dB", "degC", "é", "\0", "["]  # fmt: skip
+PIECES = ["m", "s", "N", "lbf", "km", "deg", "rev", "per", "1", "9", "2", "-", "^", "**", "*", "/", ".", "·", "²", "⁻", "(",
+          ")", " ", "%", "°", "µ", "_", "dB", "degC", "é", "\0", "["]  # fmt: skip
 
 
 @settings(deadline=2000)  # ms; the first asks pint, which loads

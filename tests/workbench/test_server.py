@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from io import BytesIO
 from math import radians, tanh
 from os import utime
 from pathlib import Path
@@ -12,7 +13,8 @@ import pytest
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
-from wheelchair_fmu.workbench.server import HEADER, Workbench  # noqa: E402
+from wheelchair_fmu.workbench.guard import HEADER, TOKEN_HEADER  # noqa: E402
+from wheelchair_fmu.workbench.server import Workbench  # noqa: E402
 from wheelchair_fmu.workbench.session import Session, prune  # noqa: E402
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
@@ -20,14 +22,18 @@ SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
 
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory) -> Workbench:
-    return Workbench(tmp_path_factory.mktemp("work"))
+    return Workbench(tmp_path_factory.mktemp("work"), "s3cret")
 
 
 @pytest.fixture
 def client(bench):
-    with TestClient(bench.app(), headers={HEADER: "1"}) as client:
-        client.base = f"{client.get('/', follow_redirects=False).headers['location']}"
+    with TestClient(bench.app(), "http://127.0.0.1:8765", headers={HEADER: "1", TOKEN_HEADER: "s3cret"}) as client:
+        client.base = begun(client)
         yield client
+
+
+def begun(client) -> str:
+    return f"/s/{client.post('/sessions').json()['id']}"
 
 
 def upload(client, *files: tuple[str, bytes]):
@@ -78,6 +84,7 @@ def test_bad_files_show_their_faults_and_nothing_breaks(client):
     assert "line 2" in text and "'x' is not a number" in text
     assert upload(client, ("campaign.toml", b"[campaign\nname=")).json()["faults"][0]["text"].startswith("campaign.toml line 1")
     assert upload(client, ("virus.exe", b"MZ")).json()["error"].startswith("virus.exe: .exe is no recording")
+    assert "is a program, and the workbench runs none" in upload(client, ("drag.py", b"print(1)")).json()["error"]
 
 
 @pytest.mark.parametrize("name", ["../../evil.csv", "/etc/evil.csv", ".hidden.csv", "a/../../evil.csv"])
@@ -87,13 +94,13 @@ def test_files_stay_in_their_folder(client, bench, name):
 
 
 def test_two_tabs_do_not_disturb_each_other(client):
-    other = client.get("/", follow_redirects=False).headers["location"]
+    other = begun(client)
     upload(client, *recordings())
     assert client.get(f"{other}/state").json()["files"] == []
 
 
 def test_only_the_page_itself_may_change_anything(client, bench):
-    with TestClient(bench.app()) as stranger:
+    with TestClient(bench.app(), "http://127.0.0.1:8765") as stranger:
         assert stranger.post(f"{client.base}/jobs", json={"kind": "diagnose"}).status_code == 403
         assert stranger.get(f"{client.base}/state", headers={"host": "evil.example"}).status_code == 400
     assert client.get("/s/000000000000/state").status_code == 404
@@ -180,7 +187,7 @@ def test_comments_and_layout_outlast_the_forms(client, bench):
 def test_old_work_goes_and_what_is_in_use_stays(client, bench, tmp_path):
     sessions = {name: Session.begin(tmp_path / "work") for name in ("recent", "old", "empty", "new")}
     for name in ("recent", "old"):
-        sessions[name].put(f"{name}.csv", recordings()[0][1])
+        sessions[name].put(f"{name}.csv", BytesIO(recordings()[0][1]))
         sessions[name].draft()
     (tmp_path / "work" / "notes").mkdir()
     now = time.time()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import secrets
 import socket
 import sys
 import webbrowser
@@ -26,29 +28,36 @@ def workbench(
     port: Annotated[int, typer.Option(help="Where to listen; 0 takes a free one.")] = 8765,
     folder: Annotated[Path | None, typer.Option(metavar="DIR", help="Where work is kept.")] = None,
     keep: Annotated[float, typer.Option(metavar="DAYS", min=1.0, help="Remove work that nobody looked at for so long.")] = 90.0,
+    upload_limit: Annotated[
+        float, typer.Option("--upload-limit", metavar="MB", min=1.0, help="Refuse more recordings than that at once.")
+    ] = 512.0,
     show: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
 ) -> None:
     """Drop recordings in, map their columns, diagnose, add effects and export, in a browser."""
     try:
         import uvicorn
 
+        from ..workbench.intake import close_to_others
         from ..workbench.server import Workbench
-        from ..workbench.session import prune
+        from ..workbench.session import Session, prune
     except ImportError as error:
         raise Failure(f"the workbench needs {error.name}, which is not installed; "
                       "pip install 'wheelchair-fmu[workbench]'") from None  # fmt: skip
     if campaign and not campaign.is_dir():
         raise UsageError(f"{campaign}: no such folder; give one with recordings")
     root = folder or Path(platformdirs.user_data_dir("wheelchair-fmu")) / "workbench"
+    os.umask(0o077)  # recordings are of people, so whatever this process and its children write is its owner's alone
     root.mkdir(parents=True, exist_ok=True)
     listening = _listen(port)
     for name in prune(root, keep):
         print(f"removed {name}, which nobody has looked at for {keep:g} days", file=sys.stderr)
-    address = f"http://{HOST}:{listening.getsockname()[1]}/"
+    close_to_others(root, [session.folder for session in Session.every(root)])
+    token = secrets.token_urlsafe(32)
+    address = f"http://{HOST}:{listening.getsockname()[1]}/?token={token}"
     print(f"{address} (Ctrl-C ends it; work is kept in {root})", flush=True)
     if show:
         webbrowser.open(address)
-    app = Workbench(root.resolve(), campaign.resolve() if campaign else None).app()
+    app = Workbench(root.resolve(), token, campaign.resolve() if campaign else None, int(upload_limit * 1e6)).app()
     server = uvicorn.Server(uvicorn.Config(app, log_level="warning", lifespan="on", timeout_graceful_shutdown=2))
     with suppress(KeyboardInterrupt):  # which is how it ends
         server.run(sockets=[listening])

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ..children import child
-from ..errors import UsageError
+from ..errors import UsageError, WheelchairError
 
 COMMAND = (sys.executable, "-m", "wheelchair_fmu.cli.main")
 SEARCHED = os.pathsep.join(p for p in sys.path if p)  # the child finds what this process found, wherever it runs
@@ -40,15 +40,15 @@ class Job:
 
     def run(self, folder: Path) -> None:
         outputs = []
-        for words in self.commands:
-            out = self._one(words, folder)
-            if out is None:
-                return
-            outputs.append(out)
         try:
+            for words in self.commands:
+                out = self._one(words, folder)
+                if out is None:
+                    return
+                outputs.append(out)
             self.after(outputs)
-        except (OSError, ValueError, KeyError) as error:
-            self.lines.append(f"{type(error).__name__}: {error}")
+        except (OSError, ValueError, KeyError, WheelchairError) as error:
+            self.lines.append(str(error) if isinstance(error, WheelchairError) else f"{type(error).__name__}: {error}")
             self.state = "failed"
         else:
             self.state = "done"
@@ -93,13 +93,15 @@ class Jobs:
 
     def __init__(self) -> None:
         self._jobs: dict[str, Job] = {}
+        self._starting = threading.Lock()
 
     def start(self, session: str, job: Job, folder: Path) -> None:
         """Raises UsageError where the session is busy."""
-        now = self._jobs.get(session)
-        if now and now.state == "running":
-            raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
-        self._jobs[session] = job
+        with self._starting:
+            now = self._jobs.get(session)
+            if now and now.state == "running":
+                raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
+            self._jobs[session] = job
         threading.Thread(target=job.run, args=(folder,), daemon=True).start()
 
     def told(self, session: str) -> dict[str, Any] | None:

@@ -1,41 +1,49 @@
-"""The workbench's addresses. JSON in and out; every refusal is {"error": one sentence}."""
+"""The workbench's addresses. JSON in and out; every refusal is {"error": one sentence}.
+
+Reading changes nothing but when a session was last looked at; `guard` says who may ask.
+"""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
-from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.requests import Request
-from starlette.responses import FileResponse, HTMLResponse, JSONResponse, RedirectResponse, Response
+from starlette.responses import FileResponse, HTMLResponse, Response
 from starlette.routing import Route
 
-from ..contracts.own import checked
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
 from ..loop.subject import known_parameters
 from ..loop.workshop import CALIBRATED
+from ..model.arithmetic import shown as cut
 from ..model.dimensions import targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
 from ..model.variant import Variant
 from ..model.wheelchair import assemble
 from ..report.page import ASSETS, asset
+from .bodies import Json, json_object, number
+from .guard import Guard
+from .intake import MOST_BYTES
 from .jobs import Job, Jobs, printed_json
-from .session import Session, channel_list, write
+from .locks import Locks
+from .session import Session, channel_list
 
-HEADER = "x-workbench"  # only a page of ours can send it: other sites would have to ask first
-EFFECT = re.compile(r"[a-z][a-z0-9_]*")
+EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
+LONGEST_TITLE = 200
 EARLIER = 12  # pieces of work that are listed
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
 POLICY = ("default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -46,10 +54,13 @@ Answer = Callable[[Request, Session], Awaitable[Response]]
 
 
 class Workbench:
-    """The application over a folder of sessions; `campaign` is what each new session starts with."""
+    """The application over a folder of sessions, for whoever knows `token`; `campaign` is what each new session starts with."""
 
-    def __init__(self, root: Path, campaign: Path | None = None):
-        self.root, self.campaign, self.jobs = root, campaign, Jobs()
+    def __init__(self, root: Path, token: str, campaign: Path | None = None, most_upload: int = MOST_BYTES):
+        self.root, self.campaign, self.jobs, self.locks = root, campaign, Jobs(), Locks()
+        self.guard = Middleware(Guard, token=token, most_upload=most_upload)
+        self.most_upload = most_upload
+        self.assets = {p.relative_to(ASSETS).as_posix() for p in Path(str(ASSETS)).rglob("*") if p.suffix in TYPES}
         chair = Variant()
         self.bounds = known_parameters()
         self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default,
@@ -64,7 +75,8 @@ class Workbench:
     def app(self) -> Starlette:
         at = "/s/{id}"
         routes = [
-            Route("/", self.fresh),
+            Route("/", self.start),
+            Route("/sessions", self.begin, methods=["POST"]),
             Route("/page/{name:path}", self.page_asset),
             Route(at, self.shown(self.page)),
             Route(f"{at}/state", self.shown(self.state)),
@@ -80,74 +92,99 @@ class Workbench:
             Route(f"{at}/report", self.shown(self.report)),
             Route(f"{at}/export/{{name}}", self.shown(self.export)),
         ]
-        guard = Middleware(TrustedHostMiddleware, allowed_hosts=["127.0.0.1", "localhost", "testserver"])
 
         @asynccontextmanager
         async def life(app: Starlette) -> Any:
             yield
             self.jobs.cancel_all()
 
-        return Starlette(routes=routes, middleware=[guard], lifespan=life)
+        return Starlette(routes=routes, middleware=[self.guard], lifespan=life, exception_handlers={HTTPException: _refused})
 
     def shown(self, answer: Answer) -> Callable[[Request], Awaitable[Response]]:
         """An address of one session: errors a user can cause become one sentence."""
 
         async def respond(request: Request) -> Response:
-            if request.method != "GET" and HEADER not in request.headers:
-                return JSONResponse({"error": "only the workbench's own page may ask for this"}, 403)
             try:
                 session = Session(self.root, request.path_params["id"])
                 if not session.there:
-                    return JSONResponse({"error": "no such session; open the workbench's first page"}, 404)
+                    return Json({"error": "no such session; open the workbench's first page"}, 404)
                 session.touch()
                 return await answer(request, session)
             except WheelchairError as error:
-                return JSONResponse({"error": str(error)}, 400)
+                return Json({"error": str(error)}, 400)
+            except OSError as error:
+                what = error.strerror or type(error).__name__
+                return Json({"error": f"the workbench's folder cannot be read or written ({what}); see that it is there and "
+                                      "has room"}, 507)  # fmt: skip
 
         return respond
 
+    async def change(self, session: Session, act: Callable[[], object] = lambda: None) -> Response:
+        """Do something with a session that nobody else changes meanwhile, and tell how it is then."""
+
+        def alone() -> dict[str, Any]:
+            with self.locks.held(session):
+                act()
+                return self.told(session)
+
+        return Json(await run_in_threadpool(alone))
+
     # -- pages ----------------------------------------------------------------------------------------------
 
-    async def fresh(self, request: Request) -> Response:
-        session = await run_in_threadpool(Session.begin, self.root, self.campaign)
-        return RedirectResponse(f"/s/{session.id}")
+    async def start(self, request: Request) -> Response:
+        """The page without a session; its script begins one, because opening an address must change nothing."""
+        return self._page()
+
+    async def begin(self, request: Request) -> Response:
+        try:
+            session = await run_in_threadpool(Session.begin, self.root, self.campaign)
+        except WheelchairError as error:
+            return Json({"error": str(error)}, 400)
+        return Json({"id": session.id})
 
     async def page(self, request: Request, session: Session) -> Response:
+        return self._page()
+
+    def _page(self) -> Response:
         return HTMLResponse(asset("workbench.html"), headers={"cache-control": "no-store", "content-security-policy": POLICY})
 
     async def page_asset(self, request: Request) -> Response:
         name = request.path_params["name"]
-        if Path(name).suffix not in TYPES or ".." in name or not ASSETS.joinpath(name).is_file():
-            return Response(status_code=404)
+        if name not in self.assets:
+            raise HTTPException(404)
         return Response(asset(name), media_type=TYPES[Path(name).suffix], headers={"cache-control": "no-cache"})
 
     async def report(self, request: Request, session: Session) -> Response:
         file = session.folder / "report.html"
-        return FileResponse(file, headers={"cache-control": "no-store"}) if file.exists() else Response(status_code=404)
+        if not file.exists():
+            raise HTTPException(404)
+        return FileResponse(file, headers={"cache-control": "no-store"})
 
     # -- what there is --------------------------------------------------------------------------------------
 
     async def state(self, request: Request, session: Session) -> Response:
-        return JSONResponse(await run_in_threadpool(self.told, session))
+        return await self.change(session)
 
     async def job(self, request: Request, session: Session) -> Response:
-        return JSONResponse(self.jobs.told(session.id))
+        return Json(self.jobs.told(session.id))
 
     def told(self, session: Session) -> dict[str, Any]:
         report = session.folder / "report.html"
         own = session.own_effects()
+        faults, noise = session.judged(self.bounds)
         return {
             "campaign": session.content(),
             "files": session.files(),
             "headers": session.headers(),
-            "faults": session.faults(self.bounds),
+            "faults": faults,
             "channels": channel_list(),
-            "noise": session.noise(),
+            "noise": noise,
             "parameters": self.parameters,
             "history": session.history(),
-            "variant": session.variant_file.read_text(encoding="utf-8"),
+            "variant": session.variant_text(),
             "effects": [{"id": e.id, "title": e.title, "own": e.id in own} for e in session.catalogue().values()],
             "words": self.words,
+            "most_upload": self.most_upload,
             "report": report.stat().st_mtime_ns if report.exists() else None,
             "job": self.jobs.told(session.id),
             "earlier": [{"id": s.id, "name": s.name} for s in Session.latest(self.root, EARLIER) if s.id != session.id],
@@ -157,37 +194,31 @@ class Workbench:
 
     async def take_files(self, request: Request, session: Session) -> Response:
         async with request.form(max_files=1000) as form:
-            for field in form.getlist("files"):
-                if isinstance(field, str):
-                    raise UsageError("the field 'files' holds no file")
-                session.put(field.filename or "", await field.read())
-        await run_in_threadpool(session.draft)
-        return await self.state(request, session)
+            files = [field for field in form.getlist("files") if isinstance(field, UploadFile)]
+            if not files:
+                raise UsageError("the field 'files' holds no file")
+            return await self.change(session, lambda: self._take_in(session, files))
+
+    def _take_in(self, session: Session, files: list[UploadFile]) -> None:
+        for file in files:
+            session.put(file.filename or "", file.file, self.most_upload)
+        session.draft()
 
     async def drop_file(self, request: Request, session: Session) -> Response:
-        name = request.path_params["name"]
-        if name not in session.files():
-            raise unknown("file", name, session.files())
-        (session.campaign / name).unlink()
-        content = session.content()
-        if content and isinstance(content.get("run"), list):
-            session.write_content({**content, "run": [r for r in content["run"] if r.get("file") != name]})
-        return await self.state(request, session)
+        return await self.change(session, partial(session.drop, request.path_params["name"]))
 
     async def set_campaign(self, request: Request, session: Session) -> Response:
-        session.edit(await _object(request))
-        return await self.state(request, session)
+        return await self.change(session, partial(session.edit, await json_object(request)))
 
     # -- work -----------------------------------------------------------------------------------------------
 
     async def start_job(self, request: Request, session: Session) -> Response:
-        asked = await _object(request)
+        asked = await json_object(request)
         makers = {"calibrate": self._calibrate, "diagnose": self._diagnose, "add": self._add}
-        if asked.get("kind") not in makers:
-            raise unknown("kind of work", str(asked.get("kind")), makers)
-        job = await run_in_threadpool(makers[asked["kind"]], session, asked)
-        self.jobs.start(session.id, job, session.folder)
-        return await self.state(request, session)
+        kind = str(asked.get("kind"))
+        if kind not in makers:
+            raise unknown("kind of work", kind[:40], makers)
+        return await self.change(session, lambda: self.jobs.start(session.id, makers[kind](session, asked), session.folder))
 
     def _with(self, session: Session) -> list[str]:
         """The variant at hand and the effects of one's own, as options."""
@@ -196,12 +227,15 @@ class Workbench:
 
     def _calibrate(self, session: Session, asked: dict[str, Any]) -> Job:
         names = [n for n in str(asked.get("names") or ",".join(CALIBRATED)).split(",") if n]
+        if strange := next((n for n in names if n not in self.bounds), None):
+            raise unknown("parameter", strange[:40], self.bounds)
 
         def after(outputs: list[str]) -> None:
             values = printed_json(outputs[0])["values"]
             chair = session.variant()
             found = {**chair.values, **session.known(), **{n: values[n] for n in names}}
-            session.keep(replace(chair, values=found), "calibrated")
+            with self.locks.held(session):
+                session.keep(replace(chair, values=found), "calibrated")
 
         words = ["compare", "campaign", "--calibrate", ",".join(names), "--json", *self._with(session)]
         return Job("calibrate", [words], after)
@@ -215,54 +249,51 @@ class Workbench:
     def _add(self, session: Session, asked: dict[str, Any]) -> Job:
         effect = str(asked.get("effect"))
         if effect not in session.catalogue():
-            raise unknown("effect", effect, session.catalogue())
+            raise unknown("effect", effect[:40], session.catalogue())
         target = session.folder / "better.toml"
 
         def after(outputs: list[str]) -> None:
-            session.keep(target, f"+ {effect}", printed_json(outputs[0])["ladder"])
+            with self.locks.held(session):
+                session.keep(target, f"+ {effect}", printed_json(outputs[0])["ladder"])
 
         words = ["add", effect, "campaign", "-o", "better.toml", "--json", "--progress", *self._with(session)]
         return Job("add", [words], after)
 
     async def cancel_job(self, request: Request, session: Session) -> Response:
-        self.jobs.cancel(session.id)
-        return await self.state(request, session)
+        return await self.change(session, partial(self.jobs.cancel, session.id))
 
     async def go(self, request: Request, session: Session) -> Response:
-        by = (await _object(request)).get("by")
-        if by not in (-1, 1):
-            raise UsageError(f"by = {by!r}; give -1 to undo, 1 to redo")
-        session.go(by)
-        return await self.state(request, session)
+        by = (await json_object(request)).get("by")
+        if type(by) is not int or by not in (-1, 1):
+            raise UsageError(f"by = {cut(str(by))}; give -1 to undo, 1 to redo")
+        return await self.change(session, partial(session.go, by))
 
     # -- effects --------------------------------------------------------------------------------------------
 
     async def check_expression(self, request: Request, session: Session) -> Response:
-        asked = await _object(request)
+        asked = await json_object(request)
         try:
             unit = await run_in_threadpool(unit_of_q, str(asked.get("expression", "")), str(asked.get("to", "")))
         except UsageError as error:
-            return JSONResponse({"unit": None, "why": str(error)})  # an answer, not a failure: somebody is still typing
-        return JSONResponse({"unit": unit.name})
+            return Json({"unit": None, "why": str(error)})  # an answer, not a failure: somebody is still typing
+        return Json({"unit": unit.name})
 
     async def write_effect(self, request: Request, session: Session) -> Response:
-        asked = await _object(request)
+        asked = await json_object(request)
         id, title = str(asked.get("id", "")), " ".join(str(asked.get("title", "")).split())
         if not EFFECT.fullmatch(id):
-            raise UsageError(f"{id!r} is no name for an effect; use small letters, digits and underscores, like my_drag")
+            raise UsageError(f"{cut(id)} is no name for an effect; use small letters, digits and underscores, like my_drag")
         if id in bundled():
             raise UsageError(f"there is an effect {id!r} already; choose another name")
-        if not title or not title.isprintable() or set(title) & set("\"\\{}"):
+        if not title.isprintable() or set(title) & set("\"\\{}") or not 0 < len(title) <= LONGEST_TITLE:
             raise UsageError("say in a few plain words what the effect is")
-        size, lower, upper = (_number(asked, key) for key in ("size", "lower", "upper"))
+        size, lower, upper = (number(asked, key) for key in ("size", "lower", "upper"))
         if not lower <= 0 < size < upper:
             raise UsageError(f"the sizes must go lower ≤ 0 < of interest < upper, not {lower:g}, {size:g}, {upper:g}")
         expression, to = str(asked.get("expression", "")), str(asked.get("to", ""))
         unit = await run_in_threadpool(unit_of_q, expression, to)
-        source = effect_file(id, title, to, unit, expression, size=size, lower=lower, upper=upper, source="own").encode()
-        await run_in_threadpool(checked, ((f"{id}.py", source),))
-        write(session.effects / f"{id}.py", source)
-        return await self.state(request, session)
+        source = effect_file(id, title, to, unit, expression, size=size, lower=lower, upper=upper, source="own")
+        return await self.change(session, partial(session.write_effect, id, source))
 
     # -- taking things away ---------------------------------------------------------------------------------
 
@@ -273,11 +304,11 @@ class Workbench:
         if name == "report.html" and (session.folder / name).exists():
             return _download(session.folder / name, name)
         if name == "parameters.ssv":
-            content = text(from_variant(session.variant(), session.name))
+            content = await run_in_threadpool(lambda: text(from_variant(session.variant(), session.name)))
             return Response(content, media_type="application/xml", headers=_attached(name))
         if name == "Wheelchair.fmu":
             return await run_in_threadpool(self._fmu, session, name)
-        return JSONResponse({"error": f"there is no {name} yet"}, 404)
+        return Json({"error": f"there is no {cut(name)} yet"}, 404)
 
     def _fmu(self, session: Session, name: str) -> Response:
         with TemporaryDirectory() as folder:
@@ -293,19 +324,9 @@ def _attached(name: str) -> dict[str, str]:
     return {"content-disposition": f'attachment; filename="{name}"'}
 
 
-async def _object(request: Request) -> dict[str, Any]:
-    """The JSON object of a request. Raises UsageError for anything else."""
-    try:
-        content = await request.json()
-    except ValueError:
-        raise UsageError("the request holds no JSON") from None
-    if not isinstance(content, dict):
-        raise UsageError("the request holds no JSON object")
-    return content
-
-
-def _number(asked: dict[str, Any], key: str) -> float:
-    value = asked.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise UsageError(f"{key} = {value!r} is not a number")
-    return float(value)
+async def _refused(request: Request, error: Exception) -> Response:
+    """What the framework refuses, as a sentence."""
+    status = error.status_code if isinstance(error, HTTPException) else 500
+    told = {404: "there is nothing at this address; open the workbench's first page",
+            405: f"{request.method} is not what this address answers"}  # fmt: skip
+    return Json({"error": told.get(status) or str(getattr(error, "detail", error))}, status)

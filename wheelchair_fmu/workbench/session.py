@@ -17,27 +17,27 @@ import re
 import shutil
 import time
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, BinaryIO
 from uuid import uuid4
 
-from ..campaign import CHANNELS, INPUTS, check, read
+from ..campaign import CHANNELS, INPUTS, judged, read
 from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
-from ..campaign.formats import bundled as bundled_formats
 from ..campaign.formats import open_recording
 from ..campaign.layout import relaid
-from ..contracts.own import load
-from ..errors import CampaignError, Failure, UsageError
-from ..model.effects import bundled
+from ..contracts.own import checked
+from ..errors import CampaignError, EffectError, Failure, ModelError, UsageError, unknown
+from ..model.effects import bundled, sources
 from ..model.stage import Effect
 from ..model.variant import Variant, read_variant, variant_text
 from ..writing import written
+from .bodies import refuse_unusual, too_deep
+from .history import broken, recovered
+from .intake import MOST_BYTES, SUFFIXES, refuse_bomb, safe_path
 
-SUFFIXES = (".toml", ".gz", *sorted({suffix for record in bundled_formats().values() for suffix in record.suffixes}))
-MOST_BYTES = 200_000_000  # of one file
 MANOEUVRES = ("coast-down", "slalom", "straight", "steady", "random", "strokes", "spin")
 KEPT = 90  # days for which work is kept after it was last looked at
 SCRATCH = 1  # the same, for what holds no recordings
@@ -60,12 +60,13 @@ class Session:
     def begin(cls, root: Path, campaign: Path | None = None) -> Session:
         """A new session, with a copy of `campaign` where one is given."""
         session = cls(root, uuid4().hex[:12])
-        for folder in (session.campaign, session.effects, session.variants):
-            folder.mkdir(parents=True)
+        for folder in (session.folder, session.campaign, session.effects, session.variants, session.campaigns):
+            folder.mkdir(mode=0o700, parents=True)
         session.keep(Variant(), "nominal")
         for file in sorted(campaign.rglob("*")) if campaign else ():
             if campaign and file.is_file() and file.suffix.lower() in SUFFIXES:
-                session.put(file.relative_to(campaign).as_posix(), file.read_bytes())
+                with file.open("rb") as content:
+                    session.put(file.relative_to(campaign).as_posix(), content)
         session.draft()
         return session
 
@@ -89,8 +90,9 @@ class Session:
 
     @property
     def name(self) -> str:
-        name = (self.content() or {}).get("campaign", {}).get("name")
-        return name if isinstance(name, str) else "campaign"
+        about = (self.content() or {}).get("campaign")
+        name = about.get("name") if isinstance(about, Mapping) else None
+        return "".join(c for c in name if c.isprintable()) if isinstance(name, str) else "campaign"
 
     @property
     def there(self) -> bool:
@@ -98,39 +100,46 @@ class Session:
 
     # -- measurements ---------------------------------------------------------------------------------------
 
-    def put(self, name: str, content: bytes) -> None:
+    def put(self, name: str, content: BinaryIO, most: int = MOST_BYTES) -> None:
         """Take in a file of the campaign. Raises UsageError for one that cannot belong to it."""
-        path = PurePosixPath(name.replace("\\", "/"))
-        if path.is_absolute() or ".." in path.parts or not path.name or path.name.startswith("."):
-            raise UsageError(f"{name!r} is no name for a file of a campaign; give a plain name")
-        if path.suffix.lower() not in SUFFIXES:
-            raise UsageError(f"{name}: {path.suffix or 'no ending'} is no recording; give one of {', '.join(SUFFIXES)}")
-        if len(content) > MOST_BYTES:
-            raise UsageError(f"{name}: {len(content) / 1e6:.0f} MB is too much for the workbench; use `wheelchair diagnose`")
-        write(self.campaign / path, content)
+        path = self.campaign / safe_path(name)
+        if path.suffix.lower() == ".gz":
+            refuse_bomb(content, name, most)
+            content.seek(0)
+        try:
+            with written(path) as beside, beside.open("wb") as file:
+                beside.chmod(0o600)
+                shutil.copyfileobj(content, file)
+        except OSError as error:
+            raise UsageError(f"{name!r} cannot be kept: {error.strerror}") from None
 
     def draft(self) -> None:
-        """A run for each recording that has none yet; columns as their headers say, where they do."""
+        """A run for each recording that has none yet; columns as their headers say, where they do.
+
+        Where campaign.toml is no TOML, or has something else in the place of a table, its fault is shown, and nothing is
+        written over it.
+        """
         content = self.content()
-        if content is None:
-            return  # what is there is no TOML: its fault is shown, and nothing is written over it
-        content.setdefault("campaign", {}).setdefault("name", "campaign")
-        content["campaign"].setdefault("axes", "SAE-J670")
-        runs = content.setdefault("run", [])
-        named = {run.get("file") for run in runs if isinstance(run, Mapping)} if isinstance(runs, list) else None
-        if named is None:
+        if content is None or not isinstance(content.setdefault("campaign", {}), dict):
             return
-        for name in self.files():
-            if name not in named:
-                runs.append(_run(name))
+        content["campaign"].setdefault("name", "campaign")
+        content["campaign"].setdefault("axes", "SAE-J670")
+        runs, columns = content.setdefault("run", []), content.setdefault("columns", {})
+        if not isinstance(runs, list) or not isinstance(columns, dict):
+            return
+        content["run"] = self._every_run(runs)
         for header in self.headers():
             channel = _guess(header)
-            columns = content.setdefault("columns", {})
-            if channel and channel != split(header)[0] and channel not in columns and isinstance(columns, dict):
+            if channel and channel != split(header)[0] and channel not in columns:
                 columns[channel] = {"column": header}
-        if not content.get("columns"):
-            content.pop("columns", None)
+        if not columns:
+            content.pop("columns")
         self.write_content(content)
+
+    def _every_run(self, runs: list[Any]) -> list[Any]:
+        """These, and one for each recording that has none yet."""
+        named = [run.get("file") for run in runs if isinstance(run, Mapping)]
+        return [*runs, *(_run(name) for name in self.files() if name not in named)]
 
     def files(self) -> list[str]:
         """Recordings, by their names as campaign.toml writes them."""
@@ -148,12 +157,23 @@ class Session:
         return found
 
     def content(self) -> dict[str, Any] | None:
-        """campaign.toml as data; None where it is no TOML, {} where there is none."""
+        """campaign.toml as data; None where it is no TOML, or nothing that anybody writes; {} where there is none."""
+        content, _ = self._toml()
+        return content
+
+    def _toml(self) -> tuple[dict[str, Any] | None, str]:
+        """campaign.toml, and where the fault is none that `check` tells, what it is."""
         file = self.campaign / "campaign.toml"
         try:
-            return tomllib.loads(file.read_text(encoding="utf-8-sig")) if file.exists() else {}
+            content = tomllib.loads(file.read_text(encoding="utf-8-sig")) if file.exists() else {}
+            refuse_unusual(content, "campaign.toml")
         except (tomllib.TOMLDecodeError, UnicodeDecodeError):
-            return None
+            return None, ""
+        except RecursionError:
+            return None, str(too_deep("campaign.toml"))
+        except (ValueError, UsageError) as error:  # Python's, for an integer of thousands of digits
+            return None, f"campaign.toml: {error}" if isinstance(error, ValueError) else str(error)
+        return content, ""
 
     def write_content(self, content: Mapping[str, Any]) -> None:
         """Change campaign.toml to this; comments and layout stay. Raises UsageError for what TOML cannot hold."""
@@ -161,26 +181,71 @@ class Session:
         text = file.read_bytes().decode("utf-8-sig") if self.content() else ""
         try:
             write(file, relaid(text, content).encode())
-        except TypeError as error:
+        except (TypeError, ValueError) as error:
             raise UsageError(f"campaign.toml cannot hold this: {error}") from None
 
-    def faults(self, known: Mapping[str, tuple[float, float]]) -> list[dict[str, Any]]:
-        if not self.files() and not (self.campaign / "campaign.toml").exists():
-            return []
-        return [{"text": str(f), "severity": f.severity} for f in check(self.campaign, dict(known))]
+    def without(self, keep: Callable[[Any], bool]) -> None:
+        """Leave out the runs of campaign.toml whose file is not to be kept."""
+        content = self.content()
+        if content and isinstance(content.get("run"), list):
+            runs = [r for r in content["run"] if not isinstance(r, Mapping) or keep(r.get("file"))]
+            self.write_content({**content, "run": runs})
+
+    def drop(self, name: str) -> None:
+        """Take a recording out. Raises UsageError for one that is not there."""
+        if name not in self.files():
+            raise unknown("file", name, self.files())
+        (self.campaign / name).unlink()
+        self.without(lambda file: file != name)
+
+    def judged(self, known: Mapping[str, tuple[float, float]]) -> tuple[list[dict[str, Any]], dict[str, float]]:
+        """What is wrong with the recordings and with the session itself; standard deviations of the noise in SI, as stated or
+        as estimated, where nothing is wrong with the recordings."""
+        strange = self._toml()[1]
+        own = [text for text in (*self.own_faults(), broken(self.folder), strange) if text]
+        found: list[dict[str, Any]] = [{"text": text, "severity": "error"} for text in own]
+        if strange or (not self.files() and not (self.campaign / "campaign.toml").exists()):
+            return found, {}
+        seen = judged(self.campaign, dict(known))
+        campaign, faults = seen.campaign, seen.faults
+        found += [{"text": str(f), "severity": f.severity} for f in faults]
+        return found, campaign.noise if campaign else {}
 
     # -- effects and variants -------------------------------------------------------------------------------
 
     def own_effects(self) -> dict[str, Effect]:
-        return load(self.effects)
+        """Those whose files can be read; `own_faults` tells of the others."""
+        return {id: effect for id, effect in self._own().items() if isinstance(effect, Effect)}
+
+    def own_faults(self) -> list[str]:
+        return [effect for effect in self._own().values() if isinstance(effect, str)]
+
+    def _own(self) -> dict[str, Effect | str]:
+        """By the name of its file, each effect, or why it is none."""
+        found: dict[str, Effect | str] = {}
+        try:
+            files = sources(self.effects) if self.effects.is_dir() else ()
+        except ModelError as error:
+            return {"": f"{error}; mend or remove the file"}
+        for file, content in files:
+            try:
+                found |= checked(((file, content),))
+            except (EffectError, ModelError) as error:
+                found[Path(file).stem] = f"{error}; mend or remove the file"
+        return found
+
+    def write_effect(self, id: str, source: str) -> None:
+        """Put an effect into the catalogue, once its file is known to define it. Raises EffectError where it does not."""
+        file = self.effects / f"{id}.py"
+        checked(((str(file), source.encode()),))
+        write(file, source.encode())
 
     def catalogue(self) -> dict[str, Effect]:
         return {**bundled(), **self.own_effects()}
 
     def history(self) -> dict[str, Any]:
-        """{"at": place, "steps": [{"label", "file", "ladder", "campaign"}]}"""
-        file = self.folder / "history.json"
-        return json.loads(file.read_text()) if file.exists() else {"at": -1, "steps": []}  # type: ignore[no-any-return]
+        """{"at": place, "steps": [{"label", "file", "ladder", "campaign"}]}; what variants there are, where it is broken."""
+        return recovered(self.folder)
 
     def keep(self, variant: Variant | Path, label: str, ladder: Any = None) -> None:
         """One step more; what had been undone is forgotten."""
@@ -191,11 +256,16 @@ class Session:
         self._append(steps, label, file.name, ladder)
 
     def edit(self, content: Mapping[str, Any]) -> None:
-        """Another campaign.toml: one step more, with the same variant, where anything is different."""
+        """Another campaign.toml: one step more, with the same variant, where anything is different.
+
+        Recordings that came while it was written, so that it does not know them, are added to its runs.
+        """
+        variant = self.variant_file.name
+        content = {**content, "run": self._every_run(content["run"])} if isinstance(content.get("run"), list) else content
         steps, before = self._steps_so_far(), self.content() or {}
         self.write_content(content)
         if label := _difference(before, content):
-            self._append(steps, label, steps[-1]["file"], None)
+            self._append(steps, label, variant, None)
 
     def go(self, by: int) -> None:
         """Undo (−1) or redo (1)."""
@@ -204,7 +274,7 @@ class Session:
         if not 0 <= at < len(steps):
             raise UsageError("there is nothing to undo" if by < 0 else "there is nothing to redo")
         steps[history["at"]]["campaign"] = self._snapshot()
-        if steps[at].get("campaign"):
+        if steps[at].get("campaign") and (self.campaigns / steps[at]["campaign"]).is_file():
             self._restore(self.campaigns / steps[at]["campaign"])
         self._write_history(at, steps)
 
@@ -237,10 +307,8 @@ class Session:
         if file.exists() and file.read_bytes() == kept.read_bytes():
             return
         write(file, kept.read_bytes())
-        content = self.content()
-        if content and isinstance(content.get("run"), list):
-            there = set(self.files())
-            self.write_content({**content, "run": [r for r in content["run"] if r.get("file") in there]})
+        there = set(self.files())
+        self.without(lambda file: file in there)
         self.draft()
 
     def _write_history(self, at: int, steps: list[dict[str, Any]]) -> None:
@@ -248,18 +316,17 @@ class Session:
 
     @property
     def variant_file(self) -> Path:
+        """The variant at hand. Raises Failure where every one is gone."""
         history = self.history()
+        if not history["steps"]:
+            raise Failure("this session has no variants left; start new work, and drop its recordings there")
         return self.variants / str(history["steps"][history["at"]]["file"])
 
     def variant(self) -> Variant:
         return read_variant(self.variant_file, self.catalogue())
 
-    def noise(self) -> dict[str, float]:
-        """Standard deviations in SI as the campaign has them, stated or estimated; none where it has faults."""
-        try:
-            return read(self.campaign).noise
-        except CampaignError:
-            return {}
+    def variant_text(self) -> str:
+        return self.variant_file.read_text(encoding="utf-8") if self.history()["steps"] else variant_text(Variant())
 
     def known(self) -> dict[str, float]:
         """What the campaign file says of the chair. Raises Failure where the campaign has faults."""
@@ -307,8 +374,9 @@ def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def write(path: Path, content: bytes) -> None:
-    """Beside its place, then renamed."""
+    """Beside its place, then renamed; for its owner alone."""
     with written(path) as beside:
+        beside.touch(mode=0o600)
         beside.write_bytes(content)
 
 

@@ -6,15 +6,26 @@ import { rms, significant, unitText } from "page/numbers";
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
 const ROLES = { fit: "fit", holdout: "held out" };
-const here = location.pathname.replace(/\/$/, "");
 
 class Refused extends Error {}
 
-async function ask(path, options = {}) {
-  const response = await fetch(`${here}/${path}`, { ...options, headers: { "x-workbench": "1", ...options.headers } });
-  const body = await response.json();
+/** The address of this piece of work. The first page has none until one is begun for it. */
+const place = location.pathname === "/" ? begun() : Promise.resolve(location.pathname.replace(/\/$/, ""));
+
+async function begun() {
+  const { id } = await answered(fetch("/sessions", { method: "POST", headers: { "x-workbench": "1" } }));
+  history.replaceState(null, "", `/s/${id}`);
+  return `/s/${id}`;
+}
+
+async function answered(asked) {
+  const response = await asked, body = await response.json();
   if (!response.ok) throw new Refused(body.error ?? response.statusText);
   return body;
+}
+
+async function ask(path, options = {}) {
+  return answered(fetch(`${await place}/${path}`, { ...options, headers: { "x-workbench": "1", ...options.headers } }));
 }
 
 const send = (method, path, content) => ask(path, { method, body: JSON.stringify(content), headers: { "content-type": "application/json" } });
@@ -42,6 +53,7 @@ class Workbench {
   /** Ask the server for something that answers with the new state, and show it all. */
   async take(act) {
     const state = await tried(act);
+    this.here = location.pathname.replace(/\/$/, "");
     if (state) this.show(state);
     return state;
   }
@@ -82,9 +94,9 @@ class Workbench {
     const { at, steps } = this.state.history;
     byId("history").replaceChildren(...steps.map((step, i) => h("li", { "aria-current": i === at ? "step" : null, class: i > at ? "undone" : null },
       step.label.replaceAll("_", " "), step.ladder ? h("small", {}, fall(step.ladder)) : null)));
-    byId("export-variant").href = `${here}/export/variant.toml`;
-    byId("export-fmu").href = `${here}/export/Wheelchair.fmu`;
-    byId("export-ssv").href = `${here}/export/parameters.ssv`;
+    byId("export-variant").href = `${this.here}/export/variant.toml`;
+    byId("export-fmu").href = `${this.here}/export/Wheelchair.fmu`;
+    byId("export-ssv").href = `${this.here}/export/parameters.ssv`;
   }
 
   showEffects() {
@@ -125,8 +137,8 @@ class Workbench {
     byId("no-report").hidden = Boolean(report);
     frame.hidden = !report;
     byId("export-report").toggleAttribute("href", Boolean(report));
-    if (report) byId("export-report").href = `${here}/export/report.html`;
-    if (report && this.reported !== report) frame.src = `${here}/report?${report}`;
+    if (report) byId("export-report").href = `${this.here}/export/report.html`;
+    if (report && this.reported !== report) frame.src = `${this.here}/report?${report}`;
     this.reported = report;
   }
 
@@ -180,6 +192,8 @@ class Workbench {
 
   upload(files) {
     if (!files.length) return null;
+    const most = this.state?.most_upload, all = files.reduce((sum, [, file]) => sum + file.size, 0);
+    if (all > most) return tried(() => { throw new Refused(`${Math.ceil(all / 1e6)} MB at once is too much for the workbench, which takes ${most / 1e6} MB; add fewer at a time`); });
     const toml = files.find(([path]) => path.endsWith("campaign.toml")), first = toml ?? files[0];
     const base = first[0].slice(0, first[0].lastIndexOf("/") + 1), form = new FormData();
     for (const [path, file] of files) if (!file.name.startsWith(".")) form.append("files", file, path.startsWith(base) ? path.slice(base.length) : path);
