@@ -3,8 +3,6 @@
 
 #include "instance.h"
 
-static const wc_model *const model = &wc_the_model;
-
 /* A direction in which states, inputs and parameters change, and what then changes. */
 typedef struct {
     double dx[WC_MAX_STATES], dw[WC_MAX_INPUTS], dp[WC_MAX_PARAMETERS];

@@ -1,4 +1,7 @@
 /* FMI 2.0, Co-Simulation and Model Exchange: translates calls to instance.h. */
+#ifdef FMI2_OVERRIDE_FUNCTION_PREFIX /* which fmi2Functions.h knows since FMI 2.0.4 */
+#undef FMI2_FUNCTION_PREFIX
+#endif
 #include "fmi2Functions.h"
 
 #include <stdlib.h>
@@ -13,17 +16,17 @@ typedef struct {
     fmi2CallbackLogger logger;
     fmi2ComponentEnvironment environment;
     char name[];
-} component;
+} component2;
 
 /* Calls `call`, with the instance as c, where the phase allows it. */
-#define WHERE(function, legal, call)                               \
+#define WHERE2(function, legal, call)                              \
     do {                                                           \
         wc_instance *c = wc_enter(instance, function, legal);      \
         return c ? (fmi2Status)(call) : fmi2Error;                 \
     } while (0)
 
-static void log_text(void *host, int status, const char *category, const char *text) {
-    component *c = host;
+static void fmi2_log(void *host, int status, const char *category, const char *text) {
+    component2 *c = host;
     if (!c->logger) return;
     char format[1024]; /* the logger takes a format: a percent sign counts twice */
     size_t n = 0;
@@ -49,9 +52,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     fmi2ComponentEnvironment environment = callbacks ? callbacks->componentEnvironment : 0;
     wc_interface interface = type == fmi2ModelExchange ? WC_MODEL_EXCHANGE : WC_COSIMULATION;
     const char *fault = wc_refuse_instance(name, interface, guid);
-    int own = callbacks && callbacks->allocateMemory && callbacks->freeMemory;
-    fmi2CallbackAllocateMemory allocate = own ? callbacks->allocateMemory : calloc;
-    component *c = fault ? 0 : allocate(1, sizeof *c + strlen(name) + 1);
+    /* Not by the importer's allocateMemory: canNotUseMemoryManagementFunctions, as some importers have none that works. */
+    component2 *c = fault ? 0 : calloc(1, sizeof *c + strlen(name) + 1);
     if (!c) {
         if (logger) {
             logger(environment, name ? name : "unnamed", fmi2Error, "logStatusError", "fmi2Instantiate: %s",
@@ -59,15 +61,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         }
         return 0;
     }
-    memset(c, 0, sizeof *c);
     c->logger = logger;
     c->environment = environment;
     strcpy(c->name, name);
     c->chair.standard = "fmi2";
-    c->chair.log = log_text;
+    c->chair.log = fmi2_log;
     c->chair.host = c;
-    c->chair.allocate = allocate;
-    c->chair.release = own ? callbacks->freeMemory : free;
     wc_begin(&c->chair, interface, logging);
     return c;
 }
@@ -75,12 +74,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 void fmi2FreeInstance(fmi2Component instance) { wc_end(instance); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t n, const fmi2String names[]) {
-    WHERE("fmi2SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi2SetDebugLogging", on, n, names));
+    WHERE2("fmi2SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi2SetDebugLogging", on, n, names));
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component instance, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean has_stop, fmi2Real stop) {
-    WHERE("fmi2SetupExperiment", WC_INSTANTIATED,
+    WHERE2("fmi2SetupExperiment", WC_INSTANTIATED,
           wc_set_up(c, "fmi2SetupExperiment", has_tolerance, tolerance, start, has_stop, stop));
 }
 
@@ -92,7 +91,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
-    WHERE("fmi2ExitInitializationMode", WC_INITIALIZING, wc_leave_initialization(c, "fmi2ExitInitializationMode"));
+    WHERE2("fmi2ExitInitializationMode", WC_INITIALIZING, wc_leave_initialization(c, "fmi2ExitInitializationMode"));
 }
 
 fmi2Status fmi2Terminate(fmi2Component instance) {
@@ -112,27 +111,27 @@ fmi2Status fmi2Reset(fmi2Component instance) {
 /* ---- values ---- */
 
 fmi2Status fmi2GetReal(fmi2Component instance, const fmi2ValueReference vr[], size_t n, fmi2Real value[]) {
-    WHERE("fmi2GetReal", WC_ANY_PHASE, wc_get_all(c, "fmi2GetReal", vr, n, WC_REAL, value, WC_DOUBLES));
+    WHERE2("fmi2GetReal", WC_ANY_PHASE, wc_get_all(c, "fmi2GetReal", vr, n, WC_REAL, value, WC_DOUBLES));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component instance, const fmi2ValueReference vr[], size_t n, fmi2Integer value[]) {
-    WHERE("fmi2GetInteger", WC_ANY_PHASE, wc_get_all(c, "fmi2GetInteger", vr, n, WC_ENUMERATION, value, WC_INTS));
+    WHERE2("fmi2GetInteger", WC_ANY_PHASE, wc_get_all(c, "fmi2GetInteger", vr, n, WC_ENUMERATION, value, WC_INTS));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component instance, const fmi2ValueReference vr[], size_t n, fmi2Boolean value[]) {
-    WHERE("fmi2GetBoolean", WC_ANY_PHASE, wc_get_all(c, "fmi2GetBoolean", vr, n, WC_BOOLEAN, value, WC_INTS));
+    WHERE2("fmi2GetBoolean", WC_ANY_PHASE, wc_get_all(c, "fmi2GetBoolean", vr, n, WC_BOOLEAN, value, WC_INTS));
 }
 
 fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], size_t n, const fmi2Real value[]) {
-    WHERE("fmi2SetReal", WC_BEFORE_END, wc_set_all(c, "fmi2SetReal", vr, n, WC_REAL, value, WC_DOUBLES));
+    WHERE2("fmi2SetReal", WC_BEFORE_END, wc_set_all(c, "fmi2SetReal", vr, n, WC_REAL, value, WC_DOUBLES));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component instance, const fmi2ValueReference vr[], size_t n, const fmi2Integer value[]) {
-    WHERE("fmi2SetInteger", WC_BEFORE_END, wc_set_all(c, "fmi2SetInteger", vr, n, WC_ENUMERATION, value, WC_INTS));
+    WHERE2("fmi2SetInteger", WC_BEFORE_END, wc_set_all(c, "fmi2SetInteger", vr, n, WC_ENUMERATION, value, WC_INTS));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component instance, const fmi2ValueReference vr[], size_t n, const fmi2Boolean value[]) {
-    WHERE("fmi2SetBoolean", WC_BEFORE_END, wc_set_all(c, "fmi2SetBoolean", vr, n, WC_BOOLEAN, value, WC_INTS));
+    WHERE2("fmi2SetBoolean", WC_BEFORE_END, wc_set_all(c, "fmi2SetBoolean", vr, n, WC_BOOLEAN, value, WC_INTS));
 }
 
 static const char NO_STRINGS[] = "this FMU has no variables of type String; modelDescription.xml lists all";
@@ -140,39 +139,39 @@ static const char NO_STRINGS[] = "this FMU has no variables of type String; mode
 fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], size_t n, fmi2String value[]) {
     UNUSED(vr);
     UNUSED(value);
-    WHERE("fmi2GetString", WC_ANY_PHASE, n ? wc_unsupported(c, "fmi2GetString", NO_STRINGS) : WC_DONE);
+    WHERE2("fmi2GetString", WC_ANY_PHASE, n ? wc_unsupported(c, "fmi2GetString", NO_STRINGS) : WC_DONE);
 }
 
 fmi2Status fmi2SetString(fmi2Component instance, const fmi2ValueReference vr[], size_t n, const fmi2String value[]) {
     UNUSED(vr);
     UNUSED(value);
-    WHERE("fmi2SetString", WC_ANY_PHASE, n ? wc_unsupported(c, "fmi2SetString", NO_STRINGS) : WC_DONE);
+    WHERE2("fmi2SetString", WC_ANY_PHASE, n ? wc_unsupported(c, "fmi2SetString", NO_STRINGS) : WC_DONE);
 }
 
 /* ---- saved states ---- */
 
 fmi2Status fmi2GetFMUstate(fmi2Component instance, fmi2FMUstate *state) {
-    WHERE("fmi2GetFMUstate", WC_ANY_PHASE, wc_get_state(c, "fmi2GetFMUstate", state));
+    WHERE2("fmi2GetFMUstate", WC_ANY_PHASE, wc_get_state(c, "fmi2GetFMUstate", state));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component instance, fmi2FMUstate state) {
-    WHERE("fmi2SetFMUstate", WC_ANY_PHASE, wc_set_state(c, "fmi2SetFMUstate", state));
+    WHERE2("fmi2SetFMUstate", WC_ANY_PHASE, wc_set_state(c, "fmi2SetFMUstate", state));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component instance, fmi2FMUstate *state) {
-    WHERE("fmi2FreeFMUstate", WC_ANY_PHASE, wc_free_state(c, state));
+    WHERE2("fmi2FreeFMUstate", WC_ANY_PHASE, wc_free_state(state));
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component instance, fmi2FMUstate state, size_t *size) {
-    WHERE("fmi2SerializedFMUstateSize", WC_ANY_PHASE, wc_state_size(c, "fmi2SerializedFMUstateSize", state, size));
+    WHERE2("fmi2SerializedFMUstateSize", WC_ANY_PHASE, wc_state_size(c, "fmi2SerializedFMUstateSize", state, size));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    WHERE("fmi2SerializeFMUstate", WC_ANY_PHASE, wc_serialize(c, "fmi2SerializeFMUstate", state, bytes, size));
+    WHERE2("fmi2SerializeFMUstate", WC_ANY_PHASE, wc_serialize(c, "fmi2SerializeFMUstate", state, bytes, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
-    WHERE("fmi2DeSerializeFMUstate", WC_ANY_PHASE, wc_deserialize(c, "fmi2DeSerializeFMUstate", bytes, size, state));
+    WHERE2("fmi2DeSerializeFMUstate", WC_ANY_PHASE, wc_deserialize(c, "fmi2DeSerializeFMUstate", bytes, size, state));
 }
 
 /* ---- derivatives ---- */
@@ -180,19 +179,19 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component instance, const fmi2ValueReference unknown[], size_t n_unknown,
                                         const fmi2ValueReference known[], size_t n_known, const fmi2Real d_known[],
                                         fmi2Real d_unknown[]) {
-    WHERE("fmi2GetDirectionalDerivative", WC_INITIALIZING | WC_RUNNING | WC_TERMINATED,
+    WHERE2("fmi2GetDirectionalDerivative", WC_INITIALIZING | WC_RUNNING | WC_TERMINATED,
           wc_directional(c, "fmi2GetDirectionalDerivative", unknown, n_unknown, known, n_known, d_known, d_unknown));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component instance, const fmi2ValueReference vr[], size_t n,
                                        const fmi2Integer order[], const fmi2Real value[]) {
-    WHERE("fmi2SetRealInputDerivatives", WC_INSTANTIATED | WC_INITIALIZING | WC_STEPPING | WC_FOR_COSIMULATION,
+    WHERE2("fmi2SetRealInputDerivatives", WC_INSTANTIATED | WC_INITIALIZING | WC_STEPPING | WC_FOR_COSIMULATION,
           wc_input_slopes(c, "fmi2SetRealInputDerivatives", vr, n, order, value));
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component instance, const fmi2ValueReference vr[], size_t n,
                                         const fmi2Integer order[], fmi2Real value[]) {
-    WHERE("fmi2GetRealOutputDerivatives", WC_STEPPING | WC_TERMINATED | WC_FOR_COSIMULATION,
+    WHERE2("fmi2GetRealOutputDerivatives", WC_STEPPING | WC_TERMINATED | WC_FOR_COSIMULATION,
           wc_output_slopes(c, "fmi2GetRealOutputDerivatives", vr, n, order, value));
 }
 
@@ -200,7 +199,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component instance, const fmi2ValueR
 
 fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real point, fmi2Real h, fmi2Boolean no_set_state) {
     UNUSED(no_set_state);
-    WHERE("fmi2DoStep", WC_STEPPING, wc_do_step(c, "fmi2DoStep", point, h));
+    WHERE2("fmi2DoStep", WC_STEPPING, wc_do_step(c, "fmi2DoStep", point, h));
 }
 
 fmi2Status fmi2CancelStep(fmi2Component instance) {
@@ -217,7 +216,7 @@ static fmi2Status no_status(wc_instance *c, const char *function, const char *wh
 fmi2Status fmi2GetStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Status *value) {
     UNUSED(kind);
     UNUSED(value);
-    WHERE("fmi2GetStatus", WC_ANY_PHASE,
+    WHERE2("fmi2GetStatus", WC_ANY_PHASE,
           no_status(c, "fmi2GetStatus", "fmi2DoStep is never pending; take the status it returns"));
 }
 
@@ -235,7 +234,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component instance, const fmi2StatusKind kind, 
 fmi2Status fmi2GetIntegerStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Integer *value) {
     UNUSED(kind);
     UNUSED(value);
-    WHERE("fmi2GetIntegerStatus", WC_ANY_PHASE,
+    WHERE2("fmi2GetIntegerStatus", WC_ANY_PHASE,
           no_status(c, "fmi2GetIntegerStatus", "FMI 2.0 has no such status; ask for another"));
 }
 
@@ -253,7 +252,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component instance, const fmi2StatusKind kin
 fmi2Status fmi2GetStringStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2String *value) {
     UNUSED(kind);
     UNUSED(value);
-    WHERE("fmi2GetStringStatus", WC_ANY_PHASE,
+    WHERE2("fmi2GetStringStatus", WC_ANY_PHASE,
           no_status(c, "fmi2GetStringStatus", "fmi2DoStep is never pending; take the status it returns"));
 }
 
@@ -278,7 +277,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component instance, fmi2EventInfo *info) {
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component instance) {
-    WHERE("fmi2EnterContinuousTimeMode", WC_EVENT, wc_enter_continuous(c, "fmi2EnterContinuousTimeMode"));
+    WHERE2("fmi2EnterContinuousTimeMode", WC_EVENT, wc_enter_continuous(c, "fmi2EnterContinuousTimeMode"));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component instance, fmi2Boolean no_set_state, fmi2Boolean *enter_event_mode,
@@ -294,29 +293,29 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component instance, fmi2Boolean no_se
 }
 
 fmi2Status fmi2SetTime(fmi2Component instance, fmi2Real time) {
-    WHERE("fmi2SetTime", WC_EVENT | WC_CONTINUOUS, wc_set_time(c, "fmi2SetTime", time));
+    WHERE2("fmi2SetTime", WC_EVENT | WC_CONTINUOUS, wc_set_time(c, "fmi2SetTime", time));
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component instance, const fmi2Real x[], size_t n) {
-    WHERE("fmi2SetContinuousStates", WC_CONTINUOUS, wc_set_states(c, "fmi2SetContinuousStates", x, n));
+    WHERE2("fmi2SetContinuousStates", WC_CONTINUOUS, wc_set_states(c, "fmi2SetContinuousStates", x, n));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component instance, fmi2Real x[], size_t n) {
-    WHERE("fmi2GetContinuousStates", WC_EVALUATION,
+    WHERE2("fmi2GetContinuousStates", WC_EVALUATION,
           wc_get_states(c, "fmi2GetContinuousStates", x, n));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component instance, fmi2Real derivatives[], size_t n) {
-    WHERE("fmi2GetDerivatives", WC_EVALUATION,
+    WHERE2("fmi2GetDerivatives", WC_EVALUATION,
           wc_get_rates(c, "fmi2GetDerivatives", derivatives, n));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component instance, fmi2Real indicators[], size_t n) {
-    WHERE("fmi2GetEventIndicators", WC_EVALUATION,
+    WHERE2("fmi2GetEventIndicators", WC_EVALUATION,
           wc_get_crossings(c, "fmi2GetEventIndicators", indicators, n));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component instance, fmi2Real nominals[], size_t n) {
-    WHERE("fmi2GetNominalsOfContinuousStates", WC_EVALUATION,
+    WHERE2("fmi2GetNominalsOfContinuousStates", WC_EVALUATION,
           wc_get_nominals(c, "fmi2GetNominalsOfContinuousStates", nominals, n));
 }

@@ -14,23 +14,23 @@ typedef struct {
     fmi3IntermediateUpdateCallback update;
     fmi3InstanceEnvironment environment;
     int may_return_early;
-} component;
+} component3;
 
 /* Calls `call`, with the instance as c, where the phase allows it. */
-#define WHERE(function, legal, call)                               \
+#define WHERE3(function, legal, call)                              \
     do {                                                           \
         wc_instance *c = wc_enter(instance, function, legal);      \
         return c ? (fmi3Status)(call) : fmi3Error;                 \
     } while (0)
 
-static void log_text(void *host, int status, const char *category, const char *text) {
-    component *c = host;
+static void fmi3_log(void *host, int status, const char *category, const char *text) {
+    component3 *c = host;
     if (c->logger) c->logger(c->environment, (fmi3Status)status, category, text);
 }
 
 /* An internal step is done: the importer may read, set inputs, and ask for an early return. */
 static void tell(void *host, double time, double *end) {
-    component *c = host;
+    component3 *c = host;
     fmi3Boolean early = fmi3False;
     fmi3Float64 until = *end;
     c->update(c->environment, time, fmi3True, fmi3True, fmi3True, c->may_return_early, &early, &until);
@@ -41,11 +41,11 @@ const char *fmi3GetVersion(void) { return fmi3Version; }
 
 /* ---- life ---- */
 
-static component *instantiate(const char *function, fmi3String name, wc_interface interface, fmi3String token,
+static component3 *instantiate(const char *function, fmi3String name, wc_interface interface, fmi3String token,
                               fmi3Boolean logging, fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
                               const char *fault) {
     if (!fault) fault = wc_refuse_instance(name, interface, token);
-    component *c = fault ? 0 : calloc(1, sizeof *c);
+    component3 *c = fault ? 0 : calloc(1, sizeof *c);
     if (!c) {
         char text[256] = "";
         strncat(text, function, 100);
@@ -57,10 +57,8 @@ static component *instantiate(const char *function, fmi3String name, wc_interfac
     c->logger = logger;
     c->environment = environment;
     c->chair.standard = "fmi3";
-    c->chair.log = log_text;
+    c->chair.log = fmi3_log;
     c->chair.host = c;
-    c->chair.allocate = calloc;
-    c->chair.release = free;
     wc_begin(&c->chair, interface, logging);
     return c;
 }
@@ -82,7 +80,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
     UNUSED(visible);
     UNUSED(required); /* every variable can be had in an intermediate update */
     UNUSED(n_required);
-    component *c = instantiate("fmi3InstantiateCoSimulation", name, WC_COSIMULATION, token, logging, environment, logger,
+    component3 *c = instantiate("fmi3InstantiateCoSimulation", name, WC_COSIMULATION, token, logging, environment, logger,
                                event_mode ? "Co-Simulation has no event mode here (hasEventMode is false); pass "
                                             "eventModeUsed = false" : 0);
     if (!c) return 0;
@@ -110,7 +108,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
 void fmi3FreeInstance(fmi3Instance instance) { wc_end(instance); }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t n, const fmi3String names[]) {
-    WHERE("fmi3SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi3SetDebugLogging", on, n, names));
+    WHERE3("fmi3SetDebugLogging", WC_ANY_PHASE, wc_set_logging(c, "fmi3SetDebugLogging", on, n, names));
 }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
@@ -124,7 +122,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_to
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
-    WHERE("fmi3ExitInitializationMode", WC_INITIALIZING, wc_leave_initialization(c, "fmi3ExitInitializationMode"));
+    WHERE3("fmi3ExitInitializationMode", WC_INITIALIZING, wc_leave_initialization(c, "fmi3ExitInitializationMode"));
 }
 
 fmi3Status fmi3Terminate(fmi3Instance instance) {
@@ -289,27 +287,27 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference
 #define NOT_BETWEEN (WC_ANY_PHASE & ~WC_BETWEEN)
 
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
-    WHERE("fmi3GetFMUState", NOT_BETWEEN, wc_get_state(c, "fmi3GetFMUState", state));
+    WHERE3("fmi3GetFMUState", NOT_BETWEEN, wc_get_state(c, "fmi3GetFMUState", state));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
-    WHERE("fmi3SetFMUState", NOT_BETWEEN, wc_set_state(c, "fmi3SetFMUState", state));
+    WHERE3("fmi3SetFMUState", NOT_BETWEEN, wc_set_state(c, "fmi3SetFMUState", state));
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
-    WHERE("fmi3FreeFMUState", NOT_BETWEEN, wc_free_state(c, state));
+    WHERE3("fmi3FreeFMUState", NOT_BETWEEN, wc_free_state(state));
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
-    WHERE("fmi3SerializedFMUStateSize", NOT_BETWEEN, wc_state_size(c, "fmi3SerializedFMUStateSize", state, size));
+    WHERE3("fmi3SerializedFMUStateSize", NOT_BETWEEN, wc_state_size(c, "fmi3SerializedFMUStateSize", state, size));
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    WHERE("fmi3SerializeFMUState", NOT_BETWEEN, wc_serialize(c, "fmi3SerializeFMUState", state, bytes, size));
+    WHERE3("fmi3SerializeFMUState", NOT_BETWEEN, wc_serialize(c, "fmi3SerializeFMUState", state, bytes, size));
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
-    WHERE("fmi3DeserializeFMUState", NOT_BETWEEN, wc_deserialize(c, "fmi3DeserializeFMUState", bytes, size, state));
+    WHERE3("fmi3DeserializeFMUState", NOT_BETWEEN, wc_deserialize(c, "fmi3DeserializeFMUState", bytes, size, state));
 }
 
 /* ---- derivatives ---- */
@@ -402,7 +400,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *need_upd
 }
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
-    WHERE("fmi3EnterContinuousTimeMode", WC_EVENT, wc_enter_continuous(c, "fmi3EnterContinuousTimeMode"));
+    WHERE3("fmi3EnterContinuousTimeMode", WC_EVENT, wc_enter_continuous(c, "fmi3EnterContinuousTimeMode"));
 }
 
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_set_state, fmi3Boolean *enter_event_mode,
@@ -418,28 +416,28 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_set
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
-    WHERE("fmi3SetTime", WC_EVENT | WC_CONTINUOUS, wc_set_time(c, "fmi3SetTime", time));
+    WHERE3("fmi3SetTime", WC_EVENT | WC_CONTINUOUS, wc_set_time(c, "fmi3SetTime", time));
 }
 
 fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 x[], size_t n) {
-    WHERE("fmi3SetContinuousStates", WC_CONTINUOUS, wc_set_states(c, "fmi3SetContinuousStates", x, n));
+    WHERE3("fmi3SetContinuousStates", WC_CONTINUOUS, wc_set_states(c, "fmi3SetContinuousStates", x, n));
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 x[], size_t n) {
-    WHERE("fmi3GetContinuousStates", WC_EVALUATION, wc_get_states(c, "fmi3GetContinuousStates", x, n));
+    WHERE3("fmi3GetContinuousStates", WC_EVALUATION, wc_get_states(c, "fmi3GetContinuousStates", x, n));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[], size_t n) {
-    WHERE("fmi3GetContinuousStateDerivatives", WC_EVALUATION,
+    WHERE3("fmi3GetContinuousStateDerivatives", WC_EVALUATION,
           wc_get_rates(c, "fmi3GetContinuousStateDerivatives", derivatives, n));
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 indicators[], size_t n) {
-    WHERE("fmi3GetEventIndicators", WC_EVALUATION, wc_get_crossings(c, "fmi3GetEventIndicators", indicators, n));
+    WHERE3("fmi3GetEventIndicators", WC_EVALUATION, wc_get_crossings(c, "fmi3GetEventIndicators", indicators, n));
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t n) {
-    WHERE("fmi3GetNominalsOfContinuousStates", WC_EVALUATION,
+    WHERE3("fmi3GetNominalsOfContinuousStates", WC_EVALUATION,
           wc_get_nominals(c, "fmi3GetNominalsOfContinuousStates", nominals, n));
 }
 
@@ -450,11 +448,11 @@ static fmi3Status count(wc_instance *c, const char *function, size_t *n, int num
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *n) {
-    WHERE("fmi3GetNumberOfEventIndicators", WC_ANY_PHASE | WC_FOR_EXCHANGE,
-          count(c, "fmi3GetNumberOfEventIndicators", n, wc_the_model.crossings));
+    WHERE3("fmi3GetNumberOfEventIndicators", WC_ANY_PHASE | WC_FOR_EXCHANGE,
+          count(c, "fmi3GetNumberOfEventIndicators", n, model->crossings));
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *n) {
-    WHERE("fmi3GetNumberOfContinuousStates", WC_ANY_PHASE | WC_FOR_EXCHANGE,
-          count(c, "fmi3GetNumberOfContinuousStates", n, wc_the_model.states));
+    WHERE3("fmi3GetNumberOfContinuousStates", WC_ANY_PHASE | WC_FOR_EXCHANGE,
+          count(c, "fmi3GetNumberOfContinuousStates", n, model->states));
 }

@@ -1,7 +1,8 @@
 /* The seam between generated physics and hand-written protocol.
  *
- * A generated file defines `wc_the_model`: the table of variables, the kernels, and the few rules that
- * tie them together. All other files here read nothing else of the physics.
+ * The generated model_data.c defines `model`: the table of variables, the kernels, and the few rules that
+ * tie them together. All other files here read nothing else of the physics. They are parts of one file to compile,
+ * all.c, which includes the generated ones first.
  */
 #ifndef WC_MODEL_H
 #define WC_MODEL_H
@@ -48,6 +49,7 @@ typedef struct {
 typedef struct {
     int place;    /* among the kernel's states */
     int variable; /* the value reference under which it is an output */
+    double nominal;
 } wc_state;
 
 typedef struct {
@@ -67,7 +69,5 @@ typedef struct {
     int crossings;
     const int *crossing; /* the outputs, true or false, that switch where the kernel's z crosses zero */
 } wc_model;
-
-extern const wc_model wc_the_model;
 
 #endif

@@ -5,8 +5,6 @@
 
 #define SNAP 1e-6 /* of the grid: this near a grid point is on it, as in advance.c */
 
-static const wc_model *const model = &wc_the_model;
-
 static const char *why(wc_status status) {
     switch (status) {
     case WC_NOT_FINITE: return "the equations give NaN or infinity";
@@ -30,7 +28,7 @@ wc_result wc_set_up(wc_instance *c, const char *function, int has_tolerance, dou
         return WC_FAILED;
     }
     wc_saved *s = &c->now;
-    s->tolerance = !has_tolerance ? model->tolerance : tolerance < 1e-12 ? 1e-12 : tolerance > 1e-3 ? 1e-3 : tolerance;
+    s->tolerance = !has_tolerance ? model->tolerance : fmin(fmax(tolerance, WC_LEAST_TOLERANCE), WC_MOST_TOLERANCE);
     s->start_time = s->time = start;
     s->has_stop = has_stop ? 1 : 0;
     s->stop_time = has_stop ? stop : 0;
@@ -125,23 +123,14 @@ static const wc_variable *input(int index) {
     return 0;
 }
 
-/* Inputs at the end of a step over which they go with their slopes. */
-static wc_result inputs_after(const wc_instance *c, const char *function, double h, double *w1) {
+/* Inputs at the end of a step over which they go with their slopes, as far as their bounds. */
+static void inputs_after(wc_instance *c, double h, double *w1) {
     const int inputs = wc_kernel_of(c)->inputs;
     memcpy(w1, c->now.w, sizeof(double) * (size_t)inputs);
     for (int i = 0; i < inputs; i++) {
         if (c->now.slope[i] == 0) continue;
-        const wc_variable *v = input(i);
-        double end = c->now.w[i] + c->now.slope[i] * h;
-        double past = end > v->max ? end - v->max : v->min - end;
-        if (past > 1e-9 * (1 + fabs(end))) { /* less is rounding, and ends at the bound */
-            wc_say(c, WC_LOG_DISCARD, "%s: the derivative of %s would take it to %s, outside %.10g to %.10g; give a "
-                   "derivative that stays inside", function, v->name, wc_valued(v, end).text, v->min, v->max);
-            return WC_DISCARDED;
-        }
-        w1[i] = end > v->max ? v->max : end < v->min ? v->min : end;
+        w1[i] = wc_within(c, input(i), c->now.w[i] + c->now.slope[i] * h);
     }
-    return WC_DONE;
 }
 
 static wc_result refuse_step(const wc_instance *c, const char *function, double point, double h) {
@@ -157,6 +146,11 @@ static wc_result refuse_step(const wc_instance *c, const char *function, double 
                "restore a state", function, wc_number(point).text, s->time);
         return WC_DISCARDED;
     }
+    if (s->elapsed + h > WC_LONGEST) {
+        wc_say(c, WC_LOG_DISCARD, "%s: the step would end %s s after the start; the longest run is %g s", function,
+               wc_number(s->elapsed + h).text, WC_LONGEST);
+        return WC_DISCARDED;
+    }
     if (s->has_stop && point + h > s->stop_time + slack) {
         wc_say(c, WC_LOG_ERROR, "%s: the step ends at %.9g s, after the stop time %.9g s; give a later stop time or none",
                function, point + h, s->stop_time);
@@ -166,13 +160,13 @@ static wc_result refuse_step(const wc_instance *c, const char *function, double 
 }
 
 /* One stretch of length h, to the time `to`. */
-static wc_result go(wc_instance *c, const char *function, double to, double h) {
+static wc_result go_to(wc_instance *c, const char *function, double to, double h) {
     wc_saved *s = &c->now;
     const wc_kernel *k = wc_kernel_of(c);
     double w1[WC_MAX_INPUTS];
-    wc_result result = inputs_after(c, function, h, w1);
-    if (result == WC_DONE) result = wc_settle(c, function);
+    wc_result result = wc_settle(c, function);
     if (result != WC_DONE) return result;
+    inputs_after(c, h, w1);
     double added = h - s->lost, elapsed = s->elapsed + added;
     wc_accuracy accuracy = {s->tolerance, model->grid};
     wc_status status = wc_advance(k, s->p, accuracy, s->elapsed, elapsed, s->w, w1, s->x, 0);
@@ -193,7 +187,7 @@ static wc_result go(wc_instance *c, const char *function, double to, double h) {
 static double next_stop(const wc_saved *s, double end) {
     if (!(model->grid > 0)) return end;
     double next = (floor(s->elapsed / model->grid + SNAP) + 1) * model->grid - s->elapsed + s->time;
-    return next < end - SNAP * model->grid ? next : end;
+    return next > s->time && next < end - SNAP * model->grid ? next : end; /* far from zero a time may not move */
 }
 
 /* To `end` from grid point to grid point, and at each the importer may look, set inputs, or ask to stop. */
@@ -201,7 +195,7 @@ static wc_result go_with_pauses(wc_instance *c, const char *function, double end
     wc_saved before = c->now;
     while (c->now.time < end) {
         double to = next_stop(&c->now, end);
-        wc_result result = go(c, function, to, to - c->now.time);
+        wc_result result = go_to(c, function, to, to - c->now.time);
         if (result != WC_DONE) {
             c->now = before;
             c->y_valid = c->rate_valid = 0;
@@ -221,7 +215,7 @@ wc_result wc_do_step(wc_instance *c, const char *function, double point, double 
     wc_saved *s = &c->now;
     wc_result result = refuse_step(c, function, point, h);
     if (result != WC_DONE) return result;
-    result = c->pause ? go_with_pauses(c, function, point + h) : go(c, function, point + h, h);
+    result = c->pause ? go_with_pauses(c, function, point + h) : go_to(c, function, point + h, h);
     if (result != WC_DONE) return result;
     memcpy(s->last_slope, s->slope, sizeof s->slope);
     memset(s->slope, 0, sizeof s->slope);
@@ -287,7 +281,7 @@ wc_result wc_get_rates(wc_instance *c, const char *function, double *rate, size_
 wc_result wc_get_nominals(wc_instance *c, const char *function, double *nominal, size_t n) {
     wc_result result = refuse_array(c, function, nominal, n);
     if (result != WC_DONE) return result;
-    for (size_t i = 0; i < n; i++) nominal[i] = wc_kernel_of(c)->nominal[model->state[i].place];
+    for (size_t i = 0; i < n; i++) nominal[i] = model->state[i].nominal;
     return WC_DONE;
 }
 

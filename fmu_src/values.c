@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-
-static const wc_model *const model = &wc_the_model;
 
 /* ---- log ---- */
 
@@ -112,7 +111,7 @@ void wc_reset(wc_instance *c) {
     c->now.phase = WC_INSTANTIATED;
     c->now.restart = 1;
     c->y_valid = c->rate_valid = 0;
-    c->warned = 0;
+    c->warned = c->clamped = 0;
     for (int i = 0; i < model->variables; i++) {
         const wc_variable *v = &model->variable[i];
         if (v->kind == WC_PARAMETER) c->now.p[v->index] = v->start;
@@ -142,8 +141,8 @@ wc_instance *wc_alive(void *instance) {
 void wc_end(void *instance) {
     wc_instance *c = wc_alive(instance);
     if (!c) return;
-    memset(c->now.magic, 0, sizeof c->now.magic);
-    c->release(c);
+    *(volatile char *)c->now.magic = 0; /* which a compiler that knows free would leave out */
+    free(c);
 }
 
 wc_instance *wc_enter(void *instance, const char *function, int legal) {
@@ -174,9 +173,13 @@ wc_result wc_unsupported(void *instance, const char *function, const char *why) 
 
 /* ---- values ---- */
 
-int wc_law_of(const wc_instance *c) { return model->law < 0 ? 0 : (int)c->now.p[model->law] - 1; }
+static int law_by(const double *p) { return model->law < 0 ? 0 : (int)p[model->law] - 1; }
 
-const wc_kernel *wc_kernel_of(const wc_instance *c) { return model->kernels[wc_law_of(c)]; }
+int wc_law_of(const wc_instance *c) { return law_by(c->now.p); }
+
+const wc_kernel *wc_kernel_by(const double *p) { return model->kernels[law_by(p)]; }
+
+const wc_kernel *wc_kernel_of(const wc_instance *c) { return wc_kernel_by(c->now.p); }
 
 const wc_variable *wc_find(const wc_instance *c, const char *function, unsigned reference, wc_type type) {
     static const char *const types[] = {"real number", "enumeration", "Boolean"};
@@ -239,23 +242,31 @@ static wc_result refuse_value(const wc_instance *c, const wc_variable *v, double
     return WC_DISCARDED;
 }
 
-/* In Model Exchange an algebraic row may not become a differential one, nor the other way. */
-static wc_result refuse_new_states(const wc_instance *c, const wc_variable *v, double value) {
-    const wc_kernel *k = wc_kernel_of(c);
-    double p[WC_MAX_PARAMETERS], mass[WC_MAX_STATES];
-    memcpy(p, c->now.p, sizeof p);
-    p[v->index] = value;
+int wc_same_states(const wc_kernel *k, const double *p) {
+    double mass[WC_MAX_STATES];
     const double *arg[] = {p};
     double *res[] = {mass};
     k->mass(arg, res, 0, 0, 0);
     int differential = 0, state = 0;
     for (int i = 0; i < k->states; i++) differential += mass[i] != 0;
     for (int i = 0; i < model->states; i++) state += mass[model->state[i].place] != 0;
-    if (differential == model->states && state == model->states) return WC_DONE;
+    return differential == model->states && state == model->states;
+}
+
+/* In Model Exchange an algebraic row may not become a differential one, nor the other way. */
+static wc_result refuse_new_states(const wc_instance *c, const wc_variable *v, double value) {
+    double p[WC_MAX_PARAMETERS];
+    memcpy(p, c->now.p, sizeof p);
+    p[v->index] = value;
+    if (wc_same_states(wc_kernel_of(c), p)) return WC_DONE;
     wc_say(c, WC_LOG_DISCARD, "%s = %s would change the number of continuous states, which Model Exchange fixes when the "
            "FMU is built; build it with such a value, or use Co-Simulation; the old value %s stays", v->name,
            wc_valued(v, value).text, wc_valued(v, c->now.p[v->index]).text);
     return WC_DISCARDED;
+}
+
+int wc_possible(const wc_variable *v, double value) {
+    return isfinite(value) && value >= v->min && value <= v->max && (!v->choices || value == floor(value));
 }
 
 /* May this variable be given this value now? Says why not. */
@@ -281,8 +292,22 @@ static wc_result check(const wc_instance *c, const char *function, const wc_vari
                s->phase == WC_BETWEEN ? "between steps" : "in event mode");
         return WC_FAILED;
     }
-    if (!(value >= v->min && value <= v->max && isfinite(value))) return refuse_value(c, v, value, old);
-    return v->kind == WC_PARAMETER && s->interface == WC_MODEL_EXCHANGE ? refuse_new_states(c, v, value) : WC_DONE;
+    if (v->kind == WC_INPUT) return isfinite(value) ? WC_DONE : refuse_value(c, v, value, old);
+    if (!wc_possible(v, value)) return refuse_value(c, v, value, old);
+    return s->interface == WC_MODEL_EXCHANGE ? refuse_new_states(c, v, value) : WC_DONE;
+}
+
+double wc_within(wc_instance *c, const wc_variable *v, double value) {
+    if (value >= v->min && value <= v->max) return value;
+    double bound = value < v->min ? v->min : v->max, range = v->max - v->min;
+    int rounding = fabs(value - bound) <= 1e-9 * (isfinite(range) ? range : 1 + fabs(bound));
+    if (rounding || c->clamped >> v->index & 1) return bound;
+    c->clamped |= (uint32_t)1 << v->index;
+    const char *which = value < v->min ? "minimum" : "maximum";
+    wc_say(c, WC_LOG_WARNING, "t = %.9g s: %s = %s is %s its %s of %s; the %s is used instead, now and whenever this input is "
+           "out of bounds", c->now.time, v->name, wc_valued(v, value).text, value < v->min ? "below" : "above", which,
+           wc_valued(v, bound).text, which);
+    return bound;
 }
 
 /* Gives a checked value. */
@@ -332,7 +357,11 @@ wc_result wc_set_all(wc_instance *c, const char *function, const unsigned vr[], 
         wc_result result = check(c, function, v, value_at(values, array, i));
         if (result != WC_DONE) return result;
     }
-    for (size_t i = 0; i < n; i++) set(c, &model->variable[vr[i]], value_at(values, array, i));
+    for (size_t i = 0; i < n; i++) {
+        const wc_variable *v = &model->variable[vr[i]];
+        double value = value_at(values, array, i);
+        set(c, v, v->kind == WC_INPUT ? wc_within(c, v, value) : value);
+    }
     return WC_DONE;
 }
 

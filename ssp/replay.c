@@ -38,6 +38,6 @@ static int recorded_forward(const double **arg, double **res, long long *iw, dou
     return failed;
 }
 
-const wc_kernel replay_kernel = {
+WC_LOCAL const wc_kernel replay_kernel = {
     SIZES, unrecorded_nominal, unrecorded_start, unrecorded_project, unrecorded_step, recorded_output, recorded_forward,
     unrecorded_rate, unrecorded_mass};

@@ -146,9 +146,14 @@ class Input(Quantity):
 
 @dataclass(frozen=True)
 class State(Quantity):
-    """An unknown with a row in M x' = f. `nominal` is the size its error is measured against."""
+    """An unknown with a row in M x' = f.
+
+    `nominal` is the size our own steps measure its error against. What an importer is told is the nominal of the output of the
+    same name, the size that the state usually has; `usual` is that where the output is made from the state.
+    """
 
     nominal: float = 1.0
+    usual: float | None = None  # as `nominal` where not given
 
 
 # Results stay within these, by unit: what lies beyond is no wheelchair. FMI asks for bounds.

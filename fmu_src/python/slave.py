@@ -11,21 +11,31 @@ import importlib.util
 import json
 import sys
 from importlib import import_module
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
-from pythonfmu import Boolean, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Integer, Real
-from pythonfmu.enums import Fmi2Status
+try:
+    import casadi  # noqa: F401 - the model's own files need it
+    import numpy as np
+    from pythonfmu import Boolean, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Integer, Real
+    from pythonfmu.enums import Fmi2Status
+except ImportError as error:
+    # By the log, and for hosts that show none on the console.
+    reason = (f"this FMU needs the package {error.name}, which the Python of this host cannot import ({error}); pip install "
+              "casadi numpy, as documentation/externalDependencies.txt says")  # fmt: skip
+    print(reason, file=sys.stderr, flush=True)
+    raise ImportError(reason) from error
 
 PACKAGE = "wheelchair_package"
 KIND = {"Real": Real, "Enumeration": Integer, "Boolean": Boolean}
 CAUSALITY = {"time": Fmi2Causality.local, "parameter": Fmi2Causality.parameter, "input": Fmi2Causality.input,
              "output": Fmi2Causality.output}  # fmt: skip
+PHASES = ("instantiated", "initializing", "stepping")
 INITIAL = {"parameter": Fmi2Initial.exact, "output": Fmi2Initial.calculated}
-KEPT = ("phase", "tolerance", "start_time", "stop_time", "time", "elapsed", "lost", "restart", "stale", "values")
+TIMES = ("tolerance", "start_time", "stop_time", "time", "elapsed", "lost")
+KEPT = ("phase", *TIMES, "restart", "stale", "values")
 
 
 def load(resources: Path) -> SimpleNamespace:
@@ -68,6 +78,7 @@ class WheelchairPython(Fmi2Slave):
         self.values = {v["name"]: v["start"] for v in self.table if v["start"] is not None}
         self.x = self.y = None
         self.warned: set[int] = set()
+        self.clamped: set[str] = set()  # inputs of which it has been said that they are out of bounds
         self.law = 0  # of the model in use; 0: none yet
         for v in self.table:
             self._register(v)
@@ -107,7 +118,23 @@ class WheelchairPython(Fmi2Slave):
             if fault := self._fault(self.table[vr], value):
                 return self._say(Fmi2Status.discard, fault)
         for vr, value in zip(vrs, values, strict=True):
-            self._assign(self.table[vr], value)
+            v = self.table[vr]
+            self._assign(v, self._within(v, value) if v["kind"] == "input" else value)
+
+    def _within(self, v: dict[str, Any], value: float) -> float:
+        """The value that an input takes: itself, or the bound that it is beyond; said once where that is more than rounding."""
+        lower, upper = (v[end] if v[end] is not None else sign * inf for end, sign in (("min", -1), ("max", 1)))
+        if lower <= value <= upper:
+            return value
+        bound, which, side = (lower, "minimum", "below") if value < lower else (upper, "maximum", "above")
+        range_ = upper - lower
+        rounding = abs(value - bound) <= 1e-9 * (range_ if isfinite(range_) else 1 + abs(bound))
+        if not rounding and v["name"] not in self.clamped:
+            self.clamped.add(v["name"])
+            self._say(Fmi2Status.warning, f"t = {self.time:.9g} s: {v['name']} = {_shown(v, value)} is {side} its {which} of "
+                                          f"{_shown(v, bound)}; the {which} is used instead, now and whenever this input is "
+                                          "out of bounds")  # fmt: skip
+        return bound
 
     def _fault(self, v: dict[str, Any], value: float) -> str:
         """Why this variable may not take this value now, or nothing."""
@@ -121,6 +148,8 @@ class WheelchairPython(Fmi2Slave):
         lower, upper = v["min"], v["max"]
         if not isfinite(value):
             return f"{name} = {value} is not a finite number; {stays}"
+        if v["kind"] == "input":
+            return ""  # its bounds clamp it
         if v["choices"] and not lower <= value <= upper:
             listed = ", ".join(f"{i} ({c})" for i, c in enumerate(v["choices"], 1) if lower <= i <= upper)
             return f"{name} = {value} is none of its choices {listed}; {stays}"
@@ -243,11 +272,23 @@ class WheelchairPython(Fmi2Slave):
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         if not isinstance(state, dict) or state.get("token") != self.interface["token"] or not {*KEPT, "x"} <= set(state):
             return self._say(Fmi2Status.error, "the state was not saved by this FMU; the present one stays")
+        if not self._possible(state):
+            return self._say(Fmi2Status.error, "the state holds values that this FMU never has; the present one stays")
         for name in KEPT:
             setattr(self, name, state[name])
         self.values = dict(state["values"])
         self.x, self.y = None if state["x"] is None else np.array(state["x"], float), None
         self._gather()
+
+    def _possible(self, state: dict[str, Any]) -> bool:
+        """Could a run have left this state?"""
+        settable = {v["name"]: v for v in self.table if v["start"] is not None}
+        values, x, times = state["values"], state["x"], [state[name] for name in TIMES if state[name] is not None]
+        if not isinstance(values, dict) or values.keys() != settable.keys() or state["phase"] not in PHASES:
+            return False
+        return (all(_lawful(v, values[name]) for name, v in settable.items())
+                and all(map(_number, times))
+                and (x is None or (isinstance(x, list) and all(map(_number, x)))))  # fmt: skip
 
     @staticmethod
     def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
@@ -255,6 +296,16 @@ class WheelchairPython(Fmi2Slave):
             return json.loads(state.decode("utf-8"))
         except ValueError:
             return {}  # refused, with a sentence, when it is set
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and isfinite(value)
+
+
+def _lawful(v: dict[str, Any], value: Any) -> bool:
+    """Can this variable have this value?"""
+    above = _number(value) and (v["min"] is None or v["min"] <= value)
+    return above and (v["max"] is None or value <= v["max"]) and (not v["choices"] or value == int(value))
 
 
 def _shown(v: dict[str, Any], value: float) -> str:

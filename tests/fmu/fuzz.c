@@ -4,7 +4,8 @@
  *
  * Each seed is one life of four instances, two by each version of FMI, of 400 calls. Compiled together with the FMU's
  * sources under a sanitizer, so that a fault stops the program; the last line on stderr names the seed. Every status must be
- * one of OK, Warning, Discard, Error, and whatever happens, a reset instance must afterwards step as a new one does.
+ * one of OK, Warning, Discard, Error, and whatever happens, a reset instance must afterwards step as a new one does. Among the
+ * calls are saved states with forged content and a right checksum; how many were taken and refused is printed.
  *
  * With -DLIBFUZZER -fsanitize=fuzzer each life is an input of libFuzzer's: every eight bytes are the seed of one call, so that
  * lives which reach new code are kept and go on in other ways. TOKEN, VARIABLES and STATES then come from the environment.
@@ -17,13 +18,14 @@
 
 #include "fmi2Functions.h"
 #include "fmi3Functions.h"
+#include "instance.h" /* for the layout of saved states */
 
 #define CALLS 400
 #define MOST 8
 
 static const char *token;
 static unsigned variables, states;
-static uint64_t random_state, bad_status, sentences;
+static uint64_t random_state, bad_status, sentences, forgeries_taken, forgeries_refused;
 
 static uint64_t draw(void) { /* xorshift64* */
     random_state ^= random_state >> 12;
@@ -97,8 +99,6 @@ static void update(fmi3InstanceEnvironment e, double time, bool set, bool get, b
     }
 }
 
-/* ---- one random call ---- */
-
 static double clock_of2(fmi2Component c) {
     unsigned time = 0;
     double t = 0;
@@ -111,11 +111,65 @@ static fmi3FMUState kept3;
 static unsigned char bytes[1 << 14];
 static size_t saved2, saved3;
 
+/* ---- forged states ---- */
+
+static int32_t whole(void) { return below(3) ? (int32_t)below(80) - 2 : (int32_t)draw(); }
+
+static double any(void) { return below(2) ? number() : (double)below(9); }
+
+static void forge_once(wc_saved *s) {
+    double *times[] = {&s->tolerance, &s->start_time, &s->stop_time, &s->time, &s->elapsed, &s->lost};
+    int32_t *words[] = {&s->interface, &s->phase, &s->has_stop, &s->restart, &s->stale, &s->jumped};
+    switch (below(10)) {
+    case 0: case 1: case 2: s->p[below(WC_MAX_PARAMETERS)] = any(); break;
+    case 3: s->w[below(WC_MAX_INPUTS)] = any(); break;
+    case 4: s->x[below(WC_MAX_STATES)] = any(); break;
+    case 5: s->held[below(WC_MAX_CROSSINGS)] = any(); break;
+    case 6: (below(2) ? s->slope : s->last_slope)[below(WC_MAX_INPUTS)] = any(); break;
+    case 7: *times[below(6)] = any(); break;
+    case 8: *words[below(6)] = whole(); break;
+    default: ((unsigned char *)&s->tolerance)[below(sizeof *s - offsetof(wc_saved, tolerance))] ^= (unsigned char)draw();
+    }
+}
+
+/* What is in `bytes`, with something else in it and the checksum to go with that. */
+static void forge(void) {
+    wc_saved s;
+    memcpy(&s, bytes, sizeof s);
+    for (unsigned i = below(3) + 1; i; i--) forge_once(&s);
+    const unsigned char *byte = (const unsigned char *)&s.tolerance, *end = (const unsigned char *)(&s + 1);
+    s.checksum = 14695981039346656037u;
+    while (byte < end) s.checksum = (s.checksum ^ *byte++) * 1099511628211u;
+    memcpy(bytes, &s, sizeof s);
+}
+
+static void count_forgery(int status) {
+    check(status);
+    if (status == 0) forgeries_taken++;
+    else forgeries_refused++;
+}
+
+static void take_forged2(fmi2Component c) {
+    if (fmi2GetFMUstate(c, &kept2) != fmi2OK || fmi2SerializeFMUstate(c, kept2, (char *)bytes, sizeof bytes) != fmi2OK) return;
+    forge();
+    fmi2Status status = fmi2DeSerializeFMUstate(c, (char *)bytes, sizeof(wc_saved), &kept2);
+    count_forgery(status == fmi2OK ? fmi2SetFMUstate(c, kept2) : status);
+}
+
+static void take_forged3(fmi3Instance c) {
+    if (fmi3GetFMUState(c, &kept3) != fmi3OK || fmi3SerializeFMUState(c, kept3, bytes, sizeof bytes) != fmi3OK) return;
+    forge();
+    fmi3Status status = fmi3DeserializeFMUState(c, bytes, sizeof(wc_saved), &kept3);
+    count_forgery(status == fmi3OK ? fmi3SetFMUState(c, kept3) : status);
+}
+
+/* ---- one random call ---- */
+
 static void call2(fmi2Component c) {
     size_t n = fill(), m = below(MOST + 1);
     fmi2Boolean a, b;
     fmi2EventInfo info;
-    switch (below(34)) {
+    switch (below(36)) {
     case 0: check(fmi2SetupExperiment(c, (int)below(2), number(), below(3) ? 0 : number(), (int)below(2), number())); break;
     case 1: case 2: check(fmi2EnterInitializationMode(c)); break;
     case 3: case 4: check(fmi2ExitInitializationMode(c)); break;
@@ -150,6 +204,7 @@ static void call2(fmi2Component c) {
         break;
     case 31: check(fmi2GetDerivatives(c, results, below(9) ? states : n)); check(fmi2GetEventIndicators(c, results, n)); break;
     case 32: check(fmi2CompletedIntegratorStep(c, 1, &a, below(9) ? &b : 0)); break;
+    case 33: case 34: take_forged2(c); break;
     default: check(fmi2GetReal(c, below(2) ? 0 : vr, n, below(2) ? 0 : values)); check(fmi2SetDebugLogging(c, 1, n, 0)); break;
     }
 }
@@ -160,7 +215,7 @@ static void call3(fmi3Instance c) {
     double t = 0;
     unsigned time = 0;
     inside = c;
-    switch (below(30)) {
+    switch (below(32)) {
     case 0: case 1: check(fmi3EnterInitializationMode(c, below(2), number(), below(3) ? 0 : number(), below(2), number())); break;
     case 2: case 3: check(fmi3ExitInitializationMode(c)); break;
     case 4: check(below(8) ? fmi3OK : fmi3Terminate(c)); break;
@@ -193,6 +248,7 @@ static void call3(fmi3Instance c) {
         check(fmi3SetContinuousStates(c, results, below(9) ? states : n));
         check(fmi3GetContinuousStateDerivatives(c, results, below(9) ? states : n));
         break;
+    case 29: case 30: take_forged3(c); break;
     case 28: check(fmi3SetTime(c, number())); check(fmi3EnterEventMode(c)); check(fmi3CompletedIntegratorStep(c, true, &a, &b)); break;
     default: check(fmi3GetClock(c, vr, n, truth)); check(fmi3EnterConfigurationMode(c)); check(fmi3EnterStepMode(c)); break;
     }
@@ -283,7 +339,8 @@ int main(int n, char **word) {
         live(seed);
     }
     fprintf(stderr, "\n");
-    printf("%llu sentences\n", (unsigned long long)sentences);
+    printf("%llu sentences %llu taken %llu refused\n", (unsigned long long)sentences, (unsigned long long)forgeries_taken,
+           (unsigned long long)forgeries_refused);
     return bad_status ? 1 : 0;
 }
 

@@ -4,8 +4,9 @@
  *
  * The last arguments are value references. MODE: final prints the outputs after the last step; time
  * prints median and worst cost of set + doStep + get in nanoseconds, the worst over steps of the
- * smallest of five repeats; memory prints by how many KiB the process has grown and how often the
- * FMU has asked for memory since it was instantiated; reset prints how many of STEPS runs after
+ * smallest of five repeats; memory prints by how many KiB the process has grown and how often anything in it has asked for
+ * memory in all steps but the first thousand; freed prints what doStep and get say of an instance that has been freed, and how
+ * often it was given back when freed twice; reset prints how many of STEPS runs after
  * fmi2Reset differ in any byte from the first; cycles makes and frees STEPS instances, each with a run, and prints the same
  * and by how many KiB the process has grown since the first tenth of them; minute measures as time does, over a ride with
  * turns, stops and reversals, and also prints the cost at rest in its last eighth over that in motion in its first; ride drives
@@ -40,13 +41,47 @@ static fmi2ResetTYPE *reset;
 static fmi2TerminateTYPE *terminate;
 static fmi2FreeInstanceTYPE *release;
 
-static long allocations;
+static long allocations, given_back;
+static void *kept; /* memory that is not given back, though it has been freed */
 static fmi2ValueReference in[2], out[MOST];
 static size_t outs;
 
-static void *count_calloc(size_t n, size_t size) {
+/* In place of the C library's functions, for the FMU too. */
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
+extern void __libc_free(void *);
+
+void *malloc(size_t size) {
     allocations++;
-    return calloc(n, size);
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t n, size_t size) {
+    allocations++;
+    return __libc_calloc(n, size);
+}
+
+void *realloc(void *old, size_t size) {
+    allocations++;
+    return __libc_realloc(old, size);
+}
+
+void free(void *memory) {
+    if (memory && memory == kept) {
+        given_back++;
+    } else {
+        __libc_free(memory);
+    }
+}
+
+/* The FMU says that it cannot use them. */
+static void *broken_allocate(size_t n, size_t size) {
+    fprintf(stderr, "the FMU asks the host for %zu times %zu bytes\n", n, size);
+    exit(1);
+}
+
+static void broken_free(void *memory) {
+    fprintf(stderr, "the FMU gives the host back %p\n", memory);
+    exit(1);
 }
 
 static void logger(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
@@ -225,6 +260,18 @@ static long count_cycles(const char *guid, const fmi2CallbackFunctions *callback
     return 0;
 }
 
+static void print_after_free(const char *guid, const fmi2CallbackFunctions *callbacks) {
+    double y[MOST];
+    fmi2Component c = kept = instantiate("freed", fmi2CoSimulation, guid, "", callbacks, fmi2False, fmi2False);
+    begin(c);
+    step(c, 0, 0.01, y);
+    release(c);
+    printf("%d %d ", (int)do_step(c, 0.01, 0.01, fmi2True), (int)get(c, out, outs, y));
+    release(c);
+    printf("%ld\n", given_back);
+    kept = 0;
+}
+
 int main(int n, char **word) {
     if (n < 9 || n - 8 > MOST) return 2;
     void *library = dlopen(word[1], RTLD_NOW | RTLD_LOCAL);
@@ -247,7 +294,7 @@ int main(int n, char **word) {
     for (int i = 0; i < 2; i++) in[i] = (fmi2ValueReference)atoi(word[6 + i]);
     for (outs = 0; (int)outs < n - 8; outs++) out[outs] = (fmi2ValueReference)atoi(word[8 + outs]);
 
-    fmi2CallbackFunctions callbacks = {logger, count_calloc, free, 0, 0};
+    fmi2CallbackFunctions callbacks = {logger, broken_allocate, broken_free, 0, 0};
     fmi2Component c = instantiate("chair", fmi2CoSimulation, word[2], "", &callbacks, fmi2False, fmi2False);
     if (!c) return 1;
     begin(c);
@@ -260,7 +307,10 @@ int main(int n, char **word) {
         for (long i = 0; i < 1000; i++) step(c, i, h, y);
         long before = resident(), asked = allocations;
         for (long i = 1000; i < steps; i++) step(c, i, h, y);
-        printf("%ld %ld\n", resident() - before, allocations - asked);
+        asked = allocations - asked;
+        printf("%ld %ld\n", resident() - before, asked);
+    } else if (!strcmp(word[3], "freed")) {
+        print_after_free(word[2], &callbacks);
     } else if (!strcmp(word[3], "reset")) {
         printf("%ld\n", count_different(c, steps, h));
     } else if (!strcmp(word[3], "minute")) {

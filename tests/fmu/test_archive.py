@@ -69,15 +69,25 @@ def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     assert not {name for name in asked if re.search("lock|thread|sem_|errno", name)}
 
 
-@pytest.mark.parametrize("name", ["fmi2.c", "fmi3.c", "values.c", "motion.c", "derivatives.c", "saved.c", "advance.c",
-                                  "model_data.c"])  # fmt: skip
-def test_compiles_without_a_warning(name, native, native3, tmp_path):
-    archive = native3 if name == "fmi3.c" else native
-    done = subprocess.run([*compiler.command(), "-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
-                           "-ffp-contract=off", "-fPIC", "-c", f"-I{native_flavour.headers()}",
-                           str(archive.folder / "sources" / name), "-o", str(tmp_path / "object.o")],
-                          capture_output=True, text=True)  # fmt: skip
-    assert done.returncode == 0, done.stderr
+@pytest.mark.parametrize("version", ["2", "3"])
+def test_compiles_without_a_warning_and_shows_fmi_only(version, native, native3, tmp_path):
+    unit = {"2": native, "3": native3}[version].folder / "sources" / "all.c"
+    _compile("-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fPIC", "-c", str(unit), "-o",
+             str(tmp_path / "object.o"))  # fmt: skip
+    exported = _lines("nm", "--extern-only", "--defined-only", str(tmp_path / "object.o"))
+    assert len(exported) > 40 and all(re.fullmatch(rf"\S+ T fmi{version}\w+", line) for line in exported)
+
+
+def test_two_source_fmus_can_be_linked_into_one_program(native3, everything3, tmp_path):
+    objects, words, expected = [], ["50"], []
+    for prefix, archive, push in (("First_", native3, 10.0), ("Second_", everything3, 30.0)):
+        objects.append(str(tmp_path / f"{prefix}.o"))
+        _compile("-c", f"-DFMI3_FUNCTION_PREFIX={prefix}", str(archive.folder / "sources" / "all.c"), "-o", objects[-1])
+        words += [archive.description.guid, *(str(archive.reference(n)) for n in ("push.F_rl", "chair.psi"))]
+        with chair(archive) as c:
+            expected.append(c.start({"push.F_rl": push}).step(0.01, 50).get("chair.psi")[0])
+    _compile(str(Path(__file__).with_name("linked.c")), *objects, "-o", str(tmp_path / "linked"), "-lm")
+    assert [float.fromhex(word) for word in _lines(str(tmp_path / "linked"), *words)[0].split()] == expected
 
 
 def test_lists_its_sources_and_carries_documentation(native):
@@ -88,6 +98,17 @@ def test_lists_its_sources_and_carries_documentation(native):
     assert {"documentation/index.html", "documentation/licenses/license.txt", "model.png"} <= names
     page = (native.folder / "documentation" / "index.html").read_text(encoding="utf-8")
     assert "x_m  forward" in page and "push.total_needed" in page and "$" not in page
+
+
+def test_a_host_without_casadi_is_told_so(in_python, tmp_path):
+    assert "casadi" in (in_python.folder / "documentation" / "externalDependencies.txt").read_text(encoding="utf-8")
+    (tmp_path / "casadi.py").write_text("raise ModuleNotFoundError(\"No module named 'casadi'\", name='casadi')")
+    code = "import sys, fmpy; fmpy.simulate_fmu(sys.argv[1], stop_time=0.01, debug_logging=True)"
+    done = subprocess.run([sys.executable, "-c", code, str(in_python.path)], capture_output=True, text=True,
+                          env=_environment(PYTHONPATH=str(tmp_path)))  # fmt: skip
+    sentence = "this FMU needs the package casadi, which the Python of this host cannot import"
+    assert done.returncode and sentence in done.stderr and "pip install casadi numpy" in done.stderr
+    assert sentence in done.stdout  # FMPy's log, as the FMU gave it
 
 
 def test_every_variable_is_described(native):
@@ -223,6 +244,11 @@ def test_builds_with_zig_instead_of_a_system_compiler(tmp_path, native):
     with chair(Unpacked.of(tmp_path / "zig.fmu", tmp_path / "zig")) as by_zig, chair(native) as by_cc:
         results = [c.start({"push.F_rl": 20.0}).step(0.01, 100).outputs() for c in (by_zig, by_cc)]
     assert results[0] == pytest.approx(results[1], rel=1e-12, abs=1e-12)
+
+
+def _compile(*words: str) -> None:
+    done = subprocess.run([*compiler.command(), f"-I{native_flavour.headers()}", *words], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def _lines(*words: str) -> list[str]:

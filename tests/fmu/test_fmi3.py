@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import io
+import platform
 import re
 import subprocess
 import zipfile
@@ -18,6 +19,7 @@ from lxml import etree
 
 from wheelchair_fmu.engine import compiler
 from wheelchair_fmu.fmu import native as native_flavour
+from wheelchair_fmu.fmu import related
 
 from .chair import ERROR, Unpacked, chair, pushed
 from .test_protocol import refused
@@ -29,7 +31,7 @@ SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
 def test_the_reference_results_are_what_fmpy_gets(archive, request):
     unpacked: Unpacked = request.getfixturevalue(archive)
     files = zipfile.ZipFile(unpacked.path)
-    inputs, expected = (_table(files.read(f"documentation/{name}.csv")) for name in ("reference_in", "reference"))
+    inputs, expected = (_table(files.read(f"{related.FOLDER}/{name}.csv")) for name in ("reference_in", "reference"))
     outputs = [n for n in expected.dtype.names if n != "time"]
     with chair(unpacked) as c:
         c.start()
@@ -79,19 +81,42 @@ def test_both_versions_describe_the_same_variables(native, native3):
         ("sources/buildDescription.xml", "fmi3BuildDescription.xsd"),
     ],
 )
-def test_files_obey_their_schemas(name, schema, native3):
-    parsed = etree.parse(str(native3.folder / name))
-    etree.XMLSchema(etree.parse(str(SCHEMAS / schema))).assertValid(parsed)
+def test_files_obey_their_schemas(name, schema, native, native3):
+    """FMI 2.0.4 has the last two from FMI 3.0, schemas and all."""
+    for archive in (native, native3) if "/" in name else (native3,):
+        parsed = etree.parse(str(archive.folder / name))
+        etree.XMLSchema(etree.parse(str(SCHEMAS / schema))).assertValid(parsed)
 
 
-def test_terminals_name_variables_and_icons(native3):
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_what_is_beside_fmi_is_in_a_manifest(archive, request):
+    """By the layered standard fmi-ls-ref; the set is read back and gives the values that the build starts from."""
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    folder = unpacked.folder / related.FOLDER
+    root = ElementTree.parse(folder / "fmi-ls-manifest.xml").getroot()
+    assert root.tag == "fmiReferences" and root.get(f"{{{related.NAMESPACE}}}fmi-ls-name") == folder.name
+    roles = {r.get("source"): r.get("role") for r in root.iter("Related")}
+    assert roles == {"start.ssv": "parameter", "reference_in.csv": "testcase", "reference.csv": "result"}
+    assert {f.name for f in folder.iterdir()} == {*roles, "fmi-ls-manifest.xml"}
+    starts = {v.name: v.start for v in unpacked.description.modelVariables if v.causality == "parameter"}
+    given = ElementTree.parse(folder / "start.ssv").getroot()
+    values = {p.get("name"): p[0].get("value") for p in given.iter() if p.tag.endswith("}Parameter")}
+    assert values.keys() == starts.keys() and values["tyre.law"] == "linear"
+    assert all(float(values[n]) == float(s) for n, s in starts.items() if n not in ("tyre.law", "speed.mode"))
+
+
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_terminals_name_variables_and_icons(archive, request):
+    native3: Unpacked = request.getfixturevalue(archive)
     root = ElementTree.parse(native3.folder / "terminalsAndIcons" / "terminalsAndIcons.xml").getroot()
     names = {v.name for v in native3.description.modelVariables}
     assert [t.get("name") for t in root.iter("Terminal")] == ["pushrim_left", "pushrim_right", "floor"]
     assert {m.get("variableName") for m in root.iter("TerminalMemberVariable")} <= names
     for picture in root.iter("TerminalGraphicalRepresentation"):
         assert (native3.folder / "terminalsAndIcons" / f"{picture.get('iconBaseName')}.png").is_file()
-    assert (native3.folder / "terminalsAndIcons" / "icon.png").is_file()
+    for name in ("icon", "floor", "pushrim"):
+        assert (native3.folder / "terminalsAndIcons" / f"{name}.png").is_file()
+        assert ElementTree.parse(native3.folder / "terminalsAndIcons" / f"{name}.svg").getroot().tag.endswith("svg")
 
 
 def test_types_have_quantities_and_parameters_their_variability(native3):
@@ -104,18 +129,38 @@ def test_types_have_quantities_and_parameters_their_variability(native3):
     assert (variables["der(chair.u)"].quantity, variables["der(chair.u)"].unit) == ("Acceleration", "m/s2")
 
 
-def test_its_sources_compile_as_the_build_description_says(native3, tmp_path):
-    root = ElementTree.parse(native3.folder / "sources" / "buildDescription.xml").getroot()
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_its_sources_compile_as_the_build_description_says(archive, request, tmp_path):
+    """By a compiler without any options, to a library that gives the same bits."""
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    root = ElementTree.parse(unpacked.folder / "sources" / "buildDescription.xml").getroot()
     files = root.find("BuildConfiguration/SourceFileSet")
-    words = [*files.get("compilerOptions").split(), *(f"-D{d.get('name')}" for d in files.iter("PreprocessorDefinition"))]
-    units = [str(native3.folder / "sources" / f.get("name")) for f in files.iter("SourceFile")]
-    other = tmp_path / "binaries" / "x86_64-linux"
-    other.mkdir(parents=True)
-    done = subprocess.run([*compiler.command(), "-std=c11", "-O1", "-fPIC", "-shared", *words, f"-I{native_flavour.headers()}",
-                           *units, "-o", str(other / "Wheelchair.so"), "-lm"], capture_output=True, text=True)  # fmt: skip
+    assert files.get("compilerOptions") is None  # which compiler they would be for is not known
+    words = [f"-D{d.get('name')}={d.get('value')}" for d in files.iter("PreprocessorDefinition")]
+    words += [f"-DFMI{unpacked.description.fmiVersion[0]}_OVERRIDE_FUNCTION_PREFIX", f"-I{native_flavour.headers()}"]
+    units = [str(unpacked.folder / "sources" / f.get("name")) for f in files.iter("SourceFile")]
+    other = tmp_path / unpacked.library.relative_to(unpacked.folder)
+    other.parent.mkdir(parents=True)
+    done = subprocess.run([*compiler.command(), "-fPIC", "-shared", *words, *units, "-o", str(other), "-lm"],
+                          capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
-    with chair(native3) as c, chair(Unpacked(native3.path, tmp_path, native3.description)) as o:
-        assert c.start().step(0.01, 50).outputs() == pytest.approx(o.start().step(0.01, 50).outputs(), rel=1e-12, abs=1e-12)
+    with chair(unpacked) as c, chair(Unpacked(unpacked.path, tmp_path, unpacked.description)) as o:
+        assert c.start(pushed(0)).step(0.01, 50).outputs() == o.start(pushed(0)).step(0.01, 50).outputs()
+
+
+@pytest.mark.skipif(platform.machine().lower() not in ("x86_64", "amd64"), reason="asks an x86-64 compiler for -mfma")
+def test_its_sources_keep_a_compiler_from_fusing_multiplications(native3, tmp_path):
+    """A processor that can round a·b + c once gets the same digits as one that cannot."""
+    unit, text = native3.folder / "sources" / "all.c", {}
+    for name in ("all.c", "fused.c"):
+        source = unit.with_name(name)
+        if name == "fused.c":
+            source.write_text(re.sub("#pragma (GCC opt|STDC).*", "", unit.read_text(encoding="utf-8")), encoding="utf-8")
+        done = subprocess.run([*compiler.command(), "-O2", "-mfma", "-S", f"-I{native_flavour.headers()}", str(source), "-o",
+                               str(tmp_path / "text.s")], capture_output=True, text=True)  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        text[name] = (tmp_path / "text.s").read_text(encoding="utf-8")
+    assert text["fused.c"].count("vfmadd") > 100 > 10 * text["all.c"].count("vfmadd")
 
 
 # ---- derivatives

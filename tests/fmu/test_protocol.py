@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import json
+import struct
 import subprocess
 import sys
 from math import inf, nan
@@ -13,6 +15,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from .chair import DISCARD, ERROR, Chair, Unpacked, chair, pushed
+from .exchange import exchange
 
 ROOT = Path(__file__).parents[2]
 OUTPUTS = ("chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_dot")
@@ -30,7 +33,6 @@ def refused(status: int, call, *words, **options) -> None:
         ({"push.F_rl": nan}, "push.F_rl = nan is not a finite number; the old value 12 N stays"),
         ({"push.F_rl": inf}, "push.F_rl = inf is not a finite number; the old value 12 N stays"),
         ({"push.F_rr": 3.0, "push.F_rl": -inf}, "push.F_rl = -inf is not a finite number; the old value 12 N stays"),
-        ({"push.F_rl": 1e9}, "push.F_rl = 1000000000 N is above its maximum of 2000 N; the old value 12 N stays"),
         ({"chair.m": -1.0}, "chair.m = -1 kg is below its minimum of 1 kg; the old value 80 kg stays"),
         ({"tyre.law": 7}, "tyre.law = 7 is none of its choices 1 (linear), 2 (dugoff), 3 (magic_formula); the old value "
                           "1 (linear) stays"),
@@ -60,10 +62,65 @@ def test_bad_values_are_refused_while_stepping_too(native):
         for name in native.names("input") + native.names("parameter"):
             for value in (nan, inf, -inf, 1e300):
                 status = ERROR if c.types[name].variability == "fixed" else DISCARD
-                if value == 1e300 and c.types[name].max is None:
+                if value == 1e300 and (c.types[name].max is None or c.types[name].causality == "input"):
                     continue
                 refused(status, c.set, {name: value})
         assert c.step(0.01, 10).outputs() == untouched.step(0.01, 10).outputs()
+
+
+@pytest.mark.parametrize("archive", ["native", "native3", "in_python"])
+def test_an_input_beyond_a_bound_is_clamped_with_one_warning(archive, request):
+    with chair(request.getfixturevalue(archive), logging=True) as c:
+        c.start({"push.F_rl": 2500.0, "push.F_rr": 2000.0}).step(0.01)
+        for i in range(3):
+            c.set({"push.F_rl": 3000.0 + i, "brake.rl": -0.25})
+            assert c.get("push.F_rl", "brake.rl") == [2000.0, 0.0]
+            c.step(0.01)
+        assert [(s, k) for s, k, _ in c.said if s] == 2 * [(1, "logStatusWarning")]
+        assert c.sentences == [
+            "t = 0 s: push.F_rl = 2500 N is above its maximum of 2000 N; the maximum is used instead, now and whenever this "
+            "input is out of bounds",
+            "t = 0.01 s: brake.rl = -0.25 is below its minimum of 0; the minimum is used instead, now and whenever this input "
+            "is out of bounds",
+        ]
+        with chair(request.getfixturevalue(archive), name="other") as other:  # which was given the bounds themselves
+            other.start({"push.F_rl": 2000.0, "push.F_rr": 2000.0}).step(0.01, 4)
+            assert c.outputs() == other.outputs() and other.sentences == []
+        c.fmu.reset()
+        c.set({"brake.rl": -1.0})
+        assert len(c.sentences) == 3  # a new life
+
+
+@pytest.mark.parametrize("archive", ["native", "native3", "in_python"])
+@pytest.mark.parametrize("off", [-1e-14, -1e-12, -1e-10])
+def test_rounding_beyond_a_bound_is_not_worth_a_word(archive, off, request):
+    with chair(request.getfixturevalue(archive), logging=True) as c:
+        c.start().step(0.01)
+        c.set({"brake.rl": off, "brake.rr": 1 - off})
+        assert c.get("brake.rl", "brake.rr") == [0.0, 1.0]
+        assert c.step(0.01).sentences == []
+
+
+def test_an_input_whose_derivative_leads_beyond_a_bound_stops_there(native):
+    """As where a master interpolates inputs."""
+    with chair(native) as c:
+        c.start({"brake.rl": 0.5, "push.F_rl": 10.0})
+        brake, push = (c.types[n].valueReference for n in ("brake.rl", "push.F_rl"))
+        c.fmu.setRealInputDerivatives([brake, push], [1, 1], [-100.0, 100.0])
+        assert c.step(0.01).get("brake.rl", "push.F_rl") == [0.0, 11.0]
+        assert c.sentences == ["t = 0 s: brake.rl = -0.5 is below its minimum of 0; the minimum is used instead, now and "
+                               "whenever this input is out of bounds"]  # fmt: skip
+
+
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_inputs_are_clamped_in_model_exchange_too(archive, request):
+    with exchange(request.getfixturevalue(archive)) as e:
+        e.enter()
+        for value in (-0.5, -0.7, -1e-13):
+            e.set({"brake.rl": value})
+            assert e.get("brake.rl") == [0.0] and np.isfinite(e.rates()).all()
+        refused(DISCARD, e.set, {"brake.rl": nan})
+        assert [k for _, k, _ in e.said] == ["logStatusWarning", "logStatusDiscard"]
 
 
 def test_bad_steps_are_refused(native):
@@ -229,10 +286,71 @@ def test_foreign_and_damaged_states_are_refused(native, everything):
             (bytes(len(good)), "no saved state of this kind of FMU"),
             (other.fmu.serializeFMUstate(other.fmu.getFMUstate()), "saved by another build"),
             (bytes(damaged), "has been altered"),
+            (b"wcstate2" + good[16:], "has the layout of another version of this FMU"),
+            (good[:8] + b"wcstate9" + good[16:], "has the layout of another version of this FMU"),
         ):
             refused(ERROR, c.fmu.deSerializeFMUstate, bytes_)
             assert says in c.sentences[-1]
         assert c.get("chair.u")[0] < 1
+
+
+def test_a_state_begins_with_zeros(native):
+    """Where an importer takes a state for the place of its address, it finds that there is none."""
+    with chair(native) as c:
+        assert c.start().step(0.01).serialized()[:8] == bytes(8)
+
+
+def _forged(state: bytes, at: int, form: str, value: float) -> bytes:
+    """The state with another value in it, and the checksum to go with that."""
+    changed = bytearray(state)
+    struct.pack_into(form, changed, at, value)
+    total = 14695981039346656037
+    for byte in changed[64:]:
+        total = (total ^ byte) * 1099511628211 % 2**64
+    struct.pack_into("<Q", changed, 56, total)
+    return bytes(changed)
+
+
+def _where_they_differ(one: bytes, other: bytes) -> int:
+    """The first byte, behind the checksum, of the word in which two states differ."""
+    return next(i for i in range(64, len(one)) if one[i] != other[i]) // 4 * 4
+
+
+@pytest.mark.parametrize("archive", ["native", "native3"])
+def test_a_state_forged_with_a_right_checksum_is_refused(archive, request):
+    """Where it holds what no run could have left: laws that there are not, bounds that are passed, phases of no meaning."""
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    with chair(unpacked) as c:
+        fresh = c.serialized()
+        c.set({"tyre.law": 2})
+        law = _where_they_differ(fresh, c.serialized()) // 8 * 8
+        c.set({"tyre.law": 1, "push.F_rl": 3.0})
+        push = _where_they_differ(fresh, c.serialized()) // 8 * 8
+        c.set({"push.F_rl": 0.0})
+        c.start()
+        good = c.serialized()
+        phase = len(good) - 20  # the fifth word from the end
+        assert struct.unpack_from("<d", good, law) == (1.0,) and struct.unpack_from("<i", good, phase) == (4,)
+        give = c.fmu.deSerializeFMUstate if archive == "native" else c.fmu.deserializeFMUState
+        for at, form, value in (*((law, "<d", v) for v in (0.0, 2.5, 4.0, 1e6, -1e300, nan)),
+                                *((push, "<d", v) for v in (nan, inf, 2000.1)), *((phase, "<i", v) for v in (0, 3, 16, 2**30)),
+                                (64, "<d", 0.0)):  # fmt: skip
+            refused(ERROR, give, _forged(good, at, form, value))
+            assert "the state holds values that this FMU never has" in c.sentences[-1]
+        c.revive(_forged(good, law, "<d", 3.0))
+        assert c.get("tyre.law") == [3] and c.step(0.01).get("chair.u")[0] < 1
+
+
+def test_a_forged_state_is_refused_in_python_too(in_python):
+    with chair(in_python, logging=True) as c:
+        good = json.loads(c.start().step(0.01).serialized())
+        for change in ({"values": {**good["values"], "tyre.law": 9}}, {"values": {**good["values"], "chair.m": nan}},
+                       {"values": {}}, {"phase": "flying"}, {"x": "none"}, {"x": [nan]}, {"elapsed": "late"}):  # fmt: skip
+            c.revive(json.dumps({**good, **change}).encode())
+            assert "the state holds values that this FMU never has; the present one stays" in c.sentences[-1], change
+        assert len(c.sentences) == 7
+        c.revive(json.dumps(good).encode())
+        assert c.step(0.01).get("tyre.law") == [1] and len(c.sentences) == 7
 
 
 def test_reset_gives_the_same_bytes_two_thousand_times(native, host):

@@ -21,7 +21,7 @@ RECORD = """
 #include "advance.h"
 
 static const double {prefix}_nominal[] = {{{nominal}}};
-const wc_kernel {prefix}_kernel = {{
+WC_LOCAL const wc_kernel {prefix}_kernel = {{
     {states}, {inputs}, {parameters}, {outputs}, {prefix}_nominal,
     {functions}}};
 """

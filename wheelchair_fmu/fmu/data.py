@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from math import isinf
 from pathlib import Path
@@ -20,8 +21,18 @@ LIMITS = {"parameters": 256, "outputs": 128, "states": 32, "inputs": 32, "crossi
 def generate(face: Interface) -> dict[str, str]:
     """C files by name, all but the tables, which need the token that depends on these."""
     _refuse_too_large(face.model)
-    files = {f"{law}.c": face.c_source(law) for law in face.models}
-    return {**files, "rules.c": _rules(face.model)}
+    texts = [*(face.c_source(law) for law in face.models), _rules(face.model)]
+    return dict(zip(names(face), map(_hidden, texts), strict=True))
+
+
+def names(face: Interface) -> list[str]:
+    """What `generate` makes."""
+    return [*(f"{law}.c" for law in face.models), "rules.c"]
+
+
+def _hidden(text: str) -> str:
+    """CasADi's own helpers are seen outside of their file, unlike all else."""
+    return re.sub(r"^(?=casadi_real casadi_)", "static ", text, flags=re.MULTILINE)
 
 
 def _refuse_too_large(m: Model) -> None:
@@ -43,16 +54,13 @@ def _rules(m: Model) -> str:
 
 
 def tables(face: Interface, name: str, token: str) -> str:
-    """model_data.c: `const wc_model wc_the_model`."""
+    """model_data.c: `model`, from what the generated files before it define."""
     kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in face.choices)
     chooser = face.by_name[face.chooser].index if face.chooser else -1
     return "\n".join([
         '#include "model.h"',
         "",
         "#include <math.h>",
-        "",
-        f"extern const wc_kernel {', '.join(f'{law}_kernel' for law in face.models)};",
-        "int wc_start_forward(const double **arg, double **res, long long *iw, double *w, int mem);",
         "",
         *(_choices(v) for v in face.variables if v.choices),
         *_array("wc_variable", "variables", map(_variable, face.variables)),
@@ -63,15 +71,17 @@ def tables(face: Interface, name: str, token: str) -> str:
         *_array("wc_watch", "watches", (
             f"{{{w.variables[0].reference}, {len(w.variables)}, limits_{i}, {w.guard.index if w.guard else -1}, "
             f"{_number(w.guard_limit)}, {_string(w.meaning)}}}" for i, w in enumerate(face.watches))),
-        *_array("wc_state", "states", (f"{{{place}, {v.reference}}}" for place, v in face.states.items())),
+        *_array("wc_state", "states", (f"{{{place}, {v.reference}, {_number(v.nominal)}}}"
+                                       for place, v in face.states.items())),
         *_array("int", "crossings", (str(v.index) for v in face.of("output") if v.type == "Boolean")),
         f"static const wc_kernel *const kernels[] = {{{kernels}}};",
         "",
-        "const wc_model wc_the_model = {",
+        "static const wc_model the_model = {",
         f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
         f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
         f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
         f"    {len(face.states)}, states, {len(face.of('indicator'))}, crossings}};",
+        "static const wc_model *const model = &the_model;",
         "",
     ])  # fmt: skip
 

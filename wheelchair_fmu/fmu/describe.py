@@ -24,16 +24,17 @@ LOG_CATEGORIES = {
 
 
 # Per interface, what each flavour can do; every word of it is tested.
+OWN_MEMORY = {"canNotUseMemoryManagementFunctions": "true"}
 NATIVE = {
-    "ModelExchange": {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"},
+    "ModelExchange": {**OWN_MEMORY, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
+                      "providesDirectionalDerivative": "true"},
     "CoSimulation": {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true",
-                     "maxOutputDerivativeOrder": "1", "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
-                     "providesDirectionalDerivative": "true"},
-}
+                     "maxOutputDerivativeOrder": "1", **OWN_MEMORY, "canGetAndSetFMUstate": "true",
+                     "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"},
+}  # fmt: skip
 PYTHON = {
     "CoSimulation": {"needsExecutionTool": "true", "canHandleVariableCommunicationStepSize": "true",
-                     "canNotUseMemoryManagementFunctions": "true", "canGetAndSetFMUstate": "true",
-                     "canSerializeFMUstate": "true"},
+                     **OWN_MEMORY, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"},
 }  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""modelDescription.xml, buildDescription.xml and terminalsAndIcons.xml of FMI 3.0."""
+"""modelDescription.xml of FMI 3.0; buildDescription.xml and terminalsAndIcons.xml, which FMI 2.0.4 has from there."""
 
 from __future__ import annotations
 
@@ -103,18 +103,27 @@ def _structure(face: Interface) -> ET.Element:
     return element
 
 
-def build_description(name: str, units: list[str], options: str) -> bytes:
-    """How to compile the sources: the C files `units` with the compiler's `options`, against the FMI headers."""
+def build_description(name: str, version: str, unit: str) -> bytes:
+    """How to compile the sources, of FMI 2.0 or 3.0: the C file `unit` against the FMI headers."""
     root = ET.Element("fmiBuildDescription", fmiVersion=VERSION)
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name,
-                                  description="C11, beside the headers of FMI 3.0")  # fmt: skip
-    files = ET.SubElement(configuration, "SourceFileSet", language="C11", compilerOptions=options)
-    for unit in units:
-        ET.SubElement(files, "SourceFile", name=unit)
-    ET.SubElement(files, "PreprocessorDefinition", name="STATIC_LINKED",
-                  description="no generated function is exported")  # fmt: skip
+                                  description=f"C11, beside the headers of FMI {version}.0")  # fmt: skip
+    files = ET.SubElement(configuration, "SourceFileSet", language="C11")
+    ET.SubElement(files, "SourceFile", name=unit)
+    ET.SubElement(files, "PreprocessorDefinition", name=f"FMI{version}_FUNCTION_PREFIX", value=f"{name}_",
+                  description=f"for linking; a shared library is compiled with FMI{version}_OVERRIDE_FUNCTION_PREFIX "
+                              "beside it")  # fmt: skip
     ET.SubElement(configuration, "Library", name="m", external="true", description="the system's mathematics")
     return to_bytes(root)
+
+
+def _terminals(face: Interface) -> dict[str, tuple[str, dict[str, str], tuple[int, int], str]]:
+    """Those of which this model has all variables."""
+    return {name: terminal for name, terminal in TERMINALS.items() if all(v in face.by_name for v in terminal[1].values())}
+
+
+def terminal_icons(face: Interface) -> list[str]:
+    return sorted({icon for _, _, _, icon in _terminals(face).values()})
 
 
 def terminals(face: Interface) -> bytes:
@@ -123,8 +132,9 @@ def terminals(face: Interface) -> bytes:
     box = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
     ET.SubElement(picture, "CoordinateSystem", box, suggestedScalingFactorTo_mm="0.1")
     ET.SubElement(picture, "Icon", box)
-    group = ET.SubElement(root, "Terminals")
-    for name, (meaning, members, (x, y), icon) in TERMINALS.items():
+    found = _terminals(face)
+    group = ET.SubElement(root, "Terminals") if found else root
+    for name, (meaning, members, (x, y), icon) in found.items():
         terminal = ET.SubElement(group, "Terminal", name=name, matchingRule="bus", description=meaning)
         for member, variable in members.items():
             ET.SubElement(terminal, "TerminalMemberVariable", variableName=face.by_name[variable].name, memberName=member,

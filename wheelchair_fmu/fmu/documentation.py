@@ -7,6 +7,7 @@ from math import isfinite
 from string import Template
 
 from ..model import frames
+from . import describe3
 from .describe import number
 from .variables import SOURCE, Interface, Variable
 
@@ -33,8 +34,11 @@ def files(face: Interface) -> dict[str, bytes]:
     }
 
 
-def icon(name: str) -> bytes:
-    return (SOURCE / "icons" / f"{name}.png").read_bytes()
+def icons(face: Interface) -> dict[str, bytes]:
+    """The model's icon and its terminals', by their path in the archive: drawn, and as pixels for who cannot draw."""
+    places = {"icon": face.pages / "model", **{name: SOURCE / "icons" / name for name in describe3.terminal_icons(face)}}
+    return {f"terminalsAndIcons/{name}.{kind}": place.with_suffix(f".{kind}").read_bytes()
+            for name, place in places.items() for kind in ("png", "svg")}  # fmt: skip
 
 
 def _effects(face: Interface) -> str:

@@ -1,4 +1,8 @@
-"""The native flavour: generated C and fmu_src's own, compiled into one library that speaks both versions of FMI."""
+"""The native flavour: generated C and fmu_src's own, compiled into one library that speaks both versions of FMI.
+
+All C files are parts of one, all.c, which is what is compiled here and by whoever builds from an archive's sources. So all
+functions but FMI's own are static, and several source FMUs can be linked into one program.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +14,38 @@ from uuid import UUID
 
 from ..engine.source import CSRC
 from ..errors import BuildError
-from . import data, describe, describe3, documentation
+from . import data, describe, describe3, documentation, related
 from .platforms import Platform, chosen, compile_for
 from .variables import Interface
 
 PROTOCOLS = {"2": "fmi2.c", "3": "fmi3.c"}
-HANDWRITTEN = (*PROTOCOLS.values(), "values.c", "motion.c", "derivatives.c", "saved.c", "instance.h", "model.h")
-OPTIONS = ("-ffp-contract=off",)  # what the results depend on; more are our own choice
+CORE = ("advance.c", "values.c", "motion.c", "derivatives.c", "saved.c")
+HANDWRITTEN = (*PROTOCOLS.values(), *CORE[1:], "instance.h", "model.h")
+TABLES = "model_data.c"
+UNIT = "all.c"
+BUILD_DESCRIPTION = "buildDescription.xml"
+# Contracting a·b + c to one rounding would give other digits on other machines; each compiler is asked in its own way.
+BEGINNING = """/* The one file to compile: it includes all others, so that nothing but FMI's own functions is seen outside.
+ * Define FMI2_FUNCTION_PREFIX or FMI3_FUNCTION_PREFIX to link several FMUs into one program. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#elif defined(_MSC_VER)
+#pragma fp_contract(off)
+#endif
+#define WC_LOCAL static
+#define CASADI_SYMBOL_EXPORT static
+#if defined(__GNUC__) /* CasADi writes functions that nobody calls, with arguments that nobody reads */
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+"""
+BETWEEN = """#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+"""
 
 
 def token_of(face: Interface, texts: dict[str, str]) -> str:
@@ -38,7 +67,14 @@ def sources(face: Interface) -> tuple[dict[str, str], str]:
     """All C files by name, and the token in them."""
     texts = {**handwritten(), **data.generate(face)}
     token = token_of(face, texts)
-    return {**texts, "model_data.c": data.tables(face, face.name, token)}, token
+    return {**texts, TABLES: data.tables(face, face.name, token)}, token
+
+
+def unit(face: Interface, versions: Iterable[str]) -> str:
+    """all.c for these versions of FMI."""
+    generated = "".join(f'#include "{name}"\n#undef CASADI_PREFIX\n' for name in data.names(face))
+    others = (TABLES, *CORE, *(PROTOCOLS[version] for version in versions))
+    return BEGINNING + generated + BETWEEN + "".join(f'#include "{name}"\n' for name in others)
 
 
 def headers() -> Path:
@@ -49,18 +85,13 @@ def headers() -> Path:
 
 
 def compile_library(name: str, texts: dict[str, str], platform: Platform) -> bytes:
-    """The shared library `name` of C files, given by name and text."""
+    """The shared library `name` of C files, given by name and text, of which all.c includes the others."""
     with TemporaryDirectory() as folder:
         for file, text in texts.items():
             (Path(folder) / file).write_text(text, encoding="utf-8")
-        units = [Path(folder) / unit for unit in units_of(texts)]
         target = Path(folder) / f"{name}{platform.suffix}"
-        compile_for(platform, units, target, ["-DSTATIC_LINKED", f"-I{folder}", f"-I{headers()}"])
+        compile_for(platform, [Path(folder) / UNIT], target, [f"-I{folder}", f"-I{headers()}"])
         return target.read_bytes()
-
-
-def units_of(texts: Iterable[str]) -> list[str]:
-    return sorted(name for name in texts if name.endswith(".c"))
 
 
 def archive(face: Interface) -> dict[str, bytes]:
@@ -73,14 +104,15 @@ def archives(
 ) -> dict[str, dict[str, bytes]]:
     """Everything in the archive of each version of FMI, by path; `results` are what it should give, by file name."""
     texts, token = sources(face)
-    libraries = {p: compile_library(face.name, texts, p) for p in platforms}
-    beside = {f"documentation/{name}": text for name, text in results.items()}
+    whole = {**texts, UNIT: unit(face, PROTOCOLS)}
+    libraries = {p: compile_library(face.name, whole, p) for p in platforms}
+    beside = related.files(face.variant, results) if results else {}
     made = {}
     for version in versions:
         others = {file for other, file in PROTOCOLS.items() if other != version}
-        mine = {name: text for name, text in texts.items() if name not in others}
+        mine = {**{name: text for name, text in texts.items() if name not in others}, UNIT: unit(face, [version])}
         made[version] = {
-            **_described(version, face, token, units_of(mine)),
+            **_described(version, face, token),
             **{f"binaries/{p.folder if version == '2' else p.name}/{face.name}{p.suffix}": b for p, b in libraries.items()},
             **{f"sources/{name}": text.encode() for name, text in mine.items()},
             **beside,
@@ -88,17 +120,16 @@ def archives(
     return made
 
 
-def _described(version: str, face: Interface, token: str, units: list[str]) -> dict[str, bytes]:
+def _described(version: str, face: Interface, token: str) -> dict[str, bytes]:
     pages = documentation.files(face)
-    if version == "2":
-        abilities = {kind: able for kind, able in describe.NATIVE.items() if face.states or kind == "CoSimulation"}
-        description = describe.description(face, face.name, token, abilities, units)
-        return {"modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(), **pages}
-    return {
-        "modelDescription.xml": describe3.description(face, face.name, token),
-        "sources/buildDescription.xml": describe3.build_description(face.name, units, " ".join(OPTIONS)),
+    common = {
+        f"sources/{BUILD_DESCRIPTION}": describe3.build_description(face.name, version, UNIT),
         "terminalsAndIcons/terminalsAndIcons.xml": describe3.terminals(face),
-        "terminalsAndIcons/icon.png": (face.pages / "model.png").read_bytes(),
-        **{f"terminalsAndIcons/{name}.png": documentation.icon(name) for name in ("pushrim", "floor")},
+        **documentation.icons(face),
         **pages,
     }
+    if version == "2":
+        abilities = {kind: able for kind, able in describe.NATIVE.items() if face.states or kind == "CoSimulation"}
+        description = describe.description(face, face.name, token, abilities, [UNIT])
+        return {"modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(), **common}
+    return {"modelDescription.xml": describe3.description(face, face.name, token), **common}

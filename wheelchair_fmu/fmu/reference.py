@@ -11,9 +11,9 @@ import numpy as np
 
 from ..engine.simulate import Simulator
 from ..errors import BuildError, SimulationError
-from .variables import GRID, STEP, TOLERANCE, Interface
+from .variables import GRID, TOLERANCE, Interface
 
-DURATION = 5.0  # s
+DURATION, STEP = 5.0, 0.01  # s
 OUTPUTS = ("chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_dot", "slip.rl", "slip.rr",
            "sensor.a_x", "sensor.a_y")  # fmt: skip
 

@@ -20,7 +20,7 @@ from ..quantities import Input, Output, Parameter, S, Unit, per_second
 TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
 GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
 SOURCE = Path(__file__).parents[2] / "fmu_src"
-STOP, STEP = 10.0, 0.01  # s, of the default experiment
+STOP, STEP = 10.0, 0.002  # s, of the default experiment: steps with which explicit Euler still integrates a turn
 HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a state follows at once: in which mode, which
 
 

@@ -6,6 +6,12 @@
 #ifndef WC_ADVANCE_H
 #define WC_ADVANCE_H
 
+/* Before what is shared between files. Where all of them are included in one, as in the FMU, it says `static`, and
+ * nothing but FMI's own functions is seen outside. */
+#ifndef WC_LOCAL
+#define WC_LOCAL
+#endif
+
 #define WC_MAX_STATES 32
 #define WC_MAX_INPUTS 32
 
@@ -31,22 +37,22 @@ typedef struct {
 } wc_accuracy;
 
 /* States at the start for parameters p and inputs w, algebraic ones in place. */
-wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x);
+WC_LOCAL wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x);
 
 /* Puts the algebraic rows right after a jump of inputs, parameters or states; others stay. */
-wc_status wc_project(const wc_kernel *k, const double *p, const double *w, double *x);
+WC_LOCAL wc_status wc_project(const wc_kernel *k, const double *p, const double *w, double *x);
 
 /* From t0 to t1 while the inputs go linearly from w0 to w1. On failure x is as it was at t0.
  * steps, where given, grows by the number of accepted steps. */
-wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, double t0, double t1,
-                     const double *w0, const double *w1, double *x, long *steps);
+WC_LOCAL wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, double t0, double t1,
+                              const double *w0, const double *w1, double *x, long *steps);
 
 /* A whole run: inputs w (n rows) at times t (n), states x (n rows, the first given), results y (n rows).
  * hold: inputs keep each row's value until the next time, instead of going there linearly.
  * *reached is the number of rows done, n where all went well. */
-wc_status wc_run(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t,
-                 const double *w, int hold, double *x, double *y, long *reached, long *steps);
+WC_LOCAL wc_status wc_run(const wc_kernel *k, const double *p, wc_accuracy accuracy, long n, const double *t,
+                          const double *w, int hold, double *x, double *y, long *reached, long *steps);
 
-void wc_output(const wc_kernel *k, const double *p, const double *w, const double *x, double *y);
+WC_LOCAL void wc_output(const wc_kernel *k, const double *p, const double *w, const double *x, double *y);
 
 #endif

@@ -32,7 +32,7 @@ PARAMETERS = (
               "sharper is truer and stiffer", default=0.02, lower=1e-6, upper=10.0, symbol="swivel_eps", source="chosen"),
 )  # fmt: skip
 
-SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT)
+SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT, usual=0.1)
 
 
 @stage(define("c", M, "trail that sets the caster's motion", "+swap", FRONT))

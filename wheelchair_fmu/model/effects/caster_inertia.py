@@ -13,7 +13,7 @@ INERTIA = Parameter("I", KG_M2, "moment of inertia I of each caster about its pi
 FILTER = Parameter("filter", S, "time constant that smooths the swivel rate", default=0.02, lower=1e-4, upper=1.0,
                    symbol="T_filter", source="chosen")  # fmt: skip
 RATE = State("smoothed_rate", RAD_S, "turning rate of each caster in the room, smoothed", mirror="-swap", components=FRONT,
-             nominal=10.0)  # fmt: skip
+             nominal=10.0, usual=0.1)  # fmt: skip
 
 
 def acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter):

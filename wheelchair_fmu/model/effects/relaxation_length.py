@@ -8,7 +8,7 @@ from ..stage import Effect, Row, adds
 SIGMA = Parameter("sigma", M, "relaxation length σ of the rear tyres", off=0.0, smallest_interesting=0.05, lower=0.0,
                   upper=1.0, source="DellOrto2023")  # fmt: skip
 LAGGED = State("lagged_slip", RAD, "slip angle that the tyre's deflection has reached", mirror="-swap",
-               components=REAR, nominal=0.1)  # fmt: skip
+               components=REAR, nominal=0.1, usual=0.01)  # fmt: skip
 
 
 def rolling(lagged_slip, lam, v_xr, v_eps):
