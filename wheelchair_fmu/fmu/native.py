@@ -112,7 +112,7 @@ def archives(
         others = {file for other, file in PROTOCOLS.items() if other != version}
         mine = {**{name: text for name, text in texts.items() if name not in others}, UNIT: unit(face, [version])}
         made[version] = {
-            **_described(version, face, token),
+            **_described(version, face, token, results),
             **{f"binaries/{p.folder if version == '2' else p.name}/{face.name}{p.suffix}": b for p, b in libraries.items()},
             **{f"sources/{name}": text.encode() for name, text in mine.items()},
             **beside,
@@ -120,8 +120,8 @@ def archives(
     return made
 
 
-def _described(version: str, face: Interface, token: str) -> dict[str, bytes]:
-    pages = documentation.files(face)
+def _described(version: str, face: Interface, token: str, results: Mapping[str, bytes]) -> dict[str, bytes]:
+    pages = documentation.files(face, version, results)
     common = {
         f"sources/{BUILD_DESCRIPTION}": describe3.build_description(face.name, version, UNIT),
         "terminalsAndIcons/terminalsAndIcons.xml": describe3.terminals(face),
