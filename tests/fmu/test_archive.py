@@ -100,6 +100,23 @@ def test_lists_its_sources_and_carries_documentation(native):
     assert "x_m  forward" in page and "push.total_needed" in page and "$" not in page
 
 
+@pytest.mark.parametrize("archive", ["native", "native3", "everything", "in_python"])
+def test_the_page_keeps_its_promises(archive, request):
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    page = (unpacked.folder / "documentation" / "index.html").read_text(encoding="utf-8")
+    places = set(re.findall(r'id="(\w+)"', page))
+    links = re.findall(r'href="([^"]+)"', page)
+    assert {link[1:] for link in links if link.startswith("#")} <= places  # every source named is in the list
+    for link in links:
+        if not link.startswith(("#", "https://")):
+            assert (unpacked.folder / "documentation" / link).is_file(), link
+    other = {"2.0": "fmi3", "3.0": "fmi2"}[unpacked.description.fmiVersion]
+    assert other not in page and f"FMI {unpacked.description.fmiVersion}" in page
+    assert "10000000" not in page  # of REACH, which bounds nothing
+    shown = set(re.findall(r"<tr><td>([^<]+)</td>", page))
+    assert shown == {v.name for v in unpacked.description.modelVariables if v.causality in ("input", "output", "parameter")}
+
+
 def test_a_host_without_casadi_is_told_so(in_python, tmp_path):
     assert "casadi" in (in_python.folder / "documentation" / "externalDependencies.txt").read_text(encoding="utf-8")
     (tmp_path / "casadi.py").write_text("raise ModuleNotFoundError(\"No module named 'casadi'\", name='casadi')")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from html import escape
-from itertools import groupby
 from math import inf, isfinite
 from string import Template
 
@@ -90,15 +89,18 @@ HEAD = "<tr><th>name</th><th>unit</th><th>start</th><th>bounds</th><th>variabili
 
 def _rows(variables: list[Variable] | tuple[Variable, ...], known: dict[str, dict[str, str]]) -> str:
     """Rows of a table, with a line above each group that begins with the same word."""
+    groups: dict[str, list[str]] = {}
+    for v in variables:
+        groups.setdefault(v.name.partition(".")[0] if "." in v.name else "", []).append(_row(v, known))
     lines = []
-    for group, members in groupby(variables, key=lambda v: v.name.partition(".")[0] if "." in v.name else ""):
-        rows = [_row(v, known) for v in members]
-        lines += [f'<tr class="group"><th colspan="7">{escape(group)}</th></tr>', *rows] if group != "effect" else rows
+    for group, rows in groups.items():
+        head = [f'<tr class="group"><th colspan="7">{escape(group)}</th></tr>'] if group not in ("", "effect") else []
+        lines += [*head, *rows]
     return "\n".join(lines)
 
 
 def _row(v: Variable, known: dict[str, dict[str, str]]) -> str:
-    start = "" if v.start is None else v.choices[int(v.start) - 1] if v.choices else number(v.start)
+    start = "" if v.start is None else v.choices[int(v.start) - 1] if v.choices else f"{v.start:.6g}"
     bounds = ", ".join(v.choices) if v.choices else _bounds(v)
     cells = [escape(c) for c in (v.name, v.unit.name, start, bounds, v.variability, v.description)]
     return "<tr>" + "".join(f"<td>{c}</td>" for c in [*cells, literature.linked(v.source, known)]) + "</tr>"

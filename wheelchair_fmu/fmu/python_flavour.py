@@ -45,13 +45,14 @@ def archive(face: Interface) -> dict[str, bytes]:
         files = _pythonfmu(script, source / package, Path(folder) / f"{NAME}.fmu")
     description = describe.description(face, NAME, token, describe.PYTHON, [])
     return {**files, "modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(),
-            **documentation.files(face, "2", {}), "documentation/externalDependencies.txt": _dependencies().encode()}  # fmt: skip
+            **documentation.files(face, "2", {}),
+            "documentation/externalDependencies.txt": _dependencies().encode()}  # fmt: skip
 
 
 def _dependencies() -> str:
     """What a host must have for this FMU to run, with the versions that it was built with."""
     lines = [f"{name} {version(name)}" for name in ("pythonfmu", *NEEDED)]
-    return ("This FMU runs in the Python of its host. Needed are Python 3.11 or newer and these packages, for instance by\n"
+    return ("This FMU runs in the Python of its host. It needs Python 3.11 or newer and these packages, for instance by\n"
             f"pip install {' '.join(NEEDED)}\n\npythonfmu is inside. Built with:\n"
             + "".join(f"{line}\n" for line in lines))  # fmt: skip
 
