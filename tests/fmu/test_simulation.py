@@ -75,14 +75,6 @@ def test_a_derivative_carries_the_input_and_is_then_spent(native):
         assert c.get("push.F_rl")[0] == pytest.approx(20.0, rel=1e-14)
         c.step(0.1)
         assert c.get("push.F_rl")[0] == pytest.approx(20.0, rel=1e-14)
-        _derivative(c, "brake.rl", 100.0)
-        with pytest.raises(fmpy.fmi1.FMICallException) as refused:
-            c.step(0.1)
-        assert refused.value.status == 2
-        assert c.sentences == ["fmi2DoStep: the derivative of brake.rl would take it to 10, outside 0 to 1; give a "
-                               "derivative that stays inside"]  # fmt: skip
-        _derivative(c, "brake.rl", 0.0)
-        c.step(0.1)
 
 
 def _derivative(c, name: str, value: float) -> None:
