@@ -1,4 +1,5 @@
-"""A run whose pushes were recorded early or late is found, named and left out; one that is right is not."""
+"""A run whose pushes were recorded early or late is found, named and read in time; one that is right is not, and none is left
+out."""
 
 from __future__ import annotations
 
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.diagnose import Search, begin
-from wheelchair_fmu.loop.timing import late
+from wheelchair_fmu.loop.timing import by_model, by_signals
+from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 
@@ -18,19 +20,41 @@ def shifted(run, seconds):
     return replace(run, inputs={n: np.interp(run.time + seconds, run.time, w) for n, w in run.inputs.items()})
 
 
-@pytest.mark.parametrize(("which", "seconds"), [("fit", 1.0), ("fit", -0.7), ("holdout", 1.0)])
-def test_a_shifted_run_is_left_out(sample, which, seconds):
-    wrong = getattr(sample, which)[-1]
-    campaign = replace(sample, runs=tuple(shifted(r, seconds) if r is wrong else r for r in sample.runs))
-    search = Search(Workshop(campaign, Variant()))
+def with_shift(sample, name, seconds):
+    return replace(sample, runs=tuple(shifted(r, seconds) if r.name == name else r for r in sample.runs))
+
+
+@pytest.mark.parametrize(("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1),
+                                               ("holdout-random", 0.3)])  # fmt: skip
+def test_a_shifted_run_is_read_in_time(sample, name, seconds):
+    search = Search(Workshop(with_shift(sample, name, seconds), Variant()))
     begin(search, lambda words: None)
+    assert set(search.clocks) == {name}
+    late = search.clocks[name]["pushes"]
+    assert late.seconds == pytest.approx(seconds, abs=0.01)
     side = "early" if seconds > 0 else "late"
-    assert [n for n in search.notes if n.startswith(f"{wrong.name}: ") and f"{abs(seconds)} s too {side}" in n]
-    assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in sample.runs if r is not wrong]
+    assert [n for n in search.notes if n.startswith(f"{name}: ") and f"too {side}" in n]
+    assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in sample.runs]
 
 
 def test_a_missing_effect_is_not_taken_for_a_shift(sample):
     bench = Workshop(sample, Variant()).bench()
     evidence = bench.evidence(sample.runs, {}, ())
     assert max(e.rms["yaw_rate"] for e in evidence.runs) > 3  # there is something to explain
-    assert late(bench, evidence, {}) == {}
+    assert by_model(bench, evidence, {}) == {} and by_signals(sample) == {}
+
+
+def test_a_delay_that_all_runs_share_is_no_clock(sample):
+    """It is the effect `push_force_delay`."""
+    assert by_signals(replace(sample, runs=tuple(shifted(r, 0.05) for r in sample.runs))) == {}
+
+
+RUNS = ["coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom-quick", "random-steps"]
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize("seconds", [0.02, 0.05, 0.1, 0.3, 1.3])
+def test_the_verdict_is_the_same(sample, name, seconds):
+    found = diagnose(with_shift(sample, name, seconds))
+    assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)

@@ -14,7 +14,7 @@ from .formats import read_smartwheel
 from .reading import Judged, check, fingerprint, judged, read
 from .recorded import Recorded
 from .records import Baseline, Campaign, Clock, Run
-from .windows import pieces, windows
+from .windows import covered, pieces, windows
 
 __all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Baseline", "Campaign", "Channel", "Clock", "Fault", "Judged", "Recorded", "Run",
-           "check", "fingerprint", "judged", "pieces", "read", "read_smartwheel", "to_sae", "windows"]  # fmt: skip
+           "check", "covered", "fingerprint", "judged", "pieces", "read", "read_smartwheel", "to_sae", "windows"]  # fmt: skip

@@ -136,10 +136,11 @@ class Recorded:
     def clocks(self) -> tuple[Clock, ...]:
         """What is left uncertain of the devices' clocks."""
         if len(self.drafts) == 1:
-            sd = clock(self.entry, PUSHES_CLOCK).sd
-            return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].inputs), sd),) if sd else ()
+            own = clock(self.entry, PUSHES_CLOCK)
+            return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].inputs), own.sd, own.offset),) if own.sd else ()
         return tuple(
-            Clock(d.part.device.name, frozenset(d.channels) & frozenset(CHANNEL_NAMES), _fmu_names(d.inputs), d.part.clock.sd)
+            Clock(d.part.device.name, frozenset(d.channels) & frozenset(CHANNEL_NAMES), _fmu_names(d.inputs), d.part.clock.sd,
+                  d.part.clock.offset)
             for d in self.drafts if d.part.clock.sd > 0)  # fmt: skip
 
     @property

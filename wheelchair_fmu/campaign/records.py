@@ -14,13 +14,14 @@ from ..faults import Fault
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock of one device in one run: whose `channels` (by name) and `inputs` (by FMU name) it stamps, and the standard
-    deviation, in s, of what may be left of its offset."""
+    """The clock of one device in one run: whose `channels` (by name) and `inputs` (by FMU name) it stamps, the standard
+    deviation, in s, of what may be left of its offset, and the offset that its times have been given."""
 
     device: str
     channels: frozenset[str]
     inputs: frozenset[str]
     sd: float
+    offset: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,8 @@ class Campaign:
     channel that was measured and per input in `F_rl`, `F_rr`, `M_rl`, `M_rr` that was logged (0 for an input
     known exactly because no run logged it); `noise_estimated` says for which it was not given. `nuisance` names
     channels with an unknown offset, `nuisance_sd` its prior where one is given. `warnings` are what `check` found
-    that is no error; `thinned` says, in a sentence, what `windows` chose of a larger campaign.
+    that is no error; `thinned` says, in a sentence, what `windows` chose of a larger campaign. `rims` are, by run and push, the
+    `offset` and the `ripple` (N m) that were taken out of what instrumented wheels recorded, and the offset's `se`.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Campaign:
     fingerprint: str
     warnings: tuple[Fault, ...] = ()
     thinned: str = ""
+    rims: Mapping[str, Mapping[str, Mapping[str, float]]] = field(default_factory=dict)
 
     @property
     def effects(self) -> tuple[str, ...]:

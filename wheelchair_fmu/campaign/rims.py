@@ -30,6 +30,10 @@ class Rim:
     found: baselines.Baseline
     arm: float
 
+    def as_json(self) -> dict[str, float]:
+        """The baseline, the amplitude of its ripple, and the baseline's standard error, in N m."""
+        return {"offset": self.found.offset, "ripple": self.found.ripple, "se": self.found.offset_se}
+
 
 def rims(runs: Sequence[Recorded], pushes: Collection[str]) -> dict[int, dict[str, Rim]]:
     """For each run by its place in campaign.toml, and each of these pushes that it recorded, what its rim shows."""

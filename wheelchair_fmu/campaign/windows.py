@@ -51,6 +51,14 @@ def pieces(run: Run, seconds: float) -> list[Run]:
     return [_cut(*cell) for cell in _cells(run, seconds)]
 
 
+def covered(run: Run, late: float) -> Run:
+    """The run where its pushes are known, once they are read `late` seconds later than recorded: less that much of its
+    beginning, or of its end."""
+    first, last = run.time[0] + max(late, 0.0), run.time[-1] + min(late, 0.0)
+    start, stop = np.searchsorted(run.time, [first - 1e-9, last + 1e-9])
+    return replace(_cut(run, int(start), int(stop)), name=run.name) if stop - start >= FIRST else run
+
+
 def _cells(run: Run, seconds: float) -> list[Cell]:
     count = max(1, int((run.time[-1] - run.time[0]) / seconds))
     edges = np.searchsorted(run.time, np.linspace(run.time[0], run.time[-1], count + 1)[1:-1])

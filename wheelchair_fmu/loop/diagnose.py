@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
@@ -18,7 +19,7 @@ from .score import Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
 from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
-from .timing import late
+from .timing import Late, by_model, by_signals, clocks
 from .wiring import wiring
 
 SIGNIFICANT = 0.05
@@ -302,22 +303,28 @@ def _small(along: np.ndarray, variance: np.ndarray) -> bool:
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
     """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
 
-    Channels that are not what they are called are left out; so are runs whose pushes belong to another time, if others are
-    there to be fitted.
+    Channels that are not what they are called are left out; pushes that belong to another time than the readings of their run
+    are read at that time.
     """
     say("calibrating")
     w = search.workshop
+    found = dict(by_signals(w.campaign))
+    w.retime(found)
     columns = wiring(w.bench(), w.given)
     if columns.wrong:
         w.leave_out(channels=columns.wrong)
     base, held, ladder = first_steps(search)
-    shifted = {**late(w.bench(), base.evidence, base.values), **late(w.bench(), held, base.values)} if columns.trusted else {}
-    spared = any(r.name not in shifted for r in w.campaign.fit)
-    if shifted and spared:
-        w.leave_out(shifted)
+    if columns.trusted:
+        more = by_model(w.bench(), base.evidence, base.values) | by_model(w.bench(), held, base.values)
+        if more:
+            w.retime(more)
+            found |= more
+            base, held, ladder = first_steps(search)
+    if search.recolour(base.evidence):
         base, held, ladder = first_steps(search)
-    search.notes = [*columns.notes, *(_late(run, seconds, spared) for run, seconds in shifted.items())]
-    return first_steps(search) if search.recolour(base.evidence) else (base, held, ladder)
+    search.clocks = clocks(base.evidence) | clocks(held)
+    search.notes = [*columns.notes, *(_late(run, search.clocks[run][PUSHES_CLOCK]) for run in found)]
+    return base, held, ladder
 
 
 def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
@@ -326,7 +333,8 @@ def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
     return base, held, [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
 
 
-def _late(run: str, seconds: float, left_out: bool) -> str:
-    after = "the run is left out" if left_out else "no other run is there to be fitted, so no verdict can be trusted"
-    return (f"{run}: its pushes seem to be recorded {abs(seconds):.1f} s too {'early' if seconds > 0 else 'late'} for what was "
-            f"measured; {after}. Correct its time column")  # fmt: skip
+def _late(run: str, late: Late) -> str:
+    side = "early" if late.seconds > 0 else "late"
+    return (f"{run}: its pushes were recorded {1000 * abs(late.seconds):.0f} ± {1000 * late.sd:.0f} ms too {side} for what was "
+            f"measured, and are read that much {'later' if late.seconds > 0 else 'earlier'}; `wheelchair sync` looks for it, "
+            f"and clocks = {{ {PUSHES_CLOCK} = {late.seconds:.3f} }} in the run says so for good")  # fmt: skip

@@ -75,6 +75,12 @@ class RunEvidence:
     whitener: Marginal | Weighed
     offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
 
+    def posterior_sd(self, name: str, prior_sd: float) -> float:
+        """Standard deviation, given the readings, of what is uncertain of this run under this name."""
+        good = np.isfinite(self.r)
+        told = self.start_S[good][:, list(uncertain(self.run)).index(name)]
+        return prior_sd * float(np.sqrt(max(0.0, 1 - prior_sd**2 * float(told @ told))))
+
     def brief(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
         return replace(self._bare(), whitener=Weighed(self.whitener.logdet, self.whitener.spread))

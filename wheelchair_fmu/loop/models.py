@@ -11,6 +11,7 @@ from .evidence import Bench, Evidence, offsets_of
 from .fit import Fit, Problem, fit, start_value
 from .noise import QUIETER, colour_of
 from .statistics import TIED, estimates, margin
+from .timing import Late
 from .workshop import Workshop
 
 PLAINLY = 100.0  # times what would be decisive
@@ -24,7 +25,8 @@ class Models:
         self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
         self.twins: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
-        self.notes: list[str] = []  # on runs left out
+        self.notes: list[str] = []  # on columns and clocks
+        self.clocks: dict[str, dict[str, Late]] = {}  # by run and device, where they are uncertain
         self.noise_notes: list[str] = []
 
     @property

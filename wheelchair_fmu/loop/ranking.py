@@ -27,6 +27,10 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
+        "sync": {run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
+                 for run, of in d.search.clocks.items()},
+        "baseline": {run: {push: dict(found) for push, found in of.items()}
+                     for run, of in d.search.workshop.campaign.rims.items()},
         "notes": list(d.notes),
         "seconds": d.seconds,
     }

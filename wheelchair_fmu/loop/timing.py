@@ -1,32 +1,54 @@
 """Runs whose pushes and readings do not belong to the same time.
 
-A logger that was started by hand is a second early or late. No effect of a chair does that, but a search finds one that
-seems to; so such a run is found before the search, by reading its pushes earlier and later.
+A logger that was started by hand is a second early or late, and one that was cut by eye a tenth. No effect of a chair does
+that in one run only, but a search finds one that seems to; so such a run is found before the search, and its pushes are read
+when the chair felt them. No run is left out for it. What all runs share is the effect `push_force_delay`, and left alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..campaign import Campaign, Clock, Run, covered
+from ..campaign.channels import BY_FMU_NAME, PUSH_NAMES
+from ..campaign.clocks import Signal, odd_ones_out
+from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
 from .evidence import Bench, Evidence, RunEvidence
 from .score import projector
 
-SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way; less is what a delay of the force record is for
-FINER = 0.1  # s, either side of the best of these
+SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way
+FINER = 0.1  # s, either side of the best of these, and how far off it may be
 SUSPECT = 2.0  # RMS innovation below which nobody looks
 EXPLAINED = 0.25  # share of the mean square innovation that may remain,
 HOPEFUL = 0.6  # or so near it
+APART = 0.3  # s from the best shift, from where another
+UNIQUE = 2.0  # must leave so many times as much, or nobody knows which of them it was
+LEAST_SD = 0.002  # s: no smoother tells a clock better
 
 
-def late(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[str, float]:
-    """By how much (s) the pushes were recorded early, for each run where reading them later explains most of its error."""
+@dataclass(frozen=True)
+class Late:
+    """The pushes of a run belong `seconds` after the times they have, with a standard deviation of `sd`."""
+
+    seconds: float
+    sd: float
+
+
+def by_signals(campaign: Campaign) -> dict[str, Late]:
+    """Runs that stand out among the others by their signals alone, before any model: see `campaign.clocks.odd_ones_out`."""
+    found = odd_ones_out({run.name: tuple(_signals(run)) for run in campaign.runs if _one_clock(run)})
+    return {name: Late(shift.seconds, max(shift.se, LEAST_SD)) for name, shift in found.items()}
+
+
+def by_model(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[str, Late]:
+    """Runs where reading the pushes at another time, and at no third one, explains most of a large error."""
     found = {}
-    for e in evidence.runs:
-        if float(np.nanmean(e.r**2)) < SUSPECT**2:
+    for e in (e for e in evidence.runs if _one_clock(e.run)):
+        if float(np.nanmean(e.r**2)) < SUSPECT**2 or not any(np.ptp(push) > 0 for push in _pushes(e.run).values()):
             continue
         left = _left(bench, e, values, [*-SHIFTS, *SHIFTS])
         best = min(left, key=lambda t: left[t])
@@ -34,9 +56,45 @@ def late(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[
             finer = (best + side for side in (-FINER, FINER) if abs(best + side) > SHIFTS[0])
             left |= _left(bench, e, values, finer)
             best = min(left, key=lambda t: left[t])
-        if left[best] < EXPLAINED and abs(best) > SHIFTS[0]:  # at the smallest, less might do as well
-            found[e.run.name] = round(float(best), 1)
+        others = min((share for t, share in left.items() if abs(t - best) > APART), default=np.inf)
+        if left[best] < EXPLAINED and abs(best) > SHIFTS[0] and others > UNIQUE * left[best]:
+            found[e.run.name] = Late(float(best), FINER)
     return found
+
+
+def retimed(run: Run, late: Late) -> Run:
+    """The run with its pushes when the chair felt them; what is left unsure of that stays with it as a clock."""
+    pushes = _pushes(run)
+    inputs = {name: np.interp(run.time - late.seconds, run.time, push) for name, push in pushes.items()}
+    clock = Clock(PUSHES_CLOCK, frozenset(), frozenset(pushes), late.sd, late.seconds)
+    return covered(replace(run, inputs={**run.inputs, **inputs}, clocks=(*run.clocks, clock)), late.seconds)
+
+
+def clocks(evidence: Evidence) -> dict[str, dict[str, Late]]:
+    """For each run whose devices' clocks are uncertain, and each of these, its offset as the readings have it."""
+    found = {e.run.name: {c.device: _estimated(e, c) for c in e.run.clocks if c.sd > 0} for e in evidence.runs}
+    return {run: of for run, of in found.items() if of}
+
+
+def _estimated(e: RunEvidence, clock: Clock) -> Late:
+    name = f"clock.{clock.device}"
+    return Late(clock.offset + e.start.get(name, 0.0), e.posterior_sd(name, clock.sd))
+
+
+def _pushes(run: Run) -> dict[str, np.ndarray]:
+    return {name: push for name, push in run.inputs.items() if BY_FMU_NAME[name].name in PUSH_NAMES}
+
+
+def _one_clock(run: Run) -> bool:
+    """Were its pushes and readings recorded by one device, whose clock nobody has looked at?"""
+    return not run.clocks and not run.input_steps
+
+
+def _signals(run: Run) -> Iterator[Signal]:
+    for name, series in run.channels.items():
+        yield Signal("", name, run.time, series)
+    for name, push in _pushes(run).items():
+        yield Signal("", BY_FMU_NAME[name].name, run.time, push)
 
 
 def _left(bench: Bench, e: RunEvidence, values: Mapping[str, float], later: Iterable[float]) -> dict[float, float]:
@@ -55,9 +113,9 @@ def _moved(e: RunEvidence, seconds: float) -> RunEvidence:
     return replace(e, run=replace(e.run, inputs={name: np.interp(t - seconds, t, push) for name, push in e.run.inputs.items()}))
 
 
-def _alone(bench: Bench, e: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
+def _alone(bench: Bench, m: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
     try:
-        return bench.again(Evidence((e,), ()), values).runs[0]
+        return bench.again(Evidence((m,), ()), values).runs[0]
     except SimulationError:
         return None
 

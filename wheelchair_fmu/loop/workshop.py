@@ -14,6 +14,7 @@ from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import adds_state
 from .evidence import Bench, Colour
+from .timing import Late, retimed
 
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
 
@@ -64,12 +65,18 @@ class Workshop:
         bench.starts.update(self.starts)
         return bench
 
-    def leave_out(self, runs: Container[str] = (), channels: Container[str] = ()) -> None:
-        """Go on without these runs, without these channels in the others, and without what has no other channel."""
-        kept = [replace(r, channels={c: v for c, v in r.channels.items() if c not in channels})
-                for r in self.campaign.runs if r.name not in runs]  # fmt: skip
-        self.campaign = replace(self.campaign, runs=tuple(r for r in kept if r.channels or not channels))
+    def leave_out(self, channels: Container[str]) -> None:
+        """Go on without these channels, and without runs that have no other."""
+        kept = (replace(r, channels={c: v for c, v in r.channels.items() if c not in channels}) for r in self.campaign.runs)
+        self.campaign = replace(self.campaign, runs=tuple(r for r in kept if r.channels))
         self._benches.clear()
+
+    def retime(self, late: Mapping[str, Late]) -> None:
+        """Go on with the pushes of these runs at the time when the chair felt them."""
+        if late:
+            runs = tuple(retimed(r, late[r.name]) if r.name in late else r for r in self.campaign.runs)
+            self.campaign = replace(self.campaign, runs=runs)
+            self._benches.clear()
 
     def remember(self, bench: Bench) -> None:
         """Keep the starts a bench has found, for the next one."""

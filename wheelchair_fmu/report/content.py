@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..campaign import CHANNELS, Campaign, Run
+from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
 from ..loop.evidence import SETTLED, START, TOLERANCE, Colour, prior_start, start_sd
 from ..loop.statistics import finite
+from ..loop.timing import Late, retimed
 from ..loop.workshop import Workshop
 from ..model.stage import Effect
 from ..model.variant import Variant
@@ -29,6 +32,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
+    campaign = replace(campaign, runs=tuple(_in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
     workshop = Workshop(campaign, variant, fixed)
     variants = [variant.with_effects(ids) for ids in layers(workshop, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], START)
@@ -53,6 +57,12 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
         "settled": SETTLED,
         "tolerance": TOLERANCE,
     }
+
+
+def _in_time(run: Run, sync: Mapping[str, Any]) -> Run:
+    """The run with its pushes at the time that the diagnosis read them at, where the campaign has them at another."""
+    late = sync.get(run.name, {}).get(PUSHES_CLOCK)
+    return run if late is None or run.clocks else retimed(run, Late(late["offset"], 0.0))
 
 
 def layers(w: Workshop, given: Sequence[str], found: Sequence[str]) -> list[tuple[str, ...]]:
