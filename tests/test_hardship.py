@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -68,6 +69,11 @@ def command(kind: str, campaign: Path, out: Path) -> list[str]:
     return [*WHEELCHAIR, "sweep", str(campaign.parent / "plan.toml"), "-o", str(out), "--workers", "2"]
 
 
+def content(file: Path) -> bytes:
+    """But for the seconds that it took."""
+    return re.sub(rb'"seconds": [0-9.]+', b"", file.read_bytes())
+
+
 def run(words: list[str], **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, cwd=ROOT, env={**os.environ, **environment}, timeout=600)
 
@@ -98,10 +104,10 @@ def test_killed_at_any_moment_a_result_is_old_or_whole(kind, campaign, tmp_path,
     for after in sorted(lasts * rng.choice((rng.uniform(0, 1), rng.uniform(0.9, 1.1))) for _ in range(8)):
         out.write_bytes(OLD)
         ended += killed(command(kind, campaign, out), after)
-        assert out.read_bytes() in (OLD, whole.read_bytes())
+        assert content(out) in (OLD, content(whole))
     assert ended
     assert run(command(kind, campaign, out)).returncode == 0
-    assert out.read_bytes() == whole.read_bytes()
+    assert content(out) == content(whole)
 
 
 @pytest.mark.parametrize("kind", ["sweep", "fleet"])
@@ -125,22 +131,22 @@ def test_killed_again_and_again_what_is_resumed_is_the_same(kind, campaign, tmp_
 def verdict(campaign: Path, out: Path, cache: Path) -> bytes:
     done = run(command("diagnose", campaign, out), WHEELCHAIR_CACHE=str(cache))
     assert done.returncode == 0, done.stderr
-    return out.read_bytes()
+    return content(out)
 
 
 def test_a_cache_that_rots_changes_no_digit(campaign, tmp_path, rng):
     cache = tmp_path / "cache"
     expected = verdict(campaign, tmp_path / "first.json", cache)
     assert json.loads(expected)["verdict"]
-    for _ in range(5):
+    for _ in range(3):
         files = sorted(f for f in (cache / "compiled").iterdir() if f.is_file())
         for file in rng.sample(files, 3):
-            content = bytearray(file.read_bytes())
+            rotten = bytearray(file.read_bytes())
             if rng.random() < 0.3:
-                content = content[: rng.randrange(len(content))]
-            for place in (rng.randrange(len(content)) for _ in range(3) if content):
-                content[place] ^= 1 << rng.randrange(8)
-            file.write_bytes(content)
+                rotten = rotten[: rng.randrange(len(rotten))]
+            for place in (rng.randrange(len(rotten)) for _ in range(3) if rotten):
+                rotten[place] ^= 1 << rng.randrange(8)
+            file.write_bytes(rotten)
         assert verdict(campaign, tmp_path / "again.json", cache) == expected
 
 
@@ -167,9 +173,9 @@ def test_a_full_disk_is_one_sentence(kind, full, campaign, cramped, tmp_path):
     place, before = cramped
     if (full, kind) == ("cache", "build"):
         pytest.skip("a build keeps nothing in the cache")
-    if full == "results" and kind == "diagnose" and before:
+    if full == "results" and kind != "build" and before:
         pytest.skip("its results are smaller than that")
-    out = (place if full == "results" else tmp_path) / "out"
+    out = (place if full == "results" else tmp_path) / "out.parquet"
     cache = {} if full == "results" else {"WHEELCHAIR_CACHE": str(place / "cache")}
     if full == "results":
         out.write_bytes(OLD)

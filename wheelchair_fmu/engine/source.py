@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -99,8 +98,7 @@ def _generated(functions: dict[str, cs.Function], names: Sequence[str], prefix: 
     generator = cs.CodeGenerator(f"{prefix}.c", {"with_header": False})
     for name in names:
         generator.add(dividing_once(functions[name], f"{prefix}_{name}"))
-    with tempfile.TemporaryDirectory() as folder:
-        return _unchecked(Path(generator.generate(folder + "/")).read_text())
+    return _unchecked(generator.dump())  # a file that it writes itself may be cut off where the disk is full, without a word
 
 
 def _unchecked(text: str) -> str:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from math import isinf
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import casadi as cs
 
@@ -49,8 +47,7 @@ def _rules(m: Model) -> str:
     dx = cs.densify(cs.jtimes(m.start, cs.vertcat(m.p, m.w), cs.vertcat(dp, dw)))
     generator = cs.CodeGenerator("rules.c", {"with_header": False})
     generator.add(cs.Function("wc_start_forward", [m.p, m.w, dp, dw], [dx]))
-    with TemporaryDirectory() as folder:
-        return Path(generator.generate(folder + "/")).read_text()
+    return str(generator.dump())
 
 
 def tables(face: Interface, name: str, token: str) -> str:
