@@ -17,6 +17,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.independent.campaigns import make
@@ -124,7 +125,10 @@ def test_killed_again_and_again_what_is_resumed_is_the_same(kind, campaign, tmp_
     ended = sum(killed(command(kind, garage / "a", out), lasts * rng.uniform(0.3, 0.9)) for _ in range(6))
     assert ended
     assert (done := run(command(kind, garage / "a", out))).returncode == 0, done.stderr
-    assert out.read_bytes() == whole.read_bytes()
+    if kind == "sweep":
+        assert out.read_bytes() == whole.read_bytes()
+    else:  # but for how long each took
+        assert pq.read_table(out).drop_columns("seconds").equals(pq.read_table(whole).drop_columns("seconds"), check_metadata=True)
     assert not out.with_name(out.name + ".parts").exists()
 
 

@@ -47,8 +47,7 @@ def folder() -> Path:
 def found(name: str, suffix: str) -> Path | None:
     """The file of this name, if it is there and as it was made."""
     for path in sorted(folder().glob(f"{name}-*{suffix}")):
-        if path in _sound or _name(name, path, suffix) == path.name:
-            _sound.add(path)
+        if _is_sound(name, path, suffix):
             return path
         log.warning("%s was damaged; it is made again", path)
     return None
@@ -66,9 +65,9 @@ def kept(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
             beside = work / f"{name}{suffix}"
             make(beside)
             target = work.parent / _name(name, beside, suffix)
-            for damaged in work.parent.glob(f"{name}-*{suffix}"):
-                if damaged not in _sound:
-                    damaged.unlink(missing_ok=True)
+            for other in work.parent.glob(f"{name}-*{suffix}"):
+                if not _is_sound(name, other, suffix):  # what another process has just made is
+                    other.unlink(missing_ok=True)
             settle(beside, target)
     except OSError as error:
         raise BuildError(f"{folder()}: cannot keep there what was compiled: {(error.strerror or str(error)).lower()}; make "
@@ -89,6 +88,16 @@ def making() -> Iterator[Path]:
     _sweep(place)
     with work as name:
         yield Path(name)
+
+
+def _is_sound(name: str, path: Path, suffix: str) -> bool:
+    try:
+        if path not in _sound and _name(name, path, suffix) != path.name:
+            return False
+    except FileNotFoundError:  # another process has just removed it for that
+        return False
+    _sound.add(path)
+    return True
 
 
 def _name(name: str, content: Path, suffix: str) -> str:
