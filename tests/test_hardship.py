@@ -72,7 +72,7 @@ def command(kind: str, campaign: Path, out: Path) -> list[str]:
 
 def content(file: Path) -> bytes:
     """But for the seconds that it took."""
-    return re.sub(rb'"seconds": [0-9.]+', b"", file.read_bytes())
+    return re.sub(rb'"seconds": [0-9.]+', b'"seconds": 0', file.read_bytes())
 
 
 def run(words: list[str], **environment: str) -> subprocess.CompletedProcess[str]:
@@ -128,7 +128,8 @@ def test_killed_again_and_again_what_is_resumed_is_the_same(kind, campaign, tmp_
     if kind == "sweep":
         assert out.read_bytes() == whole.read_bytes()
     else:  # but for how long each took
-        assert pq.read_table(out).drop_columns("seconds").equals(pq.read_table(whole).drop_columns("seconds"), check_metadata=True)
+        ours, expected = (pq.read_table(file).drop_columns("seconds") for file in (out, whole))
+        assert ours.equals(expected, check_metadata=True)
     assert not out.with_name(out.name + ".parts").exists()
 
 
