@@ -13,6 +13,7 @@ from ..model.variant import Variant
 from ..quantities import Parameter
 from ..writing import written
 from .channels import CHANNELS, INPUTS, SOURCES, TIME, Channel
+from .formats import bundled
 from .schema import COLUMN, PARAMETER_TABLES, TABLES, TableRecord
 
 HEAD = """# campaign.toml
@@ -74,6 +75,22 @@ A column is matched by its whole header first, then without the unit behind it: 
 wheels (F or M, or a constant) are needed; of the rest, whatever was measured.
 
 """
+FORMAT_WORDS = """## Formats
+
+A file is recognised by its content, then by its ending; `format` in `[[run]]` or `[[recording]]` says it where neither tells.
+Units are taken from headers (`yaw_rate [deg/s]`, `Time (s)`, `gyr_dps`), from a row of units or from an attribute, and never
+guessed: a column that `[columns]` names and that has none is a fault, and `unit = "..."` cures it. `pip install
+"wheelchair-fmu[files]"` brings the libraries of the formats that need one, `[mdf]` that of MDF.
+
+A format of your own is a Python file with a record `FORMAT` in the folder `formats` of your configuration of wheelchair-fmu (a
+program that runs with your rights), or an entry point of the group `wheelchair_fmu.formats`.
+
+"""
+OPTION_WORDS = """### Options of formats
+
+Keys of `[[run]]` or `[[recording]]`, beside `format`.
+
+"""
 PARAMETER_WORDS = """## Parameters: [chair], [tyre], [resistance], [wheel], [caster], [floor], [effect]
 
 What is known of the chair, by the names of the FMU's parameters, in SI units: `[chair] m = 95` is `chair.m`. What is not given
@@ -85,7 +102,8 @@ effects (`[effect] rolling_resistance_asymmetry.D = 2`) are listed by `wheelchai
 
 def page() -> str:
     """The whole page, as Markdown."""
-    sections = [HEAD, *map(_table, TABLES), CHANNEL_WORDS, _channels((TIME, *INPUTS, *CHANNELS, *SOURCES)), PARAMETER_WORDS,
+    sections = [HEAD, *map(_table, TABLES), CHANNEL_WORDS, _channels((TIME, *INPUTS, *CHANNELS, *SOURCES)), FORMAT_WORDS,
+                _formats(), OPTION_WORDS, _options(), PARAMETER_WORDS,
                 _parameters(p for p in Variant().parameters() if _plain(p))]  # fmt: skip
     return "".join(sections)
 
@@ -109,6 +127,18 @@ def _channels(channels: Iterable[Channel]) -> str:
     rows = [(f"`{c.name}`", c.unit.name, c.meaning + (f"; or {c.rotary.name} with the wheel's radius" if c.rotary else ""))
             for c in channels]  # fmt: skip
     return _rows(("channel", "SI unit", "meaning"), rows)
+
+
+def _formats() -> str:
+    rows = [(f"`{f.id}`", f.title, " ".join(f.suffixes), f.meaning, ", ".join(o.key for o in f.options),
+             f"`pip install {f.needs}`" if f.needs else "") for f in bundled().values()]  # fmt: skip
+    return _rows(("format", "what", "endings", "how it is read", "options", "needs"), rows)
+
+
+def _options() -> str:
+    options = {o.key: o for f in bundled().values() for o in f.options}
+    rows = [(f"`{o.key}`", o.kind + (f", {o.unit}" if o.unit else ""), o.meaning, o.default) for o in options.values()]
+    return _rows(("key", "value", "meaning", "default"), rows)
 
 
 def _parameters(parameters: Iterable[Parameter]) -> str:
