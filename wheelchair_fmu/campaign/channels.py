@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 from ..quantities import M_S, M_S2, N_M, ONE, RAD, RAD_S, M, N, S, Unit
 
@@ -14,7 +15,8 @@ class Channel:
     `fmu` is the FMU output that predicts it, or the FMU input that it feeds. `iso_sign` is its factor from
     ISO 8855 to SAE J670. `low` and `high` bound what is plausible. A wheel turns `rotary` units into this
     channel's unit: value = rotary value · radius ** rotary_power. In one that `drifts`, whatever pushed the chair a little
-    stays for good.
+    stays for good. `starts` is the start parameter that its first readings tell; `side` is "l" or "r" where the other side
+    has one like it. From this record follow starts, wiring checks, tables of what a column may be, and the page's.
     """
 
     name: str
@@ -28,13 +30,25 @@ class Channel:
     rotary_power: int = 0
     wrong_unit: str = ""  # the unit that is most often meant when the size is implausible
     drifts: bool = False
+    starts: str = ""
+    side: str = ""
+
+    @property
+    def confused(self) -> tuple[float, str]:
+        """How many times as large the readings are in the unit they are most often left in, and that unit in words."""
+        return _CONFUSED[self.unit.name]
+
+
+# by SI unit
+_CONFUSED = {"rad": (180 / pi, "degrees"), "rad/s": (180 / pi, "deg/s"), "m/s": (3.6, "km/h"), "m": (1000.0, "mm"),
+             "m/s2": (9.81, "g")}  # fmt: skip
 
 
 def _wheel_speed(side: str, word: str) -> Channel:
     return Channel(
         f"wheel_speed_{side}", M_S, f"sensor.wheel_speed_{side}",
         f"speed of the {word} rear wheel at its rim of contact, positive forward", -15.0, 15.0,
-        rotary=RAD_S, rotary_power=1, wrong_unit="km/h",
+        rotary=RAD_S, rotary_power=1, wrong_unit="km/h", side=side,
     )  # fmt: skip
 
 
@@ -55,15 +69,17 @@ CHANNELS: tuple[Channel, ...] = (
     _wheel_speed("l", "left"),
     _wheel_speed("r", "right"),
     Channel("yaw_rate", RAD_S, "sensor.yaw_rate", "yaw rate, positive clockwise from above",
-            -20.0, 20.0, -1, wrong_unit="deg/s"),
+            -20.0, 20.0, -1, wrong_unit="deg/s", starts="start.psi_dot"),
     Channel("a_x", M_S2, "sensor.a_x", "specific force forward", -100.0, 100.0, wrong_unit="g"),
     Channel("a_y", M_S2, "sensor.a_y", "specific force to the right", -100.0, 100.0, -1, wrong_unit="g"),
-    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm", drifts=True),
+    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm", drifts=True,
+            starts="start.x"),
     Channel("y", M, "sensor.y", "position along the room's y, to the right of x", -1e4, 1e4, -1, wrong_unit="mm",
-            drifts=True),
+            drifts=True, starts="start.y"),
     Channel("yaw", RAD, "sensor.yaw", "heading, positive clockwise from above", -200.0, 200.0, -1, wrong_unit="deg",
-            drifts=True),
-    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h"),
+            drifts=True, starts="start.psi"),
+    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h",
+            starts="start.u"),
     Channel("v", M_S, "chair.v", "speed of the centre of mass, to the right", -15.0, 15.0, -1, wrong_unit="km/h"),
 )  # fmt: skip
 
@@ -80,6 +96,8 @@ SOURCES: tuple[Channel, ...] = tuple(
 
 BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + INPUTS}
 BY_FMU_NAME: dict[str, Channel] = {channel.fmu: channel for channel in CHANNELS + INPUTS}
+TELLS: dict[str, Channel] = {channel.starts: channel for channel in CHANNELS if channel.starts}
+SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.side)  # the left one first
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
-from ..campaign.channels import BY_FMU_NAME, PUSHES
+from ..campaign.channels import BY_FMU_NAME, PUSHES, TELLS
 from ..engine.innovations import Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -27,7 +27,6 @@ TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best 
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
-TELLS = {"start.x": "x", "start.y": "y", "start.psi": "yaw", "start.u": "u", "start.psi_dot": "yaw_rate"}  # by channel
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
 SCATTER = 1.15  # ratio of two estimates of the same noise
@@ -419,7 +418,7 @@ def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
         values = values[np.isfinite(values)]
         return float(values.mean()) if len(values) else known.get(name, 0.0)
 
-    found = {name: mean(name, channel) for name, channel in TELLS.items()}
+    found = {name: mean(name, channel.name) for name, channel in TELLS.items()}
     if run.u0 is not None:
         found["start.u"] = run.u0
     return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in START}
@@ -427,5 +426,5 @@ def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
 
 def start_sd(run: Run) -> dict[str, float]:
     """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be."""
-    pose = {name: POSE_SD if TELLS[name] in run.channels else 0.0 for name in POSE}
+    pose = {name: POSE_SD if TELLS[name].name in run.channels else 0.0 for name in POSE}
     return {name: 0.0 if name in run.set else sd for name, sd in {**pose, **START_SD}.items()}

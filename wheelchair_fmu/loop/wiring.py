@@ -12,15 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..campaign import BY_NAME
+from ..campaign.channels import SIDES
 from ..errors import SimulationError
 from .evidence import START, Bench
 
-UNITS = {"rad": (180 / np.pi, "degrees"), "rad/s": (180 / np.pi, "deg/s"), "m/s": (3.6, "km/h"), "m": (1000.0, "mm"),
-         "m/s2": (9.81, "g")}  # fmt: skip
 LIKE = 0.2  # share of its mean square that k times what the model reads may leave of a channel,
 ABOUT = 0.25  # and by which k may be off
 TWICE = 2  # runs that must say so
-SIDES = ("wheel_speed_l", "wheel_speed_r")
 DIFFERENCE = " - ".join(SIDES)
 
 
@@ -70,7 +68,7 @@ def _channels(factors: Mapping[str, float]) -> Wiring:
         notes.append(f"{' and '.join(SIDES)} seem to be exchanged, and are left out; exchange their columns")
     for c, k in factors.items():
         if c != DIFFERENCE and _in_other_unit(c, k):
-            unit = UNITS[BY_NAME[c].unit.name][1]
+            unit = BY_NAME[c].confused[1]
             cure = f"whether it is in {unit}" if abs(k) > 1 else f"whether its header says {unit} of what is not"
             wrong.append(c)
             notes.append(f"{c} is about {abs(k):.2g} times what the model reads, and is left out; see {cure}")
@@ -110,5 +108,5 @@ def _near(k: float, factor: float) -> bool:
 
 
 def _in_other_unit(channel: str, k: float) -> bool:
-    factor = UNITS[BY_NAME[channel].unit.name][0]
+    factor = BY_NAME[channel].confused[0]
     return _near(abs(k), factor) or _near(abs(k), 1 / factor)

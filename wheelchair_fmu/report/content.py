@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..campaign import CHANNELS, Campaign, Run
+from ..campaign.channels import PUSHES
 from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
@@ -44,6 +45,7 @@ def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Map
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},
         "drifting": [c.name for c in CHANNELS if c.drifts],
+        "pushed": list(PUSHES),
         "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
         "known": {**workshop.variant.values, **campaign.known},
         "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],

@@ -9,7 +9,7 @@ from ..errors import SimulationError
 from .driving import Fmu, Values
 
 PREDICTS = {channel.name: channel.fmu for channel in CHANNELS}
-STARTS = {"start.x": "x", "start.y": "y", "start.psi": "yaw"}  # where tracking says the chair was at the start
+STARTS = {channel.starts: channel.name for channel in CHANNELS if channel.starts and channel.drifts}  # where tracking tells it
 
 
 def run_campaign_run(fmu: Fmu, run: Run, values: Values) -> dict[str, np.ndarray]:

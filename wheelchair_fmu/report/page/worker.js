@@ -1,7 +1,7 @@
 /* The chair in a worker: simulates runs by WebAssembly and whitens what is left, as loop/evidence.py does.
  *
  * A page's worker has no imports, so this file stands alone. Messages in:
- *   {load: {models, runs, noise, start, tuning, tolerance}}   once; see report/content.py
+ *   {load: {models, runs, noise, pushed, start, tuning, tolerance}}   once; see report/content.py
  *   {job, run, values, exact}                                 simulate one run with parameter values by name (SI)
  *   {job, trace}                                              only simulate: a record {values, time, inputs, tolerance, grid}
  * and out: {job, ...result} or {job, error}. Matrices are stored by rows throughout. */
@@ -12,8 +12,6 @@ const WHY = {
   2: "no step was short enough for the tolerance",
   3: "the algebraic equations have no solution nearby",
 };
-const PUSHED = ["F_rl", "F_rr"]; // records of pushes that carry noise
-const PUSHES = PUSHED.length; // the first inputs
 const MOST = 64; // states, pushes and readings together, as in innovations.c
 const REACH = 3; // standard deviations that a start may be moved
 
@@ -91,8 +89,8 @@ class Kernel {
     const n = time.length, nx = this.states, ns = this.sensors.length, k = this.columns.length;
     const [P, T, W] = [p, time, rows].map((a) => this.put(a));
     const sizes = {
-      transition: (n - 1) * nx * nx, push_before: (n - 1) * nx * PUSHES, push_after: (n - 1) * nx * PUSHES,
-      by_state: n * ns * nx, by_push: n * ns * PUSHES, start: nx * k, by_parameter: n * ns * k,
+      transition: (n - 1) * nx * nx, push_before: (n - 1) * nx * campaign.pushed.length, push_after: (n - 1) * nx * campaign.pushed.length,
+      by_state: n * ns * nx, by_push: n * ns * campaign.pushed.length, start: nx * k, by_parameter: n * ns * k,
     };
     const at = Object.fromEntries(Object.entries(sizes).map(([name, size]) => [name, this.doubles(size)]));
     const which = this.words(this.columns.map((_, i) => i));
@@ -115,7 +113,7 @@ class Kernel {
   /** Calls `act` with the addresses of a filter's record, whose matrices are put into memory, and of its `present`. */
   withFilter(filter, startCov, act) {
     this.reset();
-    const { system, noise, present, nz } = filter, nx = this.states, nq = PUSHED.length;
+    const { system, noise, present, nz } = filter, nx = this.states, nq = campaign.pushed.length;
     if (nx + nq + nz > MOST) throw new Error(`${nx} states, ${nq} pushes and ${nz} readings are more than ${MOST}`);
     const arrays = [system.A, system.B, system.C, system.H, system.D, noise.push_sd, noise.push_ar, noise.sd, noise.ar, startCov];
     const flags = this.doubles(Math.ceil(present.length / 8));
@@ -128,7 +126,7 @@ class Kernel {
 class Whitener {
   constructor(kernel, system, noise, present, n, startCov, dt) {
     Object.assign(this, { kernel, system, noise, present, n, startCov, nz: noise.sd.length });
-    this.size = kernel.states + PUSHED.length + this.nz;
+    this.size = kernel.states + campaign.pushed.length + this.nz;
     kernel.withFilter(this, startCov, (record, flags) => {
       kernel.wasm.wc_page_drop_kinks(record, n, dt);
       this.present = new Uint8Array(kernel.wasm.memory.buffer, flags, present.length).slice();
@@ -183,16 +181,16 @@ function byInterval(time, coefficients, steps) {
 
 /** Standard deviations (n, nq) of the recorded pushes and their coefficients (n - 1, nq), as engine/innovations.py. */
 function noiseOfPushes(time) {
-  const n = time.length, nq = PUSHED.length, own = usualStep(time), gap = (i) => time[i + 1] - time[i];
-  const ar = PUSHED.map((c) => campaign.noise.ar[c] ?? 0), push_sd = new Float64Array(n * nq);
+  const n = time.length, nq = campaign.pushed.length, own = usualStep(time), gap = (i) => time[i + 1] - time[i];
+  const ar = campaign.pushed.map((c) => campaign.noise.ar[c] ?? 0), push_sd = new Float64Array(n * nq);
   for (let i = 0; i < n; i++) {
     const around = i === 0 ? gap(0) : i === n - 1 ? gap(n - 2) : (gap(i - 1) + gap(i)) / 2;
-    PUSHED.forEach((c, q) => {
+    campaign.pushed.forEach((c, q) => {
       const there = ar[q] ** (around / own), lasting = (own * (1 + ar[q])) / (1 - ar[q]);
       push_sd[i * nq + q] = (campaign.noise.sd[c] ?? 0) * Math.sqrt(lasting / ((around * (1 + there)) / (1 - there)));
     });
   }
-  return { push_sd, push_ar: byInterval(time, ar, PUSHED.map(() => own)) };
+  return { push_sd, push_ar: byInterval(time, ar, campaign.pushed.map(() => own)) };
 }
 
 function interpolated(time, series, delay) {
@@ -268,13 +266,13 @@ function readings({ kernel, n, nz, place }, y) {
 function linearised(f, values, start) {
   const { kernel, run, n, nz, which } = f, nx = kernel.states, k = campaign.start.length, ns = kernel.sensors.length;
   const s = kernel.linearise(...given(f, values, start), campaign.tolerance);
-  const every = [...Array(nx).keys()], nq = PUSHED.length;
+  const every = [...Array(nx).keys()], nq = campaign.pushed.length;
   const system = {
     A: s.transition,
-    B: part(s.push_before, n - 1, nx, PUSHES, every, nq),
-    C: part(s.push_after, n - 1, nx, PUSHES, every, nq),
+    B: part(s.push_before, n - 1, nx, campaign.pushed.length, every, nq),
+    C: part(s.push_after, n - 1, nx, campaign.pushed.length, every, nq),
     H: part(s.by_state, n, ns, nx, which, nx),
-    D: part(s.by_push, n, ns, PUSHES, which, nq),
+    D: part(s.by_push, n, ns, campaign.pushed.length, which, nq),
   };
   const column = campaign.start.map((name) => kernel.columns.indexOf(name)), sd = campaign.start.map((name) => run.start_sd[name]);
   const byStart = new Float64Array(n * nz * k), cov = new Float64Array(nx * nx), offset = new Float64Array(nx);
