@@ -106,7 +106,8 @@ def sources() -> str:
 
 def effect_key(effect: Effect) -> str:
     """An effect by its files' content and its laws' code or expressions, so that an edited file is a new effect."""
-    laws = [*(c.law for c in effect.contributions), *(r.rate for r in effect.rows)]
+    of_rows = (law for r in effect.rows for law in (r.mass, r.rate, r.start) if law is not None)
+    laws = [*(c.law for c in effect.contributions), *of_rows]
     said = [(law.expression, law.arguments) for law in laws if isinstance(law, ExpressionLaw)]
     codes = [law.__code__ for law in laws if not isinstance(law, ExpressionLaw)]
     files = {c.co_filename: "".join(linecache.getlines(c.co_filename)) for c in codes}
