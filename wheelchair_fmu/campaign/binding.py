@@ -72,6 +72,8 @@ def bind(device: Device, table: Table, taken: Collection[str] = ()) -> Bindings:
     places = _Places(headers)
     for channel in (TIME, *BY_NAME.values(), *SOURCES):
         want = wanted(device, channel.name)
+        if want.renamed and not want.header:
+            continue  # "" says that this device is not to be asked
         matches = places.of(want.header)
         if not matches and want.renamed:
             absent.append(channel.name)

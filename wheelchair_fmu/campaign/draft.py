@@ -154,7 +154,7 @@ def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows
             angles[name], glitched[name] = cleaned(angle)
         for name, angle in angles.items():
             speed = name.replace("angle", "speed")
-            if speed not in values and part.device.radius:
+            if speed not in values and part.device.radius and part.device.columns.get(speed) != "":
                 values[speed], noise[speed] = wheel_speed(time, angle, part.device.radius)
     measured = [c for c in CHANNEL_NAMES if c in values and c not in noise]
     slower = {c: how for c in measured if (how := resampled(values[c]))}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 from importlib import import_module
+from keyword import iskeyword
 from typing import Annotated, Any
 
 import typer
@@ -22,6 +23,7 @@ COMMANDS = {
     "paper": "Run sections 6.1 to 6.3 of the paper.",
     "sweep": "Simulate every chair of a plan.",
     "tyre": "Tyres identified from rig data.",
+    "import": "Make a campaign from recordings, whoever wrote them.",
     "check": "Read a campaign and print all its faults: place, fact, cure.",
     "sync": "Find the clocks of a campaign's devices.",
     "compare": "Simulate every run, and say how far off the model is.",
@@ -45,7 +47,8 @@ class Commands(Group):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         if cmd_name in COMMANDS and cmd_name not in self.commands:
             alone = typer.Typer(rich_markup_mode=None)  # which would take units in brackets for its own
-            import_module(f".{cmd_name}", __package__).register(alone)
+            module = f"{cmd_name}_" if iskeyword(cmd_name) else cmd_name  # no module can be called import
+            import_module(f".{module}", __package__).register(alone)
             self.commands |= typer.main.get_group(alone).commands
         return super().get_command(ctx, cmd_name)
 

@@ -45,7 +45,8 @@ def sync(
     if as_json:
         print_json({"campaign": str(campaign), "sync": {one.run.name: _told(one) for one in found}})
     else:
-        _show(found)
+        for doubt in show(found):
+            console().print(doubt)
     if not dry_run and any(one.sure for one in found):
         write(doc, found)
         console(stderr=True).print(f"the clocks that are sure are in {doc.path}; their picture is {out / 'clocks.png'}")
@@ -57,11 +58,12 @@ def _told(one: RunClocks) -> dict[str, Any]:
             for device, clock in one.clocks.items()}  # fmt: skip
 
 
-def _show(found: Sequence[RunClocks]) -> None:
+def show(found: Sequence[RunClocks]) -> list[str]:
+    """A table of the clocks; a sentence for each that is not sure."""
     out = console()
     if not found:
         out.print("every run has one clock: nothing to find")
-        return
+        return []
     table = Table(box=box.SIMPLE)
     for title in ("run", "device", "beside"):
         table.add_column(title, no_wrap=True)
@@ -78,7 +80,4 @@ def _show(found: Sequence[RunClocks]) -> None:
             if not sure:
                 doubts.append(f"{one.run.name}: {one.why(device)}")
     out.print(table)
-    for doubt in doubts:
-        out.print(doubt)
-
-
+    return doubts

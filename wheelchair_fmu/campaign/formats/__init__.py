@@ -4,7 +4,7 @@ A user's format is a file with a record `FORMAT` in the folder `formats` of the 
 an entry point of the group `wheelchair_fmu.formats`. Code that lies in a campaign is never run.
 """
 
-from ._opening import open_recording
+from ._opening import format_of, open_recording
 from ._record import Format, Option, Read
 from ._registry import bundled, formats, known_options, user_folder
 from .smartwheel import read_smartwheel
@@ -14,6 +14,7 @@ __all__ = [
     "Option",
     "Read",
     "bundled",
+    "format_of",
     "formats",
     "known_options",
     "open_recording",

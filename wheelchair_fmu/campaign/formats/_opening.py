@@ -59,6 +59,16 @@ def open_recording(path: Path, file: str, options: Mapping[str, Any]) -> tuple[T
     return known["csv"].read(path, file, options)
 
 
+def format_of(path: Path) -> str:
+    """What a file is, in words: the title of its format."""
+    known, _ = formats()
+    try:
+        head = read_head(path)
+    except OSError:
+        return "unreadable"
+    return (_recognised(known, path, head) or _by_name(known, path) or known["csv"]).title
+
+
 def _recognised(known: Mapping[str, Format], path: Path, head: bytes) -> Format | None:
     """The format that finds its own in the content; of several, the one whose suffix the file has."""
     found = [record for record in known.values() if record.recognises(path, head)]

@@ -1,0 +1,187 @@
+"""Recordings that were opened, by device and run: their columns with what the headers say, and their series."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...faults import WARNING, Fault, some
+from ...tables import Table
+from ...units import UnitError, factor
+from ..formats import open_recording
+from .guesses import Guess, guess, side_of, sides
+from .naming import Placed, placed
+
+PROSE = (".md", ".txt", ".rst", ".pdf", ".doc", ".docx", ".html", "")  # endings that texts about recordings have
+OURS = (".toml", ".py", ".m", ".png", ".jpg", ".svg")
+FEWEST = 20  # rows of a recording
+LONGEST = 300.0  # s of a recording that are looked at
+STEPS = ((0.5, "s", 1.0), (500.0, "ms", 1e-3), (5e5, "us", 1e-6), (np.inf, "ns", 1e-9))  # largest step of a time in each unit
+Series = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: its place, its header, the unit that the file gives, and what the header says it is."""
+
+    index: int
+    header: str
+    unit: str | None
+    guess: Guess | None
+
+    @property
+    def quantity(self) -> str:
+        return self.guess.quantity if self.guess else ""
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A recording: where it is, how it is called, its table."""
+
+    path: Path
+    file: str
+    table: Table
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A device: its recordings by run, its columns, the side that its name tells, its time column and the unit of that."""
+
+    name: str
+    side: str
+    files: Mapping[str, Opened]
+    columns: tuple[Column, ...]
+    time: Column | None
+    time_unit: str
+    time_by_size: bool
+    _known: dict[tuple[str, int], Series | None] = field(default_factory=dict, repr=False)
+
+    def of(self, *quantities: str) -> list[Column]:
+        return [column for column in self.columns if column.quantity in quantities]
+
+    def series(self, run: str, column: Column, si: str = "", unit: str | None = None) -> Series | None:
+        """Times (s) and values of a column in a run, by the device's clock; in `si` where that is given, from `unit` or the
+        file's. None where the run has no such column."""
+        if run not in self.files or self.time is None:
+            return None
+        key = run, column.index
+        if key not in self._known:
+            self._known[key] = self._read(self.files[run].table, column)
+        found = self._known[key]
+        if found is None or not si:
+            return found
+        return found[0], scale_of(unit if unit is not None else column.unit, si) * found[1]
+
+    def _read(self, table: Table, column: Column) -> Series | None:
+        assert self.time is not None
+        if column.header not in table.headers or self.time.header not in table.headers:
+            return None
+        clock, at = table.headers.index(self.time.header), table.headers.index(column.header)
+        values = table.rows(sorted({clock, at})).values
+        time = values[clock] * (1.0 if clock in table.moments else scale_of(self.time_unit, "s"))
+        good = np.isfinite(time)
+        good[good] = np.concatenate([[True], np.diff(time[good]) > 0])[: good.sum()]
+        good &= time < np.nanmin(time) + LONGEST
+        return (time[good], values[at][good]) if good.sum() > FEWEST else None
+
+
+def scale_of(unit: str | None, si: str) -> float:
+    """The factor to SI; 1 where there is none."""
+    try:
+        return factor(unit, si) if unit else 1.0
+    except UnitError:
+        return 1.0
+
+
+def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]]:
+    """The files that are recordings, and a sentence for each of the others. Paths come with the names that users know."""
+    found, faults = [], []
+    for path, file in paths:
+        if path.name.lower() == "campaign.toml" or path.suffix.lower() in OURS:
+            continue
+        table, met = open_recording(path, file, {})
+        prose = path.name.lower().startswith("readme") or path.suffix.lower() in PROSE
+        if table is not None and not _numbers(table):
+            table, met = None, [] if prose else [Fault(file, None, None, "the file has no column of numbers", "export it again")]
+        if table is None:
+            why = met[0] if met and not prose else Fault(file, None, None, "the file is text, no recording", "nothing is to be done")
+            faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, WARNING))
+            continue
+        found.append(Opened(path, file, table))
+    return found, faults
+
+
+def _numbers(table: Table) -> bool:
+    """Has a table at least two columns, and rows enough, of numbers?"""
+    if len(table.headers) < 2:
+        return False
+    values = table.rows([0, len(table.headers) - 1]).values
+    return all(len(v) >= FEWEST for v in values.values()) and any(np.isfinite(v).sum() >= FEWEST for v in values.values())
+
+
+def kind(one: Opened) -> Hashable:
+    """Files of one device have the same headers."""
+    return one.table.headers
+
+
+def sources(files: Sequence[Opened]) -> tuple[list[Source], list[str], list[Fault]]:
+    """The devices, the names of the runs in order, and what is odd about files of one device."""
+    by_file = {one.file: one for one in files}
+    places = placed(list(by_file), {one.file: kind(one) for one in files})
+    runs = sorted({place.run for place in places}, key=_natural)
+    devices = list(dict.fromkeys(place.device for place in sorted(places, key=lambda p: _natural(p.run))))
+    told = sides(devices)
+    found = [_source(name, told[name], {p.run: by_file[p.file] for p in places if p.device == name}) for name in devices]
+    return found, runs, [fault for one in found for fault in _without_time(one)]
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Run 2 before run 10."""
+    import re
+
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
+
+
+def _source(name: str, side: str, files: Mapping[str, Opened]) -> Source:
+    files = dict(sorted(files.items(), key=lambda item: _natural(item[0])))
+    first = next(iter(files.values()))
+    table = first.table
+    columns = tuple(Column(i, header, unit, guess(header, unit) if header else None)
+                    for i, (header, unit) in enumerate(zip(table.headers, table.units, strict=True)))  # fmt: skip
+    time = next((c for c in columns if c.index == table.time), None)
+    time = time or next((c for c in columns if c.quantity == "time" and (c.unit is None or c.unit not in ("1", "-"))), None)
+    unit, by_size = _time_unit(table, time)
+    return Source(name, side or _written_side(first), files, columns, time, unit, by_size)
+
+
+def _time_unit(table: Table, time: Column | None) -> tuple[str, bool]:
+    """The unit of a time column; from the size of its steps where the file gives none."""
+    if time is None or time.index in table.moments:
+        return "s", False
+    if time.unit:
+        return time.unit, False
+    steps = np.diff(table.rows([time.index]).values[time.index])
+    usual = float(np.nanmedian(steps)) if steps.size else 0.01
+    return next(unit for most, unit, _ in STEPS if usual < most), True
+
+
+def _written_side(one: Opened) -> str:
+    """The side that stands in the lines above the header, as in "Wheel Side :Right"."""
+    try:
+        head = one.path.open("rb").read(2000).decode("latin-1") if one.path.suffix.lower() in (".txt", ".csv", ".data") else ""
+    except OSError:
+        return ""
+    lines = [line for line in head.splitlines()[:20] if "side" in line.lower() and ":" in line]
+    return next((side for line in lines if (side := side_of(line.partition(":")[2]))), "")
+
+
+def _without_time(source: Source) -> list[Fault]:
+    if source.time is not None:
+        return []
+    first = next(iter(source.files.values()))
+    fact = f"no time column among {some(repr(c.header) for c in source.columns)}"
+    cure = f'write rate = ... in Hz, or columns.time = "..." in the [[recording]] of {source.name}'
+    return [Fault(first.file, 1, None, fact, cure)]

@@ -1,0 +1,161 @@
+"""Which run and which device a file belongs to, from names: the part that changes with the run is the run.
+
+::
+
+    run01_SWL.csv  run01_SWR.csv  run01.trc        runs run01, run02, ...; devices SWL, SWR, trc
+    m01.xlsx       m01_Moment.csv                  runs m01, m02, ...; devices xlsx, Moment
+    slalom.csv     coast-down.csv                  runs slalom, coast-down; one device, where both have the same columns
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+
+RUN_WORDS = ("run", "trial", "take", "test", "m", "messung", "versuch", "fahrt", "lauf", "essai", "mesure", "passage", "rec",
+             "recording", "aufnahme", "r", "t")  # fmt: skip
+PLACES = frozenset(
+    "left right links rechts gauche droite l r lh rh frame rahmen cadre seat sitz imu gyro wheel wheels rad raeder roue roues swl swr sw "
+    "smartwheel optipush markers marker mocap vicon optitrack trc c3d moment torque drehmoment couple force encoder "
+    "speed push rim rims pushrim sensor sensors xsens movella ngimu logger amplifier".split()
+)  # words that say who recorded, or where: never the name of a run
+LONGEST = 5  # digits of a run's number: more are a date or a serial number
+_PACKED = (".gz", ".bz2", ".xz")
+_BETWEEN = re.compile(r"[-_ .]+")
+_NUMBERED = re.compile(r"([^\W\d]*?)(\d+)")
+
+
+@dataclass(frozen=True)
+class Name:
+    """A file's name in parts: words of its stem, and its ending without the dot."""
+
+    file: str
+    words: tuple[str, ...]
+    ending: str
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A file of a run and a device."""
+
+    file: str
+    run: str
+    device: str
+
+
+Split = tuple[str, tuple[str, ...]]  # the run, and the words that are left for the device
+
+
+def parted(file: str) -> Name:
+    """A file's name in parts; folders that it names count as words."""
+    path = PurePath(file)
+    packed = path.suffix.lower() in _PACKED
+    plain = path.with_suffix("") if packed else path
+    words = _BETWEEN.split("_".join((*plain.parent.parts, plain.stem)))
+    return Name(file, tuple(word for word in words if word), plain.suffix.lstrip(".").lower())
+
+
+def placed(files: Sequence[str], kind: Mapping[str, Hashable]) -> list[Placed]:
+    """The run and the device of each file. Files of equal `kind` have the same columns: only these can be one device's."""
+    names = [parted(file) for file in files]
+    for way in (*_by_number(names), *_by_word(names)):
+        found = _tried(names, way, kind)
+        if found:
+            return found
+    return _apart(names, kind)
+
+
+def slug(text: str) -> str:
+    """A name as a key of TOML: lower case, letters and digits of ASCII, with _ between words."""
+    plain = unicodedata.normalize("NFKD", text.replace("ß", "ss")).encode("ascii", "ignore").decode()
+    return re.sub(r"[^a-z0-9]+", "_", plain.lower()).strip("_")
+
+
+def _by_number(names: Sequence[Name]) -> Iterator[Callable[[Name], Split | None]]:
+    """Ways to take a numbered word for the run: run01, m03, trial 2. Those with a word for a run first, then those that most
+    files have."""
+    counts: dict[tuple[str, bool], set[str]] = defaultdict(set)
+    for name in names:
+        for prefix, alone, _ in _numbers(name):
+            counts[prefix, alone].add(name.file)
+    order = sorted(counts, key=lambda key: (-len(counts[key]), key[0] not in RUN_WORDS, not key[0]))
+    order.sort(key=lambda key: key[0] not in RUN_WORDS or len(counts[key]) < 2)
+    for key in order:
+        yield lambda name, key=key: _numbered(name, key)
+
+
+def _numbers(name: Name) -> Iterator[tuple[str, bool, int]]:
+    """(prefix, whether the number is a word of its own, place of the number) of each numbered word."""
+    for i, word in enumerate(name.words):
+        found = _NUMBERED.fullmatch(word)
+        if found and len(found[2]) <= LONGEST:
+            alone = not found[1]
+            before = name.words[i - 1].lower() if alone and i and name.words[i - 1].isalpha() else ""
+            yield (before if alone else found[1].lower()), alone, i
+
+
+def _numbered(name: Name, key: tuple[str, bool]) -> Split | None:
+    for prefix, alone, i in _numbers(name):
+        if (prefix, alone) == key:
+            first = i - 1 if alone and prefix else i
+            return "_".join(name.words[first : i + 1]), name.words[:first] + name.words[i + 1 :]
+    return None
+
+
+def _by_word(names: Sequence[Name]) -> Iterator[Callable[[Name], Split | None]]:
+    """Ways to take the words from the beginning, or from the end, for the run: slalom_imu, slalom_wheels, coast_imu."""
+    most = max((len(name.words) for name in names), default=0)
+    for k in range(1, most + 1):
+        yield lambda name, k=k: ("_".join(name.words[:k]), name.words[k:]) if len(name.words) >= k else None
+        yield lambda name, k=k: ("_".join(name.words[-k:]), name.words[:-k]) if len(name.words) > k else None
+
+
+def _tried(names: Sequence[Name], way: Callable[[Name], Split | None], kind: Mapping[str, Hashable]) -> list[Placed] | None:
+    """The files placed by one way; None where it places one not at all, two alike, or files of several kinds as one device's,
+    or where each run has a device of its own."""
+    splits = [way(name) for name in names]
+    if any(split is None for split in splits):
+        return None
+    found = [(name, *split) for name, split in zip(names, splits, strict=True) if split is not None]
+    devices = _devices([(name, rest) for name, _, rest in found], kind)
+    result = [Placed(name.file, run, device) for (name, run, _), device in zip(found, devices, strict=True)]
+    runs, kinds = defaultdict(set), defaultdict(set)
+    for one in result:
+        runs[one.run].add(one.device)
+        kinds[one.device].add(kind.get(one.file))
+    twice = len({(one.run, one.device) for one in result}) < len(result)
+    crossed = len(runs) == 1 or len(kinds) < len(result)
+    mixed = any(len(of) > 1 for of in kinds.values()) or any(_of_devices(run.split("_")) for run in runs)
+    return None if twice or mixed or not crossed else result
+
+
+def _of_devices(words: Sequence[str]) -> bool:
+    return all(word.lower() in PLACES for word in words)
+
+
+def _devices(rests: Sequence[tuple[Name, tuple[str, ...]]], kind: Mapping[str, Hashable]) -> list[str]:
+    """Names of devices: the words that are left of a file's name, with its ending where these do not tell devices apart."""
+    plain = [slug("_".join(rest)) for _, rest in rests]
+    endings: dict[str, set[str]] = defaultdict(set)
+    for (name, _), device in zip(rests, plain, strict=True):
+        endings[device].add(name.ending)
+    return [slug(name.ending) or "file" if not device else f"{device}_{name.ending}" if len(endings[device]) > 1 else device
+            for (name, _), device in zip(rests, plain, strict=True)]  # fmt: skip
+
+
+def _apart(names: Sequence[Name], kind: Mapping[str, Hashable]) -> list[Placed]:
+    """No pattern: files that are called as devices are of one run, left.csv and right.csv; else each file is a run of its own, of
+    one device for all that have the same columns."""
+    stems = ["_".join(name.words) for name in names]
+    if len(names) > 1 and all(map(_of_devices, (name.words for name in names))):
+        own = [slug(stem) if stems.count(stem) == 1 else slug(f"{stem}_{n.ending}") for stem, n in zip(stems, names, strict=True)]
+        return [Placed(name.file, "run", device) for name, device in zip(names, own, strict=True)]
+    kinds = list(dict.fromkeys(kind.get(name.file) for name in names))
+    devices = [next(slug("_".join(n.words)) or "file" for n in names if kind.get(n.file) == one) for one in kinds]
+    return [Placed(name.file, stem if stems.count(stem) == 1 else f"{stem}_{name.ending}",
+                   devices[kinds.index(kind.get(name.file))])
+            for name, stem in zip(names, stems, strict=True)]  # fmt: skip

@@ -1,0 +1,158 @@
+"""campaign.toml as a person would write it: with comments that say what told each thing, and what is still to be filled in."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ..axes import AXES, SAE
+from .choices import NAMED, Choice, Plan
+from .guesses import OWN
+
+MANOEUVRES = ("coast-down", "coastdown", "slalom", "straight", "circle", "pivot", "spin", "turn", "sprint", "kreis", "ausrollen")
+PUSHES = ("F_rl", "F_rr", "M_rl", "M_rr")
+WIDE = 90  # characters of a line behind which a comment stands on a line of its own
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What the user says: of the chair (SI units), of axes that no signal tells, and of the runs that are kept for checking."""
+
+    name: str
+    mass: float | None = None
+    radius: float | None = None
+    track: float | None = None
+    axes: str = ""
+    holdout: Sequence[str] = ()
+    at_rest: Mapping[str, bool] = field(default_factory=dict)
+
+
+CHAIR = (
+    ("m", "mass", "chair and rider, kg"),
+    ("a", "", "from the centre of mass forward to the casters' pivots, m"),
+    ("b", "", "from the centre of mass back to the rear axle, m"),
+    ("t_r", "track", "track of the rear wheels on the floor, m"),
+    ("t_f", "", "track of the casters' pivots, m"),
+)
+
+
+def text(plans: Sequence[Plan], runs: Sequence[str], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
+    """The whole file. `files` are by run and device, as campaign.toml is to name them."""
+    alone = len(plans) == 1 and not plans[0].markers
+    parts = [_head(plans, files, wanted), _chair(wanted), _nuisance(plans)]
+    parts += [_columns(plans[0])] if alone else [_recording(plan, wanted) for plan in plans]
+    parts += [_run(run, files[run], wanted, alone) for run in runs]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def axes_of(plans: Sequence[Plan], wanted: Wanted) -> str:
+    """Axes of the campaign: those of the frame sensor, else what the user says."""
+    return next((plan.axes for plan in plans if plan.axes), "") or wanted.axes or SAE
+
+
+def open_axes(plans: Sequence[Plan]) -> bool:
+    """Are there channels whose axes nothing tells?"""
+    turning = ("yaw_rate", "a_y", "y", "v", "yaw")
+    return any(plan.find(channel) and not plan.axes and not plan.markers for plan in plans for channel in turning)
+
+
+def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
+    count = sum(map(len, files.values()))
+    told = next((plan for plan in plans if plan.axes), None)
+    why = f"of {told.name}, {told.why_axes}" if told else "as you said" if wanted.axes else "no signal tells: correct it" if open_axes(plans) else ""
+    other = next((a for a in AXES if a != axes_of(plans, wanted)), "")
+    return "\n".join([
+        f"# Written by `wheelchair import` from {count} files. Behind each column stands what told it; see also preview.html.",
+        "", "[campaign]", f"name = {quoted(wanted.name)}",
+        _line(f"axes = {quoted(axes_of(plans, wanted))}", f"{why}; the other ones are {other}" if why else ""),
+    ])  # fmt: skip
+
+
+def _chair(wanted: Wanted) -> str:
+    lines = ["[chair]"]
+    for key, option, meaning in CHAIR:
+        value = getattr(wanted, option) if option else None
+        lines.append(_line(f"{key} = {value:g}", meaning) if value is not None else f"# {key} =   # {meaning}: fill in")
+    lines += ["", "[wheel]"]
+    meaning = "radius of the rear wheels with the person in the chair, m"
+    lines.append(_line(f"R = {wanted.radius:g}", meaning) if wanted.radius is not None else f"# R =   # {meaning}: fill in")
+    return "\n".join(lines)
+
+
+def _nuisance(plans: Sequence[Plan]) -> str:
+    names = [name for name in PUSHES if any((c := plan.find(name)) and c.si == "N.m" for plan in plans)]
+    lines = [_line("[nuisance]", "what the rims show where nobody touches them is estimated"), *(f"{name} = true" for name in names)]
+    return "\n".join(lines) if names else ""
+
+
+def _columns(plan: Plan) -> str:
+    lines = [_entry("", choice) for choice in plan.choices] + list(_time("", plan))
+    return "\n".join(["[columns]", *lines])
+
+
+def _recording(plan: Plan, wanted: Wanted) -> str:
+    lines = ["[[recording]]", _line(f"device = {quoted(plan.name)}", plan.place)]
+    if plan.markers:
+        ends = ", ".join(f"{end} = {quoted(name)}" for end, name in plan.markers.items())
+        lines.append(_line(f"markers = {{ {ends} }}", plan.why_axes))
+        lines.append(_line("axes = { " + ", ".join(f"{k} = {quoted(v)}" for k, v in plan.marker_axes.items()) + " }",
+                           "x along the way, y to the right of it"))  # fmt: skip
+    elif plan.place == "on the frame":
+        lines += [_line(f"axes = {quoted(plan.axes)}", plan.why_axes)] if plan.axes else []
+        lines.append("# at = [0.0, 0.0]  # where it sits, m forward and to the right of the centre of mass: fill in")
+    lines += list(_time("columns.", plan))
+    lines += [_entry("columns.", choice) for choice in plan.choices]
+    lines += [_line(f'columns.{channel} = ""', why) for channel, why in plan.empty.items()]
+    return "\n".join(lines)
+
+
+def _time(before: str, plan: Plan) -> Iterator[str]:
+    source = plan.source
+    if source.time is None:
+        return
+    table = next(iter(source.files.values())).table
+    if source.time_by_size:
+        entry = f"{before}time = {{ column = {quoted(source.time.header)}, unit = {quoted(source.time_unit)} }}"
+        yield _line(entry, "the file gives no unit: by the size of its steps")
+    elif table.time != source.time.index and source.time.header != "time":
+        yield f"{before}time = {quoted(source.time.header)}"
+
+
+def _entry(before: str, choice: Choice) -> str:
+    if choice.beside and not choice.settled:
+        return ""
+    unit = choice.unit or ""
+    extra = ([f"unit = {quoted(unit)}"] if unit else []) + (["sign = -1"] if choice.sign < 0 else [])
+    value = f"{{ column = {quoted(choice.header)}, {', '.join(extra)} }}" if extra else quoted(choice.header)
+    if not choice.beside:
+        return _line(f"{'' if choice.settled else '# '}{before}{choice.channel} = {value}", choice.why)
+    if OWN.get(choice.header.partition("[")[0].strip().lower()) == choice.channel:  # it would be taken for it by its name
+        return _line(f'{before}{choice.channel} = ""', f"{choice.beside} measures it too")
+    return _line(f"# {before}{choice.channel} = {value}", f"{choice.beside} measures it too")
+
+
+def _run(run: str, files: Mapping[str, str], wanted: Wanted, alone: bool) -> str:
+    named = next((word for word in MANOEUVRES if word in run.lower().replace("_", "-")), "")
+    listed = ", ".join(f"{device} = {quoted(file)}" for device, file in files.items())
+    lines = ["[[run]]", f"name = {quoted(run)}",
+             f"file = {quoted(next(iter(files.values())))}" if alone else f"files = {{ {listed} }}",
+             _line(f"manoeuvre = {quoted(named or run)}", "" if named else "say what was done"),
+             _line(f"role = {quoted('holdout' if run in wanted.holdout else 'fit')}",
+                   "kept to prove what was learnt" if run in wanted.holdout else "")]  # fmt: skip
+    lines += [] if alone else ["clocks = {}"]  # which is filled in on one line
+    lines += [_line("u0 = 0.0", "by its signals: the wheels stand still at first")] if wanted.at_rest.get(run) else []
+    return "\n".join(lines)
+
+
+def _line(entry: str, comment: str) -> str:
+    """An entry with its comment, which stands above it where the line would be long."""
+    plain = " ".join("".join(c if c.isprintable() else " " for c in comment).split())
+    if not plain or plain == NAMED:
+        return f"{entry}  # {plain}" if plain and len(entry) < WIDE else entry
+    return f"{entry}  # {plain}" if len(entry) + len(plain) < 2 * WIDE - 50 else f"# {plain}\n{entry}"
+
+
+def quoted(text: str) -> str:
+    """A string of TOML."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,183 @@
+"""`wheelchair import`: a campaign from recordings as loggers left them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich import box
+from rich.table import Table
+
+from ..campaign import Fault, Recorded
+from ..campaign.axes import AXES
+from ..campaign.document import FILE, load
+from ..campaign.formats import format_of
+from ..campaign.importing import Choice, Found, Plan, Wanted, find, held_out, open_axes, still, text
+from ..campaign.reading import recorded
+from ..campaign.syncing import find as find_clocks
+from ..campaign.syncing import write
+from ..errors import UsageError
+from ..faults import ERROR
+from ..loop.subject import known_parameters
+from ..writing import written
+from .check import draw
+from .group import console, working
+from .sync import show
+
+RUNS = "runs"  # the folder of a campaign in which the recordings lie
+
+
+def register(app: typer.Typer) -> None:
+    app.command("import")(import_)
+
+
+def import_(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Recordings, or folders of them.")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="CAMPAIGN", help="The folder to make.")],
+    mass: Annotated[float | None, typer.Option(metavar="KG", help="Of chair and rider.")] = None,
+    radius: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
+    track: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
+    axes: Annotated[str, typer.Option(help="SAE-J670 or ISO-8855, where no signal tells.")] = "",
+    holdout: Annotated[list[str] | None, typer.Option(metavar="RUN", help="A run to keep for checking; else the last fifth.")] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the campaign.toml that is there.")] = False,
+    link: Annotated[bool, typer.Option("--link", help="Link to the recordings in place of copying them.")] = False,
+) -> None:
+    """Find out which file is which run and device, which column is what, and how the clocks stand; write a campaign of it."""
+    _usable(output, axes, force, {"--mass": mass, "--radius": radius, "--track": track})
+    with working("reading"):
+        found = find(files, radius)
+    kept = held_out(found.runs, holdout or [])
+    wanted = Wanted(output.resolve().name, mass, radius, track, axes, kept)
+    if sys.stdin.isatty() and not yes:
+        wanted = _asked(wanted, found)
+    with working("writing"):
+        names = _placed(found, output, link)
+        _write(output / FILE, found, names, wanted)
+    with working("finding the clocks"):
+        runs, faults, said = _on_one_clock(output)
+    draw(wanted.name, runs, faults, output)
+    _show(found)
+    for line in said:
+        console().print(line)
+    _conclude(output, found, wanted, faults, link)
+
+
+def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | None]) -> None:
+    """Raises UsageError for what cannot be meant."""
+    if (output / FILE).exists() and not force:
+        raise UsageError(f"{output / FILE} is there already and stays as it is; give another folder, or --force to replace it")
+    if axes and axes not in AXES:
+        raise UsageError(f"no axes {axes!r}; use {' or '.join(AXES)}")
+    for option, value in sizes.items():
+        if value is not None and not 0 < value < 1000:
+            raise UsageError(f"{option} {value:g} is no size of a wheelchair; give it in kg or m")
+
+
+def _asked(wanted: Wanted, found: Found) -> Wanted:
+    """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
+    answers: dict[str, float | None] = {}
+    for name, words in (("mass", "mass of chair and rider, kg"), ("radius", "radius of the rear wheels, m"),
+                        ("track", "track of the rear wheels, m")):  # fmt: skip
+        known = getattr(wanted, name)
+        answers[name] = known if known is not None else _number(words)
+    axes = wanted.axes
+    if not axes and open_axes(found.plans):
+        axes = {"right": AXES[0], "left": AXES[1]}.get(typer.prompt("no signal tells: does y point to the right or left", "right"), "")
+    return Wanted(wanted.name, **answers, axes=axes, holdout=wanted.holdout)
+
+
+def _number(words: str) -> float | None:
+    while True:
+        answer = typer.prompt(f"{words} (empty: fill in later)", default="", show_default=False, err=True).strip()
+        try:
+            if not answer or 0 < float(answer.replace(",", ".")) < 1000:
+                return float(answer.replace(",", ".")) if answer else None
+        except ValueError:
+            pass  # asked again
+        console(stderr=True).print(f"{answer!r} is no such size; give a number")
+
+
+def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]:
+    """Puts the recordings into the campaign, but for those that lie in it; their names in campaign.toml by run and device."""
+    names: dict[str, dict[str, str]] = {}
+    for run, of in found.files.items():
+        for device, (path, file) in of.items():
+            inside = path.resolve().is_relative_to(output.resolve()) and not path.is_symlink()
+            name = path.resolve().relative_to(output.resolve()).as_posix() if inside else f"{RUNS}/{file.replace('/', '_')}"
+            names.setdefault(run, {})[device] = name
+            if not inside:
+                with written(output / name) as beside:
+                    if link:
+                        os.symlink(path.resolve(), beside)
+                    else:
+                        shutil.copyfile(path, beside)
+    return names
+
+
+def _write(path: Path, found: Found, names: Mapping[str, Mapping[str, str]], wanted: Wanted) -> None:
+    content = text(found.plans, found.runs, names,
+                   Wanted(wanted.name, wanted.mass, wanted.radius, wanted.track, wanted.axes, wanted.holdout,
+                          still(found, wanted.radius)))  # fmt: skip
+    with written(path) as beside:
+        beside.write_text(content, encoding="utf-8")
+
+
+def _on_one_clock(output: Path) -> tuple[Sequence[Recorded], list[Fault], list[str]]:
+    """Finds the clocks and writes what is sure of them; the runs as they are then, all faults, and what is not sure."""
+    doc, faults = load(output)
+    runs, faults = recorded(output, known_parameters())
+    found = find_clocks(tuple(runs))
+    if doc is None or not any(one.sure for one in found):
+        return runs, faults, [f"{one.run.name}: {one.why(d)}" for one in found for d in one.clocks]
+    write(doc, found)
+    runs, faults = recorded(output, known_parameters())
+    return runs, faults, show(found)
+
+
+def _show(found: Found) -> None:
+    """A line for each column: what it became, and why."""
+    table = Table(box=box.SIMPLE)
+    for title in ("device", "files", "format", "channel", "column"):
+        table.add_column(title, no_wrap=title != "column")
+    table.add_column("what told it")
+    for plan in found.plans:
+        of = list(plan.source.files.values())
+        first = (plan.name, str(len(of)), format_of(of[0].path))
+        for row in _rows(plan):
+            table.add_row(*first, *row)
+            first = ("", "", "")
+    console().print(table)
+
+
+def _rows(plan: Plan) -> list[tuple[str, str, str]]:
+    rows = [(c.channel if not c.beside else f"({c.channel})", _column(c), f"{c.beside} measures it too" if c.beside else c.why)
+            for c in plan.choices]  # fmt: skip
+    if plan.markers:
+        rows.append(("x, y, yaw", " and ".join(plan.markers.values()), plan.why_axes))
+    return rows or [("", "", "no column is known by its name")]
+
+
+def _column(choice: Choice) -> str:
+    turned = "−" if choice.sign < 0 else ""
+    return f"{turned}{choice.header}" + (f" in {choice.unit}" if choice.unit and choice.unit != "?" else "")
+
+
+def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault], link: bool) -> None:
+    out = console()
+    for fault in (*found.faults, *faults):
+        out.print(str(fault))
+    for doubt in (doubt for plan in found.plans for doubt in plan.doubts):
+        out.print(f"look at this: {doubt}")
+    how = "linked to" if link else "copied into"
+    out.print(f"{len(found.runs)} runs of {len(found.plans)} devices; recordings are {how} {output / RUNS}"
+              + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else ""))  # fmt: skip
+    errors = sum(fault.severity == ERROR for fault in faults)
+    left = "fill in what is open in" if errors or wanted.mass is None else "look at"
+    out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
+    out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")
