@@ -1,0 +1,212 @@
+"""What recordings tell about themselves: runs and devices by names, columns by headers, signs and sides by signals."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from wheelchair_fmu.campaign.importing import Wanted, find, held_out, text
+from wheelchair_fmu.campaign.importing.guesses import guess
+from wheelchair_fmu.campaign.importing.naming import placed
+from wheelchair_fmu.errors import Failure, UsageError
+
+from . import lab
+
+
+def named(files: list[str], kind=lambda file: 0) -> dict[str, tuple[str, str]]:
+    return {p.file: (p.run, p.device) for p in placed(files, {file: kind(file) for file in files})}
+
+
+@pytest.mark.parametrize(("files", "expected"), [
+    (["run01_SWL.csv", "run01_SWR.csv", "run01.trc", "run02_SWL.csv", "run02_SWR.csv", "run02.trc"],
+     {"run01_SWR.csv": ("run01", "swr"), "run02.trc": ("run02", "trc")}),
+    (["m01.xlsx", "m01_Moment.csv", "m01_imu.mat", "m02.xlsx", "m02_Moment.csv", "m02_imu.mat"],
+     {"m01.xlsx": ("m01", "xlsx"), "m02_Moment.csv": ("m02", "moment")}),
+    (["imu trial 2.csv", "imu trial 10.csv", "rad-trial 2.csv", "rad-trial 10.csv"],
+     {"imu trial 2.csv": ("trial_2", "imu"), "rad-trial 10.csv": ("trial_10", "rad")}),
+    (["run01_imu1.csv", "run01_imu2.csv", "run02_imu1.csv", "run02_imu2.csv"], {"run02_imu1.csv": ("run02", "imu1")}),
+    (["slalom_imu.csv", "slalom_wheels.csv", "coast_imu.csv", "coast_wheels.csv"], {"coast_wheels.csv": ("coast", "wheels")}),
+    (["run01/imu.csv", "run02/imu.csv", "run01/rim.csv", "run02/rim.csv"], {"run02/rim.csv": ("run02", "rim")}),
+    (["run1_imu.csv", "run1_imu.mat", "run2_imu.csv"], {"run1_imu.mat": ("run1", "imu_mat"), "run2_imu.csv": ("run2", "imu_csv")}),
+    (["left.csv", "right.csv", "frame.csv"], {"left.csv": ("run", "left"), "frame.csv": ("run", "frame")}),
+    (["left_slalom.csv", "right_slalom.csv", "left_coast.csv", "right_coast.csv"], {"left_coast.csv": ("coast", "left")}),
+])  # fmt: skip
+def test_runs_and_devices_are_told_by_names(files, expected):
+    found = named(files, lambda file: file.rpartition(".")[2])
+    assert {file: found[file] for file in expected} == expected
+    assert len(set(found.values())) == len(files), "no file is lost"
+
+
+def test_recordings_without_a_pattern_are_runs_of_one_device():
+    assert named(["slalom.csv", "coast-down.csv"]) == {"slalom.csv": ("slalom", "slalom"), "coast-down.csv": ("coast_down", "slalom")}
+
+
+@pytest.mark.parametrize(("header", "quantity", "axis", "side"), [
+    ("Zeit [s]", "time", "", ""), ("temps", "time", "", ""), ("Gyroscope Z (deg/s)", "gyro", "z", ""), ("gyr_z", "gyro", "z", ""),
+    ("GyroZ", "gyro", "z", ""), ("rec.data.omega_z", "gyro", "z", ""), ("Gierrate [deg/s]", "yaw_rate", "", ""),
+    ("vitesse de lacet", "yaw_rate", "", ""), ("AccX", "acc", "x", ""), ("a längs [g]", "acc", "x", ""),
+    ("Antriebsmoment links [N·m]", "torque", "", "l"), ("couple droit", "torque", "", "r"), ("Tz", "torque", "z", ""),
+    ("v rechts [km/h]", "speed", "", "r"), ("vitesse roue gauche", "speed", "", "l"), ("Winkel", "wheel_angle", "", ""),
+    ("wheelR_radps", "speed", "", "r"), ("FTan_L [N]", "force", "", "l"), ("F_rl [N]", "F_rl", "", ""),
+])  # fmt: skip
+def test_headers_of_usual_loggers_are_understood(header, quantity, axis, side):
+    from wheelchair_fmu.units import unit_of
+
+    found = guess(header, unit_of(header))
+    assert found is not None
+    assert (found.quantity, found.axis, found.side) == (quantity, axis, side)
+
+
+@pytest.mark.parametrize("header", ["Fx", "Mx [N.m]", "Push Start", "Magnetometer X (uT)", "Barometer (hPa)", "Marke", "Comment"])
+def test_what_pushes_nobody_is_no_channel(header):
+    assert guess(header, None) is None or guess(header, None).quantity == "counter"
+
+
+def chosen(folder, **more):
+    found = find([folder], lab.RADIUS)
+    return found, {(p.name, c.channel): c for p in found.plans for c in p.choices if c.settled and not c.beside}
+
+
+def make(tmp_path, write, runs: int = 3, seed: int = 0):
+    """Recordings of some runs, by a function of (folder, run's name, truth, generator)."""
+    folder = tmp_path / "raw"
+    folder.mkdir()
+    rng = np.random.default_rng(seed)
+    for i, s in enumerate(lab.rides(seed, runs), 1):
+        write(folder, f"run{i:02d}", s, rng)
+    return folder
+
+
+def two_rims(folder, run, s, rng):
+    lab.rim(folder / f"{run}_SWL.csv", s, 0.7, "l", rng)
+    lab.rim(folder / f"{run}_SWR.csv", s, 0.2, "r", rng, mirrored=True)
+
+
+def test_rims_and_markers(tmp_path):
+    def write(folder, run, s, rng):
+        two_rims(folder, run, s, rng)
+        lab.markers(folder / f"{run}.trc", s, 0.4, rng)
+
+    found, by = chosen(make(tmp_path, write))
+    assert found.runs == ["run01", "run02", "run03"]
+    assert by["swl", "F_rl"].sign == 1 and by["swr", "F_rr"].sign == -1
+    assert by["swl", "wheel_angle_l"].sign == 1 and by["swr", "wheel_angle_r"].sign == -1
+    (trc,) = (p for p in found.plans if p.name == "trc")
+    assert trc.markers == {"axle_l": "LHUB", "axle_r": "RHUB"} and trc.marker_axes == {"x": "-x", "y": "-z"}
+    assert not [d for p in found.plans for d in p.doubts]
+
+
+def test_markers_with_the_names_of_the_other_side_are_said(tmp_path):
+    found, _ = chosen(make(tmp_path, lambda f, run, s, rng: lab.markers(f / f"{run}.trc", s, 0.4, rng, left="RHUB", right="LHUB")))
+    (trc,) = found.plans
+    assert trc.markers == {"axle_l": "RHUB", "axle_r": "LHUB"}
+    assert any("backwards" in doubt for doubt in trc.doubts)
+
+
+@pytest.mark.parametrize(("axes", "ahead", "side", "frame"), [
+    (lab.AS_ISO, ("X", 1), ("Y", 1), "ISO-8855"), (lab.BACKWARDS, ("Y", -1), ("X", 1), "SAE-J670"),
+])  # fmt: skip
+def test_sensors_on_spokes_and_on_the_frame_whichever_way_they_lie(tmp_path, axes, ahead, side, frame):
+    def write(folder, run, s, rng):
+        lab.spoke(folder / f"{run}_imu_left.csv", s, 0.5, "l", 1, rng)
+        lab.spoke(folder / f"{run}_imu_right.csv", s, 0.1, "r", -1, rng)
+        lab.frame(folder / f"{run}_imu_seat.csv", s, 0.3, rng, axes)
+
+    found, by = chosen(make(tmp_path, write))
+    assert by["imu_left", "wheel_speed_l"].header == "Gyroscope Y (deg/s)" and by["imu_left", "wheel_speed_l"].sign == 1
+    assert by["imu_right", "wheel_speed_r"].sign == -1
+    seat = next(p for p in found.plans if p.name == "imu_seat")
+    assert seat.axes == frame
+    assert by["imu_seat", "yaw_rate"].header == "Gyroscope Z (deg/s)" and by["imu_seat", "yaw_rate"].sign == 1
+    for channel, (axis, sign) in (("a_x", ahead), ("a_y", side)):
+        assert by["imu_seat", channel].header == f"Accelerometer {axis} (g)"
+        assert by["imu_seat", channel].sign == sign
+    assert not [d for p in found.plans for d in p.doubts]
+    assert "correlation" in by["imu_seat", "yaw_rate"].why
+
+
+def test_files_named_after_the_other_wheel_are_said(tmp_path):
+    def write(folder, run, s, rng):
+        lab.spoke(folder / f"{run}_left.csv", s, 0.5, "r", 1, rng)
+        lab.spoke(folder / f"{run}_right.csv", s, 0.1, "l", -1, rng)
+        lab.frame(folder / f"{run}_frame.csv", s, 0.3, rng)
+
+    found, by = chosen(make(tmp_path, write))
+    assert ("left", "wheel_speed_r") in by and ("right", "wheel_speed_l") in by
+    doubts = [d for p in found.plans for d in p.doubts]
+    assert len(doubts) == 2 and all("seems to be the" in d and "outer wheel" in d for d in doubts)
+
+
+def test_a_unit_that_no_file_gives_is_told_by_the_signals_and_marked(tmp_path):
+    def write(folder, run, s, rng):
+        time, left, right = lab.seen(s, 100, 0.6, "wheel_speed_l", "wheel_speed_r")
+        noise = rng.normal(0, 0.01, (2, len(time)))
+        pd.DataFrame({"Zeit [ms]": 1000 * time, "v links [km/h]": 3.6 * left + noise[0], "v rechts [km/h]": 3.6 * right + noise[1]}
+                     ).to_csv(folder / f"{run}_rad.csv", index=False)  # fmt: skip
+        lab.frame(folder / f"{run}_imu.csv", s, 0.3, rng, units=False)
+
+    found, by = chosen(make(tmp_path, write))
+    assert by["imu", "yaw_rate"].unit == "deg/s" and by["imu", "a_x"].unit == "g"
+    content = text(found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small"))
+    assert "the file gives no unit" in content and "check it" in content
+    read = tomllib.loads(content)
+    assert read["recording"][0]["columns"]["yaw_rate"] == {"column": "Gyroscope Z", "unit": "deg/s"}
+
+
+def test_a_unit_that_nothing_tells_is_left_to_the_user(tmp_path):
+    def write(folder, run, s, rng):
+        time, left = lab.seen(s, 100, 0.6, "wheel_speed_l")
+        pd.DataFrame({"t": time, "speed left": left}).to_csv(folder / f"{run}.csv", index=False)
+
+    found, by = chosen(make(tmp_path, write))
+    assert not by
+    content = text(found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small"))
+    assert '# wheel_speed_l = { column = "speed left", unit = "?" }' in content and "write the right one" in content
+    assert "columns" in tomllib.loads(content)
+
+
+def test_bad_input_is_said_in_one_sentence_each(tmp_path):
+    folder = make(tmp_path, two_rims, runs=1)
+    (folder / "photo.jpg").write_bytes(b"\xff\xd8\xff" + bytes(50))
+    (folder / "broken.csv").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
+    (folder / "README.md").write_text("# What we did\n")
+    (folder / "empty.csv").write_bytes(b"")
+    (folder / "copy.csv").write_bytes((folder / "run01_SWL.csv").read_bytes())
+    said = [str(f) for f in find([folder, folder], None).faults]
+    for file, words in (("broken.csv", "HDF5"), ("README.md", "text"), ("empty.csv", "empty"), ("run01_SWL.csv", "the same as copy.csv")):
+        assert len([line for line in said if line.startswith(f"warning: {file}") and words in line]) == 1, (file, said)
+
+
+def test_no_recording_and_no_file(tmp_path):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(Failure, match="there is no file in .*empty"):
+        find([tmp_path / "empty"], None)
+    with pytest.raises(UsageError, match="no file"):
+        find([tmp_path / "nowhere"], None)
+    (tmp_path / "empty" / "notes.txt").write_text("we met at nine\n")
+    with pytest.raises(Failure, match="no recording was found"):
+        find([tmp_path / "empty"], None)
+
+
+def test_a_recording_without_time_is_said_with_a_cure(tmp_path):
+    pd.DataFrame({"gyro_z [deg/s]": np.arange(50.0), "acc_x [g]": np.arange(50.0)}).to_csv(tmp_path / "a.csv", index=False)
+    assert ["no time column" in f.fact and "rate = ..." in f.cure for f in find([tmp_path], None).faults] == [True]
+
+
+def test_a_thousand_columns_are_read(tmp_path):
+    rng = np.random.default_rng(0)
+    table = {"time [s]": np.arange(300) / 100} | {f"channel {i}": rng.normal(size=300) for i in range(1000)}
+    table["Gyroscope Z (deg/s)"] = rng.normal(size=300)
+    pd.DataFrame(table).to_csv(tmp_path / "wide.csv", index=False)
+    (plan,) = find([tmp_path], None).plans
+    assert [c.channel for c in plan.choices] == ["yaw_rate"]
+
+
+def test_runs_are_held_out_by_default_and_by_name():
+    runs = [f"run{i}" for i in range(1, 8)]
+    assert held_out(runs, []) == ["run6", "run7"] and held_out(runs[:2], []) == [] and held_out(runs, ["run2"]) == ["run2"]
+    with pytest.raises(UsageError, match="did you mean 'run7'"):
+        held_out(runs, ["run77"])

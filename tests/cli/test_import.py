@@ -1,0 +1,140 @@
+"""`wheelchair import`: from loggers' files to a campaign without errors, on one clock."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tests.campaign import lab
+from tests.campaign.test_measurements import MEASUREMENTS
+from tests.campaign.test_measurements import folder as measured
+from wheelchair_fmu.campaign import check, read
+from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.loop.subject import known_parameters
+
+LATE = {"swl": 0.7, "swr": 0.2, "imu": 0.45}
+
+
+def imported(*words: object):
+    return CliRunner().invoke(app, ["import", *map(str, words)])
+
+
+@pytest.fixture(scope="module")
+def raw(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("raw")
+    rng = np.random.default_rng(1)
+    for i, s in enumerate(lab.rides(1), 1):
+        lab.rim(folder / f"run{i:02d}_SWL.csv", s, LATE["swl"], "l", rng)
+        lab.rim(folder / f"run{i:02d}_SWR.csv", s, LATE["swr"], "r", rng, mirrored=True)
+        lab.frame(folder / f"run{i:02d}_imu.csv", s, LATE["imu"], rng, lab.BACKWARDS)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def made(raw, tmp_path_factory):
+    out = tmp_path_factory.mktemp("made") / "campaign"
+    return out, imported(raw, "-o", out, "--radius", lab.RADIUS, "--mass", 90, "--track", 0.56)
+
+
+def test_a_folder_of_recordings_becomes_a_campaign(made):
+    out, done = made
+    assert done.exit_code == 0, done.output
+    assert {f.name for f in out.iterdir()} == {"campaign.toml", "preview.html", "preview.png", "runs"}
+    content = tomllib.loads((out / "campaign.toml").read_text(encoding="utf-8"))
+    assert content["chair"] == {"m": 90, "t_r": 0.56} and content["wheel"] == {"R": lab.RADIUS}
+    assert content["nuisance"] == {"F_rl": True, "F_rr": True}
+    assert [run["role"] for run in content["run"]] == ["fit", "fit", "holdout"]
+    for run in content["run"]:
+        first = next(iter(run["files"]))
+        for device, clock in run["clocks"].items():
+            assert clock["offset"] == pytest.approx(LATE[device] - LATE[first], abs=0.01)
+    faults = check(out, known_parameters())
+    assert not [f for f in faults if f.severity == "error"]
+    assert "look at this" not in done.output, "nothing is doubtful here"
+    assert f"wheelchair diagnose {out}" in done.output.replace("\n", " ")
+
+
+def test_what_was_imported_is_what_happened(made):
+    out, _ = made
+    truth = lab.rides(1)[0]
+    run = read(out).runs[0]
+    first = next(iter(tomllib.loads((out / "campaign.toml").read_text(encoding="utf-8"))["run"][0]["files"]))
+    time = run.time - 3.0 + LATE[first]
+    for name, sd in (("yaw_rate", 0.006), ("a_x", 0.11), ("a_y", 0.11), ("wheel_speed_l", 0.03), ("wheel_speed_r", 0.03)):
+        there = np.isfinite(run.channels[name])
+        expected = truth["u"] * truth["yaw_rate"] if name == "a_y" else truth[name]
+        assert np.std(run.channels[name][there] - np.interp(time[there], truth["t"], expected)) < 1.5 * sd, name
+    for name in ("F_rl", "F_rr"):
+        assert np.corrcoef(run.inputs[f"push.{name}"], np.interp(time, truth["t"], truth[name]))[0, 1] > 0.99
+
+
+def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
+    (tmp_path / "campaign.toml").write_text("# mine\n")
+    done = imported(raw, "-o", tmp_path)
+    assert done.exit_code == 2 and "stays as it is" in done.output
+    assert (tmp_path / "campaign.toml").read_text() == "# mine\n"
+    done = imported(raw / "run01_imu.csv", "-o", tmp_path, "--force", "--link", "--axes", "ISO-8855")
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "runs" / "run01_imu.csv").is_symlink()
+    assert "no push force" in done.output, "what the campaign still lacks is said"
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["--radius", "-1"], "no size of a wheelchair"), (["--axes", "ISO"], "no axes"), (["--holdout", "run9"], "no run 'run9'"),
+])  # fmt: skip
+def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
+    done = imported(raw, "-o", tmp_path / "c", *words)
+    assert done.exit_code == 2 and said in done.output and not (tmp_path / "c").exists()
+
+
+def test_recordings_that_lie_in_the_campaign_stay_where_they_are(raw, tmp_path):
+    (tmp_path / "data").mkdir()
+    for file in raw.glob("run0*_SW*"):
+        (tmp_path / "data" / file.name).write_bytes(file.read_bytes())
+    done = imported(tmp_path, "-o", tmp_path, "--radius", lab.RADIUS)
+    assert done.exit_code == 0 and not (tmp_path / "runs").exists(), done.output
+    content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
+    assert content["run"][0]["files"]["swl"] == "data/run01_SWL.csv"
+
+
+def test_devices_that_share_nothing_are_said(tmp_path):
+    rng = np.random.default_rng(3)
+    one, other = lab.rides(3, 1)[0], lab.rides(4, 1)[0]
+    lab.rim(tmp_path / "run1_SWL.csv", one, 0.1, "l", rng)
+    lab.frame(tmp_path / "run1_imu.csv", other | {"a_x": 0 * other["t"], "yaw_rate": 0 * other["t"]}, 0.2, rng)
+    done = imported(tmp_path, "-o", tmp_path / "c", "--radius", lab.RADIUS)
+    assert "give its offset by hand" in done.output and "clocks" in (tmp_path / "c" / "campaign.toml").read_text()
+
+
+GIVEN = {"lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43), "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
+         "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45)}  # fmt: skip
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", GIVEN)
+def test_raw_lab_folders_become_campaigns(name, tmp_path):
+    """With nothing by hand but what stands in the protocol: mass, radius, track by options, three lengths in the file."""
+    if name == "lab-02":
+        pytest.importorskip("openpyxl", reason="reading a workbook needs openpyxl")
+    mass, radius, track, wheelbase, b, t_f = GIVEN[name]
+    out = tmp_path / name
+    done = imported(measured(name), "-o", out, "--mass", mass, "--radius", radius, "--track", track)
+    assert done.exit_code == 0, done.output
+    text = (out / "campaign.toml").read_text(encoding="utf-8")
+    for key, value in (("a", wheelbase - b), ("b", b), ("t_f", t_f)):
+        assert f"# {key} = " in text
+        text = text.replace(f"# {key} = ", f"{key} = {value:.3f} #", 1)
+    (out / "campaign.toml").write_text(text, encoding="utf-8")
+    assert not [str(f) for f in check(out, known_parameters()) if f.severity == "error"]
+    truth = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[name]["runs"]
+    for run in tomllib.loads(text)["run"]:
+        assert run["role"] == truth[run["name"]]["role"]
+        true = {device: truth[run["name"]]["files"][file.rpartition("/")[2]]["offset_s"] for device, file in run["files"].items()}
+        first = next(iter(true))
+        assert set(run["clocks"]) == set(true) - {first}
+        for device, clock in run["clocks"].items():
+            assert clock["offset"] == pytest.approx(true[device] - true[first], abs=0.02), (run["name"], device)
