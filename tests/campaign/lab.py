@@ -46,13 +46,21 @@ def rim(path: Path, s, late: float, side: str, rng, mirrored: bool = False) -> N
     smartwheel(path, sign * torque, (sign * np.degrees(angle) + 50) % 360)
 
 
-def frame(path: Path, s, late: float, rng, axes: np.ndarray = AS_ISO, columns: list[str] | None = None, units: bool = True) -> None:
+def frame(
+    path: Path, s, late: float, rng, axes: np.ndarray = AS_ISO, columns: list[str] | None = None, units: bool = True
+) -> None:
     """An IMU on the frame, its axes the rows of `axes` in those of ISO 8855."""
     time, yaw_rate, u, a_x = seen(s, 100, late, "yaw_rate", "u", "a_x")
     zero = np.zeros_like(time)
     gyro = axes @ np.stack([zero, zero, -np.degrees(yaw_rate)])
     acc = axes @ np.stack([a_x / G, -u * yaw_rate / G, zero + 1.0])
-    write(path, time, np.concatenate([gyro + rng.normal(0, 0.3, gyro.shape), acc + rng.normal(0, 0.01, acc.shape)]), columns, units)
+    write(
+        path,
+        time,
+        np.concatenate([gyro + rng.normal(0, 0.3, gyro.shape), acc + rng.normal(0, 0.01, acc.shape)]),
+        columns,
+        units,
+    )
 
 
 def spoke(path: Path, s, late: float, side: str, sign: float, rng) -> None:

@@ -41,7 +41,14 @@ def test_runs_and_devices_are_told_by_names(files, expected):
 
 
 def test_recordings_without_a_pattern_are_runs_of_one_device():
-    assert named(["slalom.csv", "coast-down.csv"]) == {"slalom.csv": ("slalom", "slalom"), "coast-down.csv": ("coast_down", "slalom")}
+    by_words = ["slalom-quick.csv", "slalom-slow.csv", "straight-quick.csv", "straight-slow.csv"]
+    people = ["P01_run1.csv", "P01_run2.csv", "P02_run1.csv", "P02_run2.csv"]
+    for files in (by_words, people):
+        assert len({device for _, device in named(files).values()}) == 1 and len({run for run, _ in named(files).values()}) == 4
+    assert named(["slalom.csv", "coast-down.csv"]) == {
+        "slalom.csv": ("slalom", "slalom"),
+        "coast-down.csv": ("coast_down", "slalom"),
+    }
 
 
 @pytest.mark.parametrize(("header", "quantity", "axis", "side"), [
@@ -60,7 +67,9 @@ def test_headers_of_usual_loggers_are_understood(header, quantity, axis, side):
     assert (found.quantity, found.axis, found.side) == (quantity, axis, side)
 
 
-@pytest.mark.parametrize("header", ["Fx", "Mx [N.m]", "Push Start", "Magnetometer X (uT)", "Barometer (hPa)", "Marke", "Comment"])
+@pytest.mark.parametrize(
+    "header", ["Fx", "Mx [N.m]", "Push Start", "Magnetometer X (uT)", "Barometer (hPa)", "Marke", "Comment"]
+)
 def test_what_pushes_nobody_is_no_channel(header):
     assert guess(header, None) is None or guess(header, None).quantity == "counter"
 
@@ -100,7 +109,9 @@ def test_rims_and_markers(tmp_path):
 
 
 def test_markers_with_the_names_of_the_other_side_are_said(tmp_path):
-    found, _ = chosen(make(tmp_path, lambda f, run, s, rng: lab.markers(f / f"{run}.trc", s, 0.4, rng, left="RHUB", right="LHUB")))
+    found, _ = chosen(
+        make(tmp_path, lambda f, run, s, rng: lab.markers(f / f"{run}.trc", s, 0.4, rng, left="RHUB", right="LHUB"))
+    )
     (trc,) = found.plans
     assert trc.markers == {"axle_l": "RHUB", "axle_r": "LHUB"}
     assert any("backwards" in doubt for doubt in trc.doubts)
@@ -140,6 +151,17 @@ def test_files_named_after_the_other_wheel_are_said(tmp_path):
     assert len(doubts) == 2 and all("seems to be the" in d and "outer wheel" in d for d in doubts)
 
 
+def test_sensors_without_names_are_told_by_what_they_saw(tmp_path):
+    def write(folder, run, s, rng):
+        lab.spoke(folder / f"{run}_imu1.csv", s, 0.5, "r", 1, rng)
+        lab.frame(folder / f"{run}_imu2.csv", s, 0.3, rng)
+        lab.spoke(folder / f"{run}_imu3.csv", s, 0.1, "l", 1, rng)
+
+    found, by = chosen(make(tmp_path, write))
+    assert ("imu1", "wheel_speed_r") in by and ("imu3", "wheel_speed_l") in by and ("imu2", "yaw_rate") in by
+    assert not [d for p in found.plans for d in p.doubts]
+
+
 def test_a_unit_that_no_file_gives_is_told_by_the_signals_and_marked(tmp_path):
     def write(folder, run, s, rng):
         time, left, right = lab.seen(s, 100, 0.6, "wheel_speed_l", "wheel_speed_r")
@@ -150,7 +172,9 @@ def test_a_unit_that_no_file_gives_is_told_by_the_signals_and_marked(tmp_path):
 
     found, by = chosen(make(tmp_path, write))
     assert by["imu", "yaw_rate"].unit == "deg/s" and by["imu", "a_x"].unit == "g"
-    content = text(found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small"))
+    content = text(
+        found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small")
+    )
     assert "the file gives no unit" in content and "check it" in content
     read = tomllib.loads(content)
     assert read["recording"][0]["columns"]["yaw_rate"] == {"column": "Gyroscope Z", "unit": "deg/s"}
@@ -163,7 +187,9 @@ def test_a_unit_that_nothing_tells_is_left_to_the_user(tmp_path):
 
     found, by = chosen(make(tmp_path, write))
     assert not by
-    content = text(found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small"))
+    content = text(
+        found.plans, found.runs, {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}, Wanted("small")
+    )
     assert '# wheel_speed_l = { column = "speed left", unit = "?" }' in content and "write the right one" in content
     assert "columns" in tomllib.loads(content)
 
@@ -176,13 +202,18 @@ def test_bad_input_is_said_in_one_sentence_each(tmp_path):
     (folder / "empty.csv").write_bytes(b"")
     (folder / "copy.csv").write_bytes((folder / "run01_SWL.csv").read_bytes())
     said = [str(f) for f in find([folder, folder], None).faults]
-    for file, words in (("broken.csv", "HDF5"), ("README.md", "text"), ("empty.csv", "empty"), ("run01_SWL.csv", "the same as copy.csv")):
+    for file, words in (
+        ("broken.csv", "HDF5"),
+        ("README.md", "text"),
+        ("empty.csv", "empty"),
+        ("run01_SWL.csv", "the same as copy.csv"),
+    ):
         assert len([line for line in said if line.startswith(f"warning: {file}") and words in line]) == 1, (file, said)
 
 
 def test_no_recording_and_no_file(tmp_path):
     (tmp_path / "empty").mkdir()
-    with pytest.raises(Failure, match="there is no file in .*empty"):
+    with pytest.raises(Failure, match=r"there is no file in .*empty"):
         find([tmp_path / "empty"], None)
     with pytest.raises(UsageError, match="no file"):
         find([tmp_path / "nowhere"], None)
@@ -208,5 +239,6 @@ def test_a_thousand_columns_are_read(tmp_path):
 def test_runs_are_held_out_by_default_and_by_name():
     runs = [f"run{i}" for i in range(1, 8)]
     assert held_out(runs, []) == ["run6", "run7"] and held_out(runs[:2], []) == [] and held_out(runs, ["run2"]) == ["run2"]
+    assert held_out(["a", "holdout_b", "c"], []) == ["holdout_b"]
     with pytest.raises(UsageError, match="did you mean 'run7'"):
         held_out(runs, ["run77"])

@@ -91,6 +91,15 @@ def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
     assert done.exit_code == 2 and said in done.output and not (tmp_path / "c").exists()
 
 
+def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
+    monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
+    done = CliRunner().invoke(app, ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"], input="x\n88,5\n\n")
+    assert done.exit_code == 0 and "give a number" in done.output, done.output
+    content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
+    assert content["chair"] == {"m": 88.5, "t_r": 0.5} and content["wheel"] == {}
+    assert "needs the wheel's radius" in done.output, "what was left open is said"
+
+
 def test_recordings_that_lie_in_the_campaign_stay_where_they_are(raw, tmp_path):
     (tmp_path / "data").mkdir()
     for file in raw.glob("run0*_SW*"):
@@ -133,7 +142,9 @@ def test_raw_lab_folders_become_campaigns(name, tmp_path):
     truth = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[name]["runs"]
     for run in tomllib.loads(text)["run"]:
         assert run["role"] == truth[run["name"]]["role"]
-        true = {device: truth[run["name"]]["files"][file.rpartition("/")[2]]["offset_s"] for device, file in run["files"].items()}
+        true = {
+            device: truth[run["name"]]["files"][file.rpartition("/")[2]]["offset_s"] for device, file in run["files"].items()
+        }
         first = next(iter(true))
         assert set(run["clocks"]) == set(true) - {first}
         for device, clock in run["clocks"].items():

@@ -43,7 +43,9 @@ def import_(
     radius: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     track: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     axes: Annotated[str, typer.Option(help="SAE-J670 or ISO-8855, where no signal tells.")] = "",
-    holdout: Annotated[list[str] | None, typer.Option(metavar="RUN", help="A run to keep for checking; else the last fifth.")] = None,
+    holdout: Annotated[
+        list[str] | None, typer.Option(metavar="RUN", help="A run to keep for checking; else the last fifth.")
+    ] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Ask nothing.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the campaign.toml that is there.")] = False,
     link: Annotated[bool, typer.Option("--link", help="Link to the recordings in place of copying them.")] = False,
@@ -54,7 +56,7 @@ def import_(
         found = find(files, radius)
     kept = held_out(found.runs, holdout or [])
     wanted = Wanted(output.resolve().name, mass, radius, track, axes, kept)
-    if sys.stdin.isatty() and not yes:
+    if _at_terminal() and not yes:
         wanted = _asked(wanted, found)
     with working("writing"):
         names = _placed(found, output, link)
@@ -79,6 +81,10 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
             raise UsageError(f"{option} {value:g} is no size of a wheelchair; give it in kg or m")
 
 
+def _at_terminal() -> bool:
+    return sys.stdin.isatty()
+
+
 def _asked(wanted: Wanted, found: Found) -> Wanted:
     """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
     answers: dict[str, float | None] = {}
@@ -88,7 +94,9 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
         answers[name] = known if known is not None else _number(words)
     axes = wanted.axes
     if not axes and open_axes(found.plans):
-        axes = {"right": AXES[0], "left": AXES[1]}.get(typer.prompt("no signal tells: does y point to the right or left", "right"), "")
+        axes = {"right": AXES[0], "left": AXES[1]}.get(
+            typer.prompt("no signal tells: does y point to the right or left", "right"), ""
+        )
     return Wanted(wanted.name, **answers, axes=axes, holdout=wanted.holdout)
 
 
@@ -160,7 +168,7 @@ def _rows(plan: Plan) -> list[tuple[str, str, str]]:
             for c in plan.choices]  # fmt: skip
     if plan.markers:
         rows.append(("x, y, yaw", " and ".join(plan.markers.values()), plan.why_axes))
-    return rows or [("", "", "no column is known by its name")]
+    return rows or [("", "", "see below" if plan.doubts else "no column is known by its name")]
 
 
 def _column(choice: Choice) -> str:

@@ -4,6 +4,7 @@ A user's format is a file with a record `FORMAT` in the folder `formats` of the 
 an entry point of the group `wheelchair_fmu.formats`. Code that lies in a campaign is never run.
 """
 
+from ._defined import read_head
 from ._opening import format_of, open_recording
 from ._record import Format, Option, Read
 from ._registry import bundled, formats, known_options, user_folder
@@ -18,6 +19,7 @@ __all__ = [
     "formats",
     "known_options",
     "open_recording",
+    "read_head",
     "read_smartwheel",
     "user_folder",
 ]

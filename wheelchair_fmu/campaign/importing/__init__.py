@@ -29,6 +29,7 @@ from .writing import Wanted, axes_of, open_axes, text
 
 __all__ = ["Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "open_axes", "still", "text"]
 
+HOLDOUT = "holdout"
 SHARE = 5  # of so many runs one is kept for checking,
 FEWEST = 3  # from so many on
 STILL = 0.05  # m/s
@@ -51,7 +52,9 @@ def find(paths: Sequence[Path], radius: float | None) -> Found:
     tables, others = opened(files)
     if not tables:
         what = "no recording was found" if files else "there is no file"
-        raise Failure("\n".join([f"{what} in {', '.join(map(str, paths))}; give the files that the loggers wrote", *map(str, others)]))
+        raise Failure(
+            "\n".join([f"{what} in {', '.join(map(str, paths))}; give the files that the loggers wrote", *map(str, others)])
+        )
     devices, runs, odd = sources(tables)
     plans = decide(devices, runs, radius)
     of = {run: {s.name: (s.files[run].path, s.files[run].file) for s in devices if run in s.files} for run in runs}
@@ -59,11 +62,16 @@ def find(paths: Sequence[Path], radius: float | None) -> Found:
 
 
 def held_out(runs: Sequence[str], named: Sequence[str]) -> list[str]:
-    """The runs that are kept for checking: those that are named, else the last fifth. Raises UsageError for one that is none."""
+    """The runs that are kept for checking: those that are named, else those that are called so, else the last fifth.
+
+    Raises UsageError for a name that no run has.
+    """
     for name in named:
         if name not in runs:
             raise unknown("run", name, runs)
-    return list(named) if named else list(runs[len(runs) - ceil(len(runs) / SHARE) :]) if len(runs) >= FEWEST else []
+    called = [run for run in runs if HOLDOUT in run.lower()]
+    last = runs[len(runs) - ceil(len(runs) / SHARE) :] if len(runs) >= FEWEST else []
+    return list(named or called or last)
 
 
 def still(found: Found, radius: float | None) -> dict[str, bool]:

@@ -77,7 +77,9 @@ def given(column: Column, units: Iterable[str]) -> str:
     return column.unit if column.unit and any(same_dimension(column.unit, unit) for unit in units) else ""
 
 
-def sized(column: Column, units: Sequence[str], by_size: Callable[[np.ndarray], str], series: Sequence[Series]) -> tuple[str, str]:
+def sized(
+    column: Column, units: Sequence[str], by_size: Callable[[np.ndarray], str], series: Sequence[Series]
+) -> tuple[str, str]:
     """What campaign.toml has to say of a column's unit, and why: nothing where the file says it, "?" where nobody can tell."""
     if given(column, units):
         return "", ""
@@ -120,6 +122,7 @@ def nothing(values: np.ndarray) -> str:
 
 def acceleration_size(g: float) -> Callable[[np.ndarray], str]:
     """By gravity, where three axes show it."""
+
     def unit(values: np.ndarray) -> str:
         return next((u for u, size in (("g", 1.0), ("m/s2", 9.81), ("mg", 1000.0)) if 0.9 * size < g < 1.1 * size), "")
 

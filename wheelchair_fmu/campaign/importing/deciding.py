@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from . import frames, markers, wheels
-from .choices import Choice, Plan
-from .gathering import Series, Source
-from .guesses import OWN
-from .together import Told, Together, spread, together
+from ..channels import BY_NAME, SOURCES
+from .choices import Choice, Plan, given, nothing, sized
+from .gathering import Column, Series, Source
+from .together import Together, Told, spread, together
 
 RADIUS = 0.3  # m, about: for setting wheels beside other devices where nobody gave it
 Pair = tuple[tuple[str, str], tuple[str, str]]
@@ -24,7 +24,8 @@ def decide(sources: Sequence[Source], runs: Sequence[str], radius: float | None)
             _mark(plan, axles)
         else:
             _alone(plan)
-    some = spread([run for run in runs])
+    _nameless(plans)
+    some = spread(runs)
     seen = together({run: _told(plans, run, radius or RADIUS, axles) for run in some})
     heading = next(iter(axles), "")
     _sides(plans, seen, heading)
@@ -34,6 +35,14 @@ def decide(sources: Sequence[Source], runs: Sequence[str], radius: float | None)
             frames.finish(plan, seen, pairs, heading)
     _once(plans)
     return plans
+
+
+def _nameless(plans: Sequence[Plan]) -> None:
+    """Sensors on spokes that name no side are taken for the wheels that no other one is on, until a turn tells."""
+    spoked = [plan for plan in plans if plan.place == "on the spokes"]
+    free = [side for side in "lr" if side not in {plan.source.side for plan in spoked}]
+    for plan, side in zip((p for p in spoked if not p.source.side), free, strict=False):
+        plan.choices = [replace(c, channel=f"wheel_speed_{side}") for c in plan.choices]
 
 
 def _mark(plan: Plan, axles: dict[str, markers.Axle]) -> None:
@@ -46,8 +55,10 @@ def _mark(plan: Plan, axles: dict[str, markers.Axle]) -> None:
     plan.marker_axes = {"x": found.x, "y": found.y}
     plan.place, plan.why_axes = "markers", found.why
     if found.swapped:
-        plan.doubts.append(f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards "
-                           "then: it is taken for the left one")  # fmt: skip
+        plan.doubts.append(
+            f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards then: it is "
+            "taken for the left one"
+        )
 
 
 def _alone(plan: Plan) -> None:
@@ -64,11 +75,9 @@ def _alone(plan: Plan) -> None:
         frames.provisional(plan)
 
 
-def _own(plan: Plan, column) -> Choice:
-    from ..channels import BY_NAME, SOURCES
-    from .choices import given, nothing, sized
-
-    channel = OWN[column.quantity.lower()]
+def _own(plan: Plan, column: Column) -> Choice:
+    """A column that is called as the channel that it is."""
+    channel = column.quantity
     known = BY_NAME.get(channel) or next(s for s in SOURCES if s.name == channel)
     units = [known.unit.name] + ([known.rotary.name] if known.rotary else [])
     unit, why = sized(column, units, nothing, wheels.everything(plan.source, column))
@@ -105,8 +114,8 @@ def _pairs(seen: Together) -> Iterator[Pair]:
 
 
 def _sides(plans: Sequence[Plan], seen: Together, heading: str) -> None:
-    """Whether wheels are on the sides that their names say: in a turn the outer wheel goes farther. Only a yaw rate whose sign is
-    known without them, by gravity or by markers, can tell."""
+    """Whether wheels are on the sides that their names say: in a turn the outer wheel goes farther. Only a yaw rate whose sign
+    is known without them, by gravity or by markers, can tell."""
     turned = next((p for p in plans if p.place == "on the frame" and p.why_axes and p.find("yaw_rate")), None)
     if turned is None and not heading:
         return
@@ -134,7 +143,7 @@ def _sides(plans: Sequence[Plan], seen: Together, heading: str) -> None:
                 _swap(plan, by, {left[0]: "left", right[0]: "right"}.get(plan.name, "left"))
         else:
             for plan in of:
-                plan.doubts = [doubt for doubt in plan.doubts if not doubt.endswith(f"{wheels.WHICH} it is on")]
+                plan.doubts = [doubt for doubt in plan.doubts if doubt != wheels.unsided(plan)]
 
 
 OTHER = {"l": "r", "r": "l"}
@@ -143,34 +152,49 @@ OTHER = {"l": "r", "r": "l"}
 def _swap(plan: Plan, by: str, named: str) -> None:
     """Put all that a device says of one wheel to the other."""
     is_named = bool(plan.source.side) or any(c.column and c.column.guess and c.column.guess.side for c in plan.choices)
-    plan.choices = [replace(c.because("its side by its signal: in turns the outer wheel goes farther"), channel=f"{c.channel[:-1]}{OTHER[c.channel[-1]]}")
-                    if c.channel.startswith(("F_r", "M_r", "wheel_")) else c for c in plan.choices]  # fmt: skip
-    plan.doubts = [doubt for doubt in plan.doubts if not doubt.endswith(f"{wheels.WHICH} it is on")]
+    why = "its side by its signal: in turns the outer wheel goes farther"
+    plan.choices = [
+        c.because(why, channel=f"{c.channel[:-1]}{OTHER[c.channel[-1]]}") if c.channel.startswith(SIDED) else c
+        for c in plan.choices
+    ]
+    plan.doubts = [doubt for doubt in plan.doubts if doubt != wheels.unsided(plan)]
     if is_named:
         other = "right" if named == "left" else "left"
-        plan.doubts.append(f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by {by}; "
-                           f"it is taken as the {other} wheel's")  # fmt: skip
+        plan.doubts.append(
+            f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by {by}; "
+            f"it is taken as the {other} wheel's"
+        )
 
 
-ORDER = ("yaw_rate", "a_x", "a_y")
+SIDED = ("F_r", "M_r", "wheel_")
+
+
+FRAME = ("yaw_rate", "a_x", "a_y")
 
 
 def _once(plans: Sequence[Plan]) -> None:
-    """Each channel from one device: of frame sensors the one that tells most, of wheels' speeds what was measured, not what is
-    made from an angle."""
+    """In a run each channel from one device: of frame sensors from the one that tells most, of wheels what was measured, not what
+    is made from an angle; a heading from markers."""
     for channel in dict.fromkeys(c.channel for p in plans for c in p.choices):
-        of = [p for p in plans if p.find(channel)]
-        of.sort(key=lambda p: -sum(p.find(name) is not None for name in ORDER))
-        for plan in of[1:] if len(of) > 1 else []:
-            choice = plan.find(channel)
-            assert choice is not None
-            plan.put(replace(choice, beside=of[0].name))
-    for side in "lr":
-        speed = next((p for p in plans if p.find(f"wheel_speed_{side}")), None)
-        for plan in plans:
-            if speed is not None and plan is not speed and plan.find(f"wheel_angle_{side}"):
+        telling = sorted((p for p in plans if p.find(channel)), key=lambda p: -sum(p.find(name) is not None for name in FRAME))
+        for i, plan in enumerate(telling):
+            _leave(plan, channel, [first for first in telling[:i] if first.find(channel)])
+    for plan in plans:
+        _leave(plan, "yaw", [p for p in plans if p.markers])
+        for side in "lr":
+            speed = next((p for p in plans if _share(p, plan) and p.find(f"wheel_speed_{side}")), None)
+            if speed is not None and plan.find(f"wheel_angle_{side}"):
                 plan.empty[f"wheel_speed_{side}"] = f"{speed.name} measures it; the angle tells the ripple of the rim"
-    for name, of in (("yaw", [p for p in plans if p.markers]),):
-        for plan in plans:
-            if of and plan not in of and (choice := plan.find(name)):
-                plan.put(replace(choice, beside=of[0].name))
+
+
+def _leave(plan: Plan, channel: str, others: Sequence[Plan]) -> None:
+    """Leave a channel to another device that recorded the same runs."""
+    better = next((other for other in others if _share(other, plan)), None)
+    choice = plan.find(channel)
+    if better is not None and choice is not None:
+        plan.put(replace(choice, beside=better.name))
+
+
+def _share(one: Plan, other: Plan) -> bool:
+    """Are these two devices that recorded a run together?"""
+    return one is not other and bool(one.source.files.keys() & other.source.files.keys())

@@ -106,6 +106,7 @@ def _yaw(plan: Plan, choice: Choice, seen: Together, pairs: Sequence, heading: s
 
 def _against(plan: Plan, choice: Choice, seen: Together, pairs: Sequence, heading: str) -> tuple[str, Fit] | None:
     """The yaw rate as it is in the file beside what else turns: (rad/s, clockwise)."""
+
     def own(run: str) -> Series | None:
         series = plan.series(run, choice)
         return series and seen.at(run, plan.name, series)
@@ -115,6 +116,7 @@ def _against(plan: Plan, choice: Choice, seen: Together, pairs: Sequence, headin
         if fit is not None and fit.plain:
             return "the wheels' difference", Fit(fit.gain * TRACK, fit.correlation)
     if heading:
+
         def turned(run: str) -> Series | None:
             series = seen.told[run].get((heading, "yaw"))
             return series and seen.at(run, heading, (series[0], _unwrapped(series[1])), 1)
@@ -139,9 +141,18 @@ def _by_gain(choice: Choice, plan: Plan, fit: Fit, units: Mapping[str, float], r
     unit = next((u for u, size in units.items() if size / NEAR < gain < size * NEAR), "")
     if not unit:
         return choice
-    says = f"the file says [{choice.column.unit}], which is no unit of it" if choice.column and choice.column.unit else "the file gives no unit"
+    says = (
+        f"the file says [{choice.column.unit}], which is no unit of it"
+        if choice.column and choice.column.unit
+        else "the file gives no unit"
+    )
     why = f"{says}: {unit}, as it is then as large as {by}: check it"
-    return replace(choice, unit=unit, settled=True, why=why if choice.why == NAMED or "by the size" in choice.why else f"{choice.why}; {why}")
+    return replace(
+        choice,
+        unit=unit,
+        settled=True,
+        why=why if choice.why == NAMED or "by the size" in choice.why else f"{choice.why}; {why}",
+    )
 
 
 def _accelerations(plan: Plan, seen: Together) -> None:
@@ -150,6 +161,7 @@ def _accelerations(plan: Plan, seen: Together) -> None:
         return
     fits = {}
     for axis, column in columns.items():
+
         def own(run: str, column: Column = column) -> Series | None:
             series = plan.source.series(run, column, "m/s2" if given(column, ("m/s2",)) else "")
             return series and seen.at(run, plan.name, series)

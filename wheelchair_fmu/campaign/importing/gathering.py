@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,9 +12,9 @@ import numpy as np
 from ...faults import WARNING, Fault, some
 from ...tables import Table
 from ...units import UnitError, factor
-from ..formats import open_recording
+from ..formats import open_recording, read_head
 from .guesses import Guess, guess, side_of, sides
-from .naming import Placed, placed
+from .naming import placed
 
 PROSE = (".md", ".txt", ".rst", ".pdf", ".doc", ".docx", ".html", "")  # endings that texts about recordings have
 OURS = (".toml", ".py", ".m", ".png", ".jpg", ".svg")
@@ -105,9 +106,16 @@ def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]
         table, met = open_recording(path, file, {})
         prose = path.name.lower().startswith("readme") or path.suffix.lower() in PROSE
         if table is not None and not _numbers(table):
-            table, met = None, [] if prose else [Fault(file, None, None, "the file has no column of numbers", "export it again")]
+            table, met = (
+                None,
+                [] if prose else [Fault(file, None, None, "the file has no column of numbers", "export it again")],
+            )
         if table is None:
-            why = met[0] if met and not prose else Fault(file, None, None, "the file is text, no recording", "nothing is to be done")
+            why = (
+                met[0]
+                if met and not prose
+                else Fault(file, None, None, "the file is text, no recording", "nothing is to be done")
+            )
             faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, WARNING))
             continue
         found.append(Opened(path, file, table))
@@ -140,8 +148,6 @@ def sources(files: Sequence[Opened]) -> tuple[list[Source], list[str], list[Faul
 
 def _natural(name: str) -> list[tuple[int, str]]:
     """Run 2 before run 10."""
-    import re
-
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
@@ -171,7 +177,7 @@ def _time_unit(table: Table, time: Column | None) -> tuple[str, bool]:
 def _written_side(one: Opened) -> str:
     """The side that stands in the lines above the header, as in "Wheel Side :Right"."""
     try:
-        head = one.path.open("rb").read(2000).decode("latin-1") if one.path.suffix.lower() in (".txt", ".csv", ".data") else ""
+        head = read_head(one.path)[:2000].decode("latin-1")
     except OSError:
         return ""
     lines = [line for line in head.splitlines()[:20] if "side" in line.lower() and ":" in line]

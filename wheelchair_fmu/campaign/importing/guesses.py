@@ -14,12 +14,12 @@ from ...units import same_dimension, split, suffixed
 from ..channels import BY_NAME, SOURCES, TIME
 
 OWN = {channel.name.lower(): channel.name for channel in (TIME, *BY_NAME.values(), *SOURCES)}
-LEFT = frozenset("l left links linkes linker linke lh gauche g rl li lks izquierda".split())
-RIGHT = frozenset("r right rechts rechtes rechter rechte rh droite droit d rr re rts derecha".split())
+LEFT = frozenset(["l", "left", "links", "linkes", "linker", "linke", "lh", "gauche", "g", "rl", "li", "lks", "izquierda"])
+RIGHT = frozenset(["r", "right", "rechts", "rechtes", "rechter", "rechte", "rh", "droite", "droit", "d", "rr", "re", "rts", "derecha"])
 DIRECTIONS = {
-    **dict.fromkeys("langs laengs longitudinal forward fwd vorwarts avant along surge".split(), "x"),
-    **dict.fromkeys("quer lateral seitlich lateral side transversal sway".split(), "y"),
-    **dict.fromkeys("vertical vertikal hoch up heave".split(), "z"),
+    **dict.fromkeys(["langs", "laengs", "longitudinal", "forward", "fwd", "vorwarts", "avant", "along", "surge"], "x"),
+    **dict.fromkeys(["quer", "lateral", "seitlich", "lateral", "side", "transversal", "sway"], "y"),
+    **dict.fromkeys(["vertical", "vertikal", "hoch", "up", "heave"], "z"),
 }  # by the chair, not by the sensor
 LONG = 3  # letters of a word in which a side may be the last letter
 
@@ -72,7 +72,11 @@ class Guess:
 
 def words(text: str) -> list[str]:
     """A header's words in small letters without accents; capitals within a word part it, as in GyroZ."""
-    plain = unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("ψ", "psi").replace("ω", "omega")).encode("ascii", "ignore").decode()
+    plain = (
+        unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("ψ", "psi").replace("ω", "omega"))
+        .encode("ascii", "ignore")
+        .decode()
+    )
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", plain)
     plain = re.sub(r"(?<=[a-z]{3})(?=[XYZ]\b)", " ", plain)
     return [word for word in re.split(r"[^a-z0-9]+", plain.lower()) if word]

@@ -46,7 +46,9 @@ def triples(source: Source) -> dict[str, dict[str, Column]]:
 def is_markers(source: Source) -> bool:
     """Two markers at least, in units of length."""
     of = triples(source)
-    lengths = [by["x"] for by in of.values() if by["x"].unit is None or scale_of(by["x"].unit, "m") != 1.0 or by["x"].unit == "m"]
+    lengths = [
+        by["x"] for by in of.values() if by["x"].unit is None or scale_of(by["x"].unit, "m") != 1.0 or by["x"].unit == "m"
+    ]
     return len(lengths) >= 2 and not any("acc" in n.lower() or "gyr" in n.lower() for n in of)
 
 
@@ -158,7 +160,9 @@ def _ahead(left: list[np.ndarray], right: list[np.ndarray], x: Way, y: Way) -> f
 def pose(source: Source, run: str, found: Axle) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """x, y and yaw of the axle's middle in a run, for setting it beside other devices."""
     by = triples(source)
-    series = {(end, w): source.series(run, by[end][w[-1]], "m") for end in (found.left, found.right) for w in (found.x, found.y)}
+    series = {
+        (end, w): source.series(run, by[end][w[-1]], "m") for end in (found.left, found.right) for w in (found.x, found.y)
+    }
     if any(one is None for one in series.values()):
         return {}
     value = {key: (-1.0 if key[1].startswith("-") else 1.0) * one[1] for key, one in series.items() if one is not None}

@@ -18,11 +18,11 @@ from pathlib import PurePath
 
 RUN_WORDS = ("run", "trial", "take", "test", "m", "messung", "versuch", "fahrt", "lauf", "essai", "mesure", "passage", "rec",
              "recording", "aufnahme", "r", "t")  # fmt: skip
-PLACES = frozenset(
-    "left right links rechts gauche droite l r lh rh frame rahmen cadre seat sitz imu gyro wheel wheels rad raeder roue roues swl swr sw "
-    "smartwheel optipush markers marker mocap vicon optitrack trc c3d moment torque drehmoment couple force encoder "
-    "speed push rim rims pushrim sensor sensors xsens movella ngimu logger amplifier".split()
-)  # words that say who recorded, or where: never the name of a run
+PLACES = frozenset("""
+    left right links rechts gauche droite l r lh rh frame rahmen cadre seat sitz imu gyro wheel wheels rad raeder roue roues
+    swl swr sw smartwheel optipush markers marker mocap vicon optitrack trc moment torque drehmoment couple force encoder
+    speed push rim rims pushrim sensor sensors xsens movella ngimu logger amplifier
+""".split())  # words that say who recorded, or where: never the name of a run
 LONGEST = 5  # digits of a run's number: more are a date or a serial number
 _PACKED = (".gz", ".bz2", ".xz")
 _BETWEEN = re.compile(r"[-_ .]+")
@@ -130,11 +130,20 @@ def _tried(names: Sequence[Name], way: Callable[[Name], Split | None], kind: Map
     twice = len({(one.run, one.device) for one in result}) < len(result)
     crossed = len(runs) == 1 or len(kinds) < len(result)
     mixed = any(len(of) > 1 for of in kinds.values()) or any(_of_devices(run.split("_")) for run in runs)
-    return None if twice or mixed or not crossed else result
+    return None if twice or mixed or not crossed or _merely_named(kinds) else result
 
 
 def _of_devices(words: Sequence[str]) -> bool:
-    return all(word.lower() in PLACES for word in words)
+    return all(word.rstrip("0123456789").lower() in PLACES for word in words)
+
+
+def _merely_named(kinds: Mapping[str, set[Hashable]]) -> bool:
+    """Are there devices with the same columns whose names do not say that they are several, such as slow and quick?"""
+    for device, of in kinds.items():
+        alike = [other for other in kinds if other != device and kinds[other] & of]
+        if alike and not any(word.rstrip("0123456789") in PLACES for word in device.split("_")):
+            return True
+    return False
 
 
 def _devices(rests: Sequence[tuple[Name, tuple[str, ...]]], kind: Mapping[str, Hashable]) -> list[str]:
@@ -152,7 +161,9 @@ def _apart(names: Sequence[Name], kind: Mapping[str, Hashable]) -> list[Placed]:
     one device for all that have the same columns."""
     stems = ["_".join(name.words) for name in names]
     if len(names) > 1 and all(map(_of_devices, (name.words for name in names))):
-        own = [slug(stem) if stems.count(stem) == 1 else slug(f"{stem}_{n.ending}") for stem, n in zip(stems, names, strict=True)]
+        own = [
+            slug(stem) if stems.count(stem) == 1 else slug(f"{stem}_{n.ending}") for stem, n in zip(stems, names, strict=True)
+        ]
         return [Placed(name.file, "run", device) for name, device in zip(names, own, strict=True)]
     kinds = list(dict.fromkeys(kind.get(name.file) for name in names))
     devices = [next(slug("_".join(n.words)) or "file" for n in names if kind.get(n.file) == one) for one in kinds]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...units import same_dimension
 from ..angles import TURN, cleaned
 from ..clocks.signals import rate
 from .choices import Choice, Plan, angle_size, force_size, nothing, rate_size, sized, torque_size
@@ -11,7 +12,6 @@ from .gathering import Column, Series, Source
 from .turning import Lean, axes, forward, on_spokes, pushing
 
 SIDES = {"l": "left", "r": "right"}
-WHICH = "which wheel it is of"
 
 
 def sided(plan: Plan, column: Column, alone: str = "") -> str:
@@ -28,7 +28,7 @@ def rims(plan: Plan) -> None:
         for column in axial if axial and quantity == "torque" else columns:
             side = sided(plan, column)
             if not side:
-                plan.doubts.append(f"{source.name}: no name tells {WHICH} {column.header!r} measures; write columns.F_rl or columns.F_rr")
+                plan.doubts.append(_whose(plan, column, "F_rl or columns.F_rr"))
                 continue
             series = everything(source, column)
             unit, why = sized(column, (si,), size, series)
@@ -44,7 +44,7 @@ def angles(plan: Plan) -> None:
     for column in plan.source.of("wheel_angle"):
         side = sided(plan, column)
         if not side:
-            plan.doubts.append(f"{plan.name}: no name tells {WHICH} {column.header!r} is; write columns.wheel_angle_l or _r")
+            plan.doubts.append(_whose(plan, column, "wheel_angle_l or columns.wheel_angle_r"))
             continue
         unit, why = sized(column, ("rad",), angle_size, everything(plan.source, column))
         chosen = Choice(f"wheel_angle_{side}", column.header, unit=unit, settled=unit != "?", column=column, si="rad")
@@ -60,7 +60,7 @@ def speeds(plan: Plan) -> None:
         side = sided(plan, column)
         channel, units = (f"wheel_speed_{side}", ("m/s", "rad/s")) if side else ("u", ("m/s",))
         unit, why = sized(column, units, nothing, everything(plan.source, column))
-        si = next((one for one in units if _is(unit or column.unit, one)), "m/s")
+        si = next((one for one in units if same_dimension(unit or column.unit or "", one)), "m/s")
         lean = forward(everything(plan.source, column))
         chosen = Choice(channel, column.header, unit=unit, sign=lean.sign, settled=unit != "?", column=column, si=si)
         if not plan.find(channel):
@@ -78,13 +78,15 @@ def spokes(plan: Plan) -> bool:
     side = source.side or "l"
     lean = forward(everything(source, column))
     unit, why = sized(column, ("rad/s",), rate_size, everything(source, column))
-    chosen = Choice(f"wheel_speed_{side}", column.header, unit=unit, sign=lean.sign, settled=unit != "?", column=column, si="rad/s")
+    chosen = Choice(
+        f"wheel_speed_{side}", column.header, unit=unit, sign=lean.sign, settled=unit != "?", column=column, si="rad/s"
+    )
     told = "gravity turns through its other axes: it is on the spokes" if axes(source, "acc") else "it turns most of its axes"
     chosen = chosen.because(f"by its signal: {told}").because(_said(lean, "it rolls", "it mostly rolls forward", ""))
     plan.put(chosen.because(why) if why else chosen)
     plan.place = "on the spokes"
     if not source.side:
-        plan.doubts.append(f"{source.name}: no name tells {WHICH} it is on")
+        plan.doubts.append(unsided(plan))
     return True
 
 
@@ -112,10 +114,13 @@ def rolling(plan: Plan, run: str, radius: float) -> Iterator[tuple[str, Series]]
             yield choice.channel.replace("angle", "speed"), (speed[0], radius * speed[1])
 
 
-def _is(unit: str | None, si: str) -> bool:
-    from ...units import same_dimension
+def unsided(plan: Plan) -> str:
+    """The doubt about a sensor on the spokes whose wheel no name tells."""
+    return f"{plan.name}: it is on the spokes, but neither its name nor a turn tells of which wheel: check its side"
 
-    return bool(unit) and same_dimension(str(unit), si)
+
+def _whose(plan: Plan, column: Column, cure: str) -> str:
+    return f"{plan.name}: no name tells of which wheel {column.header!r} is, so it is not used; write columns.{cure}"
 
 
 def _side_told(plan: Plan, column: Column, side: str) -> str:

@@ -10,7 +10,19 @@ from ..axes import AXES, SAE
 from .choices import NAMED, Choice, Plan
 from .guesses import OWN
 
-MANOEUVRES = ("coast-down", "coastdown", "slalom", "straight", "circle", "pivot", "spin", "turn", "sprint", "kreis", "ausrollen")
+MANOEUVRES = (
+    "coast-down",
+    "coastdown",
+    "slalom",
+    "straight",
+    "circle",
+    "pivot",
+    "spin",
+    "turn",
+    "sprint",
+    "kreis",
+    "ausrollen",
+)
 PUSHES = ("F_rl", "F_rr", "M_rl", "M_rr")
 WIDE = 90  # characters of a line behind which a comment stands on a line of its own
 
@@ -60,7 +72,15 @@ def open_axes(plans: Sequence[Plan]) -> bool:
 def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     count = sum(map(len, files.values()))
     told = next((plan for plan in plans if plan.axes), None)
-    why = f"of {told.name}, {told.why_axes}" if told else "as you said" if wanted.axes else "no signal tells: correct it" if open_axes(plans) else ""
+    why = (
+        f"of {told.name}, {told.why_axes}"
+        if told
+        else "as you said"
+        if wanted.axes
+        else "no signal tells: correct it"
+        if open_axes(plans)
+        else ""
+    )
     other = next((a for a in AXES if a != axes_of(plans, wanted)), "")
     return "\n".join([
         f"# Written by `wheelchair import` from {count} files. Behind each column stands what told it; see also preview.html.",
@@ -82,7 +102,10 @@ def _chair(wanted: Wanted) -> str:
 
 def _nuisance(plans: Sequence[Plan]) -> str:
     names = [name for name in PUSHES if any((c := plan.find(name)) and c.si == "N.m" for plan in plans)]
-    lines = [_line("[nuisance]", "what the rims show where nobody touches them is estimated"), *(f"{name} = true" for name in names)]
+    lines = [
+        _line("[nuisance]", "what the rims show where nobody touches them is estimated"),
+        *(f"{name} = true" for name in names),
+    ]
     return "\n".join(lines) if names else ""
 
 
