@@ -30,7 +30,8 @@ def named(files: list[str], kind=lambda file: 0) -> dict[str, tuple[str, str]]:
     (["run01_imu1.csv", "run01_imu2.csv", "run02_imu1.csv", "run02_imu2.csv"], {"run02_imu1.csv": ("run02", "imu1")}),
     (["slalom_imu.csv", "slalom_wheels.csv", "coast_imu.csv", "coast_wheels.csv"], {"coast_wheels.csv": ("coast", "wheels")}),
     (["run01/imu.csv", "run02/imu.csv", "run01/rim.csv", "run02/rim.csv"], {"run02/rim.csv": ("run02", "rim")}),
-    (["run1_imu.csv", "run1_imu.mat", "run2_imu.csv"], {"run1_imu.mat": ("run1", "imu_mat"), "run2_imu.csv": ("run2", "imu_csv")}),
+    (["run1_imu.csv", "run1_imu.mat", "run2_imu.csv"], {"run1_imu.mat": ("run1", "imu_mat"), "run2_imu.csv": ("run2", "imu_csv")}
+     ),
     (["left.csv", "right.csv", "frame.csv"], {"left.csv": ("run", "left"), "frame.csv": ("run", "frame")}),
     (["left_slalom.csv", "right_slalom.csv", "left_coast.csv", "right_coast.csv"], {"left_coast.csv": ("coast", "left")}),
 ])  # fmt: skip
@@ -52,8 +53,8 @@ def test_recordings_without_a_pattern_are_runs_of_one_device():
 
 
 @pytest.mark.parametrize(("header", "quantity", "axis", "side"), [
-    ("Zeit [s]", "time", "", ""), ("temps", "time", "", ""), ("Gyroscope Z (deg/s)", "gyro", "z", ""), ("gyr_z", "gyro", "z", ""),
-    ("GyroZ", "gyro", "z", ""), ("rec.data.omega_z", "gyro", "z", ""), ("Gierrate [deg/s]", "yaw_rate", "", ""),
+    ("Zeit [s]", "time", "", ""), ("temps", "time", "", ""), ("Gyroscope Z (deg/s)", "gyro", "z", ""),
+    ("gyr_z", "gyro", "z", ""), ("GyroZ", "gyro", "z", ""), ("rec.data.omega_z", "gyro", "z", ""), ("Gierrate [deg/s]", "yaw_rate", "", ""),
     ("vitesse de lacet", "yaw_rate", "", ""), ("AccX", "acc", "x", ""), ("a längs [g]", "acc", "x", ""),
     ("Antriebsmoment links [N·m]", "torque", "", "l"), ("couple droit", "torque", "", "r"), ("Tz", "torque", "z", ""),
     ("v rechts [km/h]", "speed", "", "r"), ("vitesse roue gauche", "speed", "", "l"), ("Winkel", "wheel_angle", "", ""),
@@ -165,9 +166,9 @@ def test_sensors_without_names_are_told_by_what_they_saw(tmp_path):
 def test_a_unit_that_no_file_gives_is_told_by_the_signals_and_marked(tmp_path):
     def write(folder, run, s, rng):
         time, left, right = lab.seen(s, 100, 0.6, "wheel_speed_l", "wheel_speed_r")
-        noise = rng.normal(0, 0.01, (2, len(time)))
-        pd.DataFrame({"Zeit [ms]": 1000 * time, "v links [km/h]": 3.6 * left + noise[0], "v rechts [km/h]": 3.6 * right + noise[1]}
-                     ).to_csv(folder / f"{run}_rad.csv", index=False)  # fmt: skip
+        left, right = (3.6 * (v + rng.normal(0, 0.003, len(time))) for v in (left, right))
+        table = {"Zeit [ms]": 1000 * time, "v links [km/h]": left, "v rechts [km/h]": right}
+        pd.DataFrame(table).to_csv(folder / f"{run}_rad.csv", index=False)
         lab.frame(folder / f"{run}_imu.csv", s, 0.3, rng, units=False)
 
     found, by = chosen(make(tmp_path, write))

@@ -93,7 +93,9 @@ def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
 
 def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
     monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
-    done = CliRunner().invoke(app, ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"], input="x\n88,5\n\n")
+    done = CliRunner().invoke(
+        app, ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"], input="x\n88,5\n\n"
+    )
     assert done.exit_code == 0 and "give a number" in done.output, done.output
     content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
     assert content["chair"] == {"m": 88.5, "t_r": 0.5} and content["wheel"] == {}

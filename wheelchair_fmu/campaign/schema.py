@@ -110,7 +110,8 @@ RECORDING = TableRecord(
 COLUMN = TableRecord(
     "columns",
     "Names of columns that are not called as their channels. A channel is matched by a whole header first, then without its "
-    "unit. Each entry is a header, or a table of these keys; \"\" leaves a channel out, also one that would be made from others.", (
+    "unit. Each entry is a header, or a table of these keys; \"\" leaves a channel out, also one that would be made from "
+    "others.", (
     Key("column", "text", "The header.", default="the channel's own name", example='yaw_rate = { column = "Gyro Z" }'),
     Key("unit", "text", "Its unit, where the file gives none, or a wrong one.", default="as in the file",
         example='unit = "deg/s"', fault="no unit given"),

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from . import frames, markers, wheels
 from ..channels import BY_NAME, SOURCES
+from . import frames, markers, wheels
 from .choices import Choice, Plan, given, nothing, sized
 from .gathering import Column, Series, Source
 from .together import Together, Told, spread, together
@@ -56,8 +56,8 @@ def _mark(plan: Plan, axles: dict[str, markers.Axle]) -> None:
     plan.place, plan.why_axes = "markers", found.why
     if found.swapped:
         plan.doubts.append(
-            f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards then: it is "
-            "taken for the left one"
+            f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards then: it "
+            "is taken for the left one"
         )
 
 
@@ -147,6 +147,7 @@ def _sides(plans: Sequence[Plan], seen: Together, heading: str) -> None:
 
 
 OTHER = {"l": "r", "r": "l"}
+SIDED = ("F_r", "M_r", "wheel_")  # how channels of one wheel begin
 
 
 def _swap(plan: Plan, by: str, named: str) -> None:
@@ -161,20 +162,17 @@ def _swap(plan: Plan, by: str, named: str) -> None:
     if is_named:
         other = "right" if named == "left" else "left"
         plan.doubts.append(
-            f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by {by}; "
-            f"it is taken as the {other} wheel's"
+            f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by {by}"
+            f"; it is taken as the {other} wheel's"
         )
-
-
-SIDED = ("F_r", "M_r", "wheel_")
 
 
 FRAME = ("yaw_rate", "a_x", "a_y")
 
 
 def _once(plans: Sequence[Plan]) -> None:
-    """In a run each channel from one device: of frame sensors from the one that tells most, of wheels what was measured, not what
-    is made from an angle; a heading from markers."""
+    """In a run each channel from one device: of frame sensors from the one that tells most, of wheels what was measured, not
+    what is made from an angle; a heading from markers."""
     for channel in dict.fromkeys(c.channel for p in plans for c in p.choices):
         telling = sorted((p for p in plans if p.find(channel)), key=lambda p: -sum(p.find(name) is not None for name in FRAME))
         for i, plan in enumerate(telling):

@@ -1,8 +1,8 @@
 """Sensors on the frame: which axis is the yaw rate's, which is forward, and how they are signed.
 
-Gravity tells which axis is up, and a right-handed sensor turns counter-clockwise about it when it reads a positive rate. Without
-gravity, the wheels' difference tells the sign. The axis that shows how the speed changes is forward; the third one follows, as the
-sensor's axes are right-handed.
+Gravity tells which axis is up, and a right-handed sensor turns counter-clockwise about it when it reads a positive rate.
+Without gravity, the wheels' difference tells the sign. The axis that shows how the speed changes is forward; the third one
+follows, as the sensor's axes are right-handed.
 """
 
 from __future__ import annotations

@@ -15,7 +15,9 @@ from ..channels import BY_NAME, SOURCES, TIME
 
 OWN = {channel.name.lower(): channel.name for channel in (TIME, *BY_NAME.values(), *SOURCES)}
 LEFT = frozenset(["l", "left", "links", "linkes", "linker", "linke", "lh", "gauche", "g", "rl", "li", "lks", "izquierda"])
-RIGHT = frozenset(["r", "right", "rechts", "rechtes", "rechter", "rechte", "rh", "droite", "droit", "d", "rr", "re", "rts", "derecha"])
+RIGHT = frozenset(
+    ["r", "right", "rechts", "rechtes", "rechter", "rechte", "rh", "droite", "droit", "d", "rr", "re", "rts", "derecha"]
+)
 DIRECTIONS = {
     **dict.fromkeys(["langs", "laengs", "longitudinal", "forward", "fwd", "vorwarts", "avant", "along", "surge"], "x"),
     **dict.fromkeys(["quer", "lateral", "seitlich", "lateral", "side", "transversal", "sway"], "y"),
@@ -26,33 +28,41 @@ LONG = 3  # letters of a word in which a side may be the last letter
 
 @dataclass(frozen=True)
 class Quantity:
-    """`name` of what is measured, the SI units it may have, and a pattern of the words for it. `turning` has an axis of its
-    sensor, `sided` a wheel."""
+    """`name` of what is measured, the SI units it may have, and a pattern of the words for it, in which a line may end. Of what
+    is `axial` the header names the axis of its sensor."""
 
     name: str
     units: tuple[str, ...]
     words: str
     axial: bool = False
-    sided: bool = False
+
+    def names(self, text: str) -> bool:
+        """Is this what the words call it?"""
+        return bool(re.fullmatch(re.sub(r"\n *", "", self.words), text))
 
 
 QUANTITIES = (
-    Quantity("time", ("s",), r"(elapsed |relative |sample |abs(olute)? )?(time|zeit|t|temps|tiempo|timestamp|zeitstempel|messzeit)( stamp)?"),
+    Quantity("time", ("s",), r"""(elapsed |relative |sample |abs(olute)? )?
+        (time|zeit|t|temps|tiempo|timestamp|zeitstempel|messzeit)( stamp)?"""),
     Quantity("counter", ("1",), r"(counter|frame|sample|index|nr|packet ?counter|zaehler|record)( nr| number| no)?"),
-    Quantity("yaw_rate", ("rad/s",), r"yaw ?(rate|speed|vel(ocity)?)|gier ?(rate|geschwindigkeit)|vitesse de lacet|psi ?(dot|p)"),
+    Quantity("yaw_rate", ("rad/s",), r"""yaw ?(rate|speed|vel(ocity)?)|gier ?(rate|geschwindigkeit)|vitesse de lacet|
+        psi ?(dot|p)"""),
     Quantity("yaw", ("rad",), r"yaw( angle)?|heading|gierwinkel|kurs(winkel)?|angle de lacet|lacet|cap|psi"),
-    Quantity("gyro", ("rad/s",), r"gyr(o(scope|skop)?)?( data)?|g|omega|w|ang(ular)? ?(vel(ocity)?|rate|speed)|rate|dreh ?rate|"
-             r"winkel ?geschwindigkeit|vitesse angulaire|rot(ation)? ?rate", axial=True),
-    Quantity("acc", ("m/s2",), r"(lin(ear)? ?)?acc?(el(eration|erometer|erometre)?)?( data)?|a|beschl(eunigung)?|fahr ?beschleunigung|"
-             r"acceleration lineaire", axial=True),
-    Quantity("torque", ("N.m",), r"(m|t|moment|torque|couple|dreh ?moment)( z)?|(antriebs|rad|greifreifen|propulsion|wheel|axle|pushrim|rim) ?"
-             r"(dreh ?)?(moment|torque)|couple( de)? propulsion|moment (propulsif|moteur)|(push )?torque|hand ?rim ?(moment|torque)", sided=True),
-    Quantity("force", ("N",), r"(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|f ?(tan|tang|t|push)?|force|kraft|"
-             r"(antriebs|schub|tangential|umfangs) ?kraft|force( de)?( poussee| tangentielle| propulsion)?", sided=True),
-    Quantity("wheel_angle", ("rad",), r"(wheel |rear wheel |rad ?|rim )?(angle|winkel|position angulaire|encoder|rotation|phi|theta)|"
-             r"angle( de)?( la)? roue|rad ?winkel|dreh ?winkel", sided=True),
-    Quantity("speed", ("m/s", "rad/s"), r"(wheel |rear wheel |rad ?|rim |ground |encoder )?(speed|velocity|vel|v|geschwindigkeit|vitesse|tempo|"
-             r"dreh ?zahl|rpm|omega|w|n)|wheel|roue|rad ?(geschwindigkeit|drehzahl)|vitesse( de)?( la)? roue|fahr ?geschwindigkeit", sided=True),
+    Quantity("gyro", ("rad/s",), r"""gyr(o(scope|skop)?)?( data)?|g|omega|w|ang(ular)? ?(vel(ocity)?|rate|speed)|rate|
+        dreh ?rate|winkel ?geschwindigkeit|vitesse angulaire|rot(ation)? ?rate""", axial=True),
+    Quantity("acc", ("m/s2",), r"""(lin(ear)? ?)?acc?(el(eration|erometer|erometre)?)?( data)?|a|beschl(eunigung)?|
+        fahr ?beschleunigung|acceleration lineaire""", axial=True),
+    Quantity("torque", ("N.m",), r"""(m|t|moment|torque|couple|dreh ?moment)( z)?|
+        (antriebs|rad|greifreifen|propulsion|wheel|axle|pushrim|rim) ?(dreh ?)?(moment|torque)|
+        couple( de)? propulsion|moment (propulsif|moteur)|(push )?torque|hand ?rim ?(moment|torque)"""),
+    Quantity("force", ("N",), r"""(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|
+        f ?(tan|tang|t|push)?|force|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
+        force( de)?( poussee| tangentielle| propulsion)?"""),
+    Quantity("wheel_angle", ("rad",), r"""(wheel |rear wheel |rad ?|rim )?
+        (angle|winkel|position angulaire|encoder|rotation|phi|theta)|angle( de)?( la)? roue|rad ?winkel|dreh ?winkel"""),
+    Quantity("speed", ("m/s", "rad/s"), r"""(wheel |rear wheel |rad ?|rim |ground |encoder )?
+        (speed|velocity|vel|v|geschwindigkeit|vitesse|tempo|dreh ?zahl|rpm|omega|w|n)|wheel( rate)?|roue|
+        rad ?(geschwindigkeit|drehzahl)|vitesse( de)?( la)? roue|fahr ?geschwindigkeit"""),
     Quantity("x", ("m",), r"(pos(ition)? ?)?x( pos(ition)?)?"),
     Quantity("y", ("m",), r"(pos(ition)? ?)?y( pos(ition)?)?"),
 )  # fmt: skip
@@ -72,11 +82,8 @@ class Guess:
 
 def words(text: str) -> list[str]:
     """A header's words in small letters without accents; capitals within a word part it, as in GyroZ."""
-    plain = (
-        unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("ψ", "psi").replace("ω", "omega"))
-        .encode("ascii", "ignore")
-        .decode()
-    )
+    latin = text.replace("ß", "ss").replace("ψ", "psi").replace("ω", "omega")
+    plain = unicodedata.normalize("NFKD", latin).encode("ascii", "ignore").decode()
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", plain)
     plain = re.sub(r"(?<=[a-z]{3})(?=[XYZ]\b)", " ", plain)
     return [word for word in re.split(r"[^a-z0-9]+", plain.lower()) if word]
@@ -116,7 +123,7 @@ def _read(parts: list[str], unit: str | None) -> Guess | None:
         for one in QUANTITIES:
             if (one.axial or one.name in PUSHED) != axial and axis:
                 continue
-            if re.fullmatch(one.words, text) and _fits(one, unit, axis, text):
+            if one.names(text) and _fits(one, unit, axis, text):
                 return Guess(one.name, axis, side)
     return None
 

@@ -1,5 +1,5 @@
-"""Which markers are the ends of the rear axle, and how the laboratory's axes lie to the room: from distances, heights and the way
-the chair goes."""
+"""Which markers are the ends of the rear axle, and how the laboratory's axes lie to the room: from distances, heights and the
+way the chair goes."""
 
 from __future__ import annotations
 
@@ -59,8 +59,10 @@ def axle(source: Source) -> Axle | str:
     hubs = [pair for pair in pairs if all(HUB.search(name) for name in pair)]
     low = [pair for pair in hubs or pairs if _upward(seen[pair[0]], seen[pair[1]]) is not None]
     if not low:
-        return (f"no two of the markers {', '.join(seen)} are the ends of an axle (as far apart as wheels all the time, and as high "
-                "as a hub): write markers = { axle_l = ..., axle_r = ... }")  # fmt: skip
+        return (
+            f"no two of the markers {', '.join(seen)} are the ends of an axle (as far apart as wheels all the time, as high as a "
+            "hub): write markers = { axle_l = ..., axle_r = ... }"
+        )
     one, other = low[0]
     up = _upward(seen[one], seen[other])
     assert up is not None

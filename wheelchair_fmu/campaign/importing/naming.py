@@ -18,11 +18,13 @@ from pathlib import PurePath
 
 RUN_WORDS = ("run", "trial", "take", "test", "m", "messung", "versuch", "fahrt", "lauf", "essai", "mesure", "passage", "rec",
              "recording", "aufnahme", "r", "t")  # fmt: skip
-PLACES = frozenset("""
+# words that say who recorded, or where: never the name of a run
+_WHO = """
     left right links rechts gauche droite l r lh rh frame rahmen cadre seat sitz imu gyro wheel wheels rad raeder roue roues
     swl swr sw smartwheel optipush markers marker mocap vicon optitrack trc moment torque drehmoment couple force encoder
     speed push rim rims pushrim sensor sensors xsens movella ngimu logger amplifier
-""".split())  # words that say who recorded, or where: never the name of a run
+"""
+PLACES = frozenset(_WHO.split())
 LONGEST = 5  # digits of a run's number: more are a date or a serial number
 _PACKED = (".gz", ".bz2", ".xz")
 _BETWEEN = re.compile(r"[-_ .]+")
@@ -157,8 +159,8 @@ def _devices(rests: Sequence[tuple[Name, tuple[str, ...]]], kind: Mapping[str, H
 
 
 def _apart(names: Sequence[Name], kind: Mapping[str, Hashable]) -> list[Placed]:
-    """No pattern: files that are called as devices are of one run, left.csv and right.csv; else each file is a run of its own, of
-    one device for all that have the same columns."""
+    """No pattern: files that are called as devices are of one run, left.csv and right.csv; else each file is a run of its own,
+    of one device for all that have the same columns."""
     stems = ["_".join(name.words) for name in names]
     if len(names) > 1 and all(map(_of_devices, (name.words for name in names))):
         own = [
