@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -15,17 +16,28 @@ from rich.table import Table
 
 from ..campaign import Fault, Recorded
 from ..campaign.axes import AXES
-from ..campaign.document import FILE, load
+from ..campaign.document import FILE
 from ..campaign.formats import format_of
-from ..campaign.importing import Choice, Found, Plan, Wanted, find, held_out, open_axes, still, text
+from ..campaign.importing import (
+    RADIUS,
+    Choice,
+    Found,
+    Plan,
+    Wanted,
+    find,
+    held_out,
+    needs_radius,
+    open_axes,
+    still,
+    text,
+)
 from ..campaign.reading import recorded
 from ..campaign.syncing import find as find_clocks
-from ..campaign.syncing import write
 from ..errors import UsageError
 from ..faults import ERROR
 from ..loop.subject import known_parameters
 from ..writing import written
-from .check import draw
+from .check import MOST, draw
 from .group import console, working
 from .sync import show
 
@@ -60,9 +72,9 @@ def import_(
         wanted = _asked(wanted, found)
     with working("writing"):
         names = _placed(found, output, link)
-        _write(output / FILE, found, names, wanted)
+    wanted = replace(wanted, at_rest=still(found, wanted.radius))
     with working("finding the clocks"):
-        runs, faults, said = _on_one_clock(output)
+        runs, faults, said = _on_one_clock(output, found, names, wanted)
     draw(wanted.name, runs, faults, output)
     _show(found)
     for line in said:
@@ -97,7 +109,7 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
         axes = {"right": AXES[0], "left": AXES[1]}.get(
             typer.prompt("no signal tells: does y point to the right or left", "right"), ""
         )
-    return Wanted(wanted.name, **answers, axes=axes, holdout=wanted.holdout)
+    return replace(wanted, axes=axes, **answers)
 
 
 def _number(words: str) -> float | None:
@@ -128,24 +140,35 @@ def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]
     return names
 
 
-def _write(path: Path, found: Found, names: Mapping[str, Mapping[str, str]], wanted: Wanted) -> None:
-    content = text(found.plans, found.runs, names,
-                   Wanted(wanted.name, wanted.mass, wanted.radius, wanted.track, wanted.axes, wanted.holdout,
-                          still(found, wanted.radius)))  # fmt: skip
-    with written(path) as beside:
-        beside.write_text(content, encoding="utf-8")
+def _on_one_clock(
+    output: Path, found: Found, names: Mapping[str, Mapping[str, str]], wanted: Wanted
+) -> tuple[Sequence[Recorded], list[Fault], list[str]]:
+    """Writes campaign.toml with the clocks that are sure; the runs as they are then, all faults, and what is not sure.
 
+    Where a radius is needed that nobody gave, one stands in for it until all is read, and is not written.
+    """
 
-def _on_one_clock(output: Path) -> tuple[Sequence[Recorded], list[Fault], list[str]]:
-    """Finds the clocks and writes what is sure of them; the runs as they are then, all faults, and what is not sure."""
-    doc, faults = load(output)
+    def write(how: Wanted) -> None:
+        with written(output / FILE) as beside:
+            beside.write_text(text(found.plans, found.runs, names, how), encoding="utf-8")
+
+    standing_in = wanted.radius is None and needs_radius(found.plans)
+    known = replace(wanted, radius=RADIUS) if standing_in else wanted
+    write(known)
     runs, faults = recorded(output, known_parameters())
-    found = find_clocks(tuple(runs))
-    if doc is None or not any(one.sure for one in found):
-        return runs, faults, [f"{one.run.name}: {one.why(d)}" for one in found for d in one.clocks]
-    write(doc, found)
-    runs, faults = recorded(output, known_parameters())
-    return runs, faults, show(found)
+    clocks = find_clocks(tuple(runs))
+    sure = {one.run.name: one.sure for one in clocks if one.sure}
+    write(replace(known, clocks=sure))
+    if sure:
+        runs, faults = recorded(output, known_parameters())
+    said = show(clocks)
+    if standing_in:
+        write(replace(wanted, clocks=sure))
+        said.append(
+            "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write [wheel] R "
+            f"in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
+        )
+    return runs, faults, said
 
 
 def _show(found: Found) -> None:
@@ -178,14 +201,17 @@ def _column(choice: Choice) -> str:
 
 def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault], link: bool) -> None:
     out = console()
-    for fault in (*found.faults, *faults):
+    errors = [fault for fault in faults if fault.severity == ERROR]
+    warnings = [fault for fault in faults if fault.severity != ERROR]
+    for fault in (*found.faults, *errors, *warnings[:MOST]):
         out.print(str(fault))
+    if len(warnings) > MOST:
+        out.print(f"and {len(warnings) - MOST} more warnings; see `wheelchair check {output}`")
     for doubt in (doubt for plan in found.plans for doubt in plan.doubts):
         out.print(f"look at this: {doubt}")
     how = "linked to" if link else "copied into"
     out.print(f"{len(found.runs)} runs of {len(found.plans)} devices; recordings are {how} {output / RUNS}"
               + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else ""))  # fmt: skip
-    errors = sum(fault.severity == ERROR for fault in faults)
-    left = "fill in what is open in" if errors or wanted.mass is None else "look at"
+    left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "look at"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
     out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")

@@ -25,9 +25,11 @@ from .choices import Choice, Plan
 from .deciding import RADIUS, decide
 from .gathering import opened, sources
 from .taking import taken
-from .writing import Wanted, axes_of, open_axes, text
+from .writing import Wanted, axes_of, needs_radius, open_axes, text
 
-__all__ = ["Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "open_axes", "still", "text"]
+__all__ = [
+    "RADIUS", "Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "needs_radius", "open_axes", "still", "text",
+]  # fmt: skip
 
 HOLDOUT = "holdout"
 SHARE = 5  # of so many runs one is kept for checking,

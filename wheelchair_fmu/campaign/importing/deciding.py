@@ -56,8 +56,8 @@ def _mark(plan: Plan, axles: dict[str, markers.Axle]) -> None:
     plan.place, plan.why_axes = "markers", found.why
     if found.swapped:
         plan.doubts.append(
-            f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards then: it "
-            "is taken for the left one"
+            f"{plan.name}: the marker named {found.left} is on the right by its name, but the chair would go backwards then: "
+            "it is taken for the left one"
         )
 
 
@@ -162,8 +162,8 @@ def _swap(plan: Plan, by: str, named: str) -> None:
     if is_named:
         other = "right" if named == "left" else "left"
         plan.doubts.append(
-            f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by {by}"
-            f"; it is taken as the {other} wheel's"
+            f"{plan.name}: what is named {named} seems to be the {other} wheel's: in turns the outer wheel goes farther, by "
+            f"{by}; it is taken as the {other} wheel's"
         )
 
 

@@ -60,8 +60,8 @@ def axle(source: Source) -> Axle | str:
     low = [pair for pair in hubs or pairs if _upward(seen[pair[0]], seen[pair[1]]) is not None]
     if not low:
         return (
-            f"no two of the markers {', '.join(seen)} are the ends of an axle (as far apart as wheels all the time, as high as a "
-            "hub): write markers = { axle_l = ..., axle_r = ... }"
+            f"no two of the markers {', '.join(seen)} are the ends of an axle (as far apart as wheels all the time, as high as "
+            "a hub): write markers = { axle_l = ..., axle_r = ... }"
         )
     one, other = low[0]
     up = _upward(seen[one], seen[other])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from ..axes import AXES, SAE
 from .choices import NAMED, Choice, Plan
@@ -29,7 +30,8 @@ WIDE = 90  # characters of a line behind which a comment stands on a line of its
 
 @dataclass(frozen=True)
 class Wanted:
-    """What the user says: of the chair (SI units), of axes that no signal tells, and of the runs that are kept for checking."""
+    """What the user says: of the chair (SI units), of axes that no signal tells, and of the runs that are kept for checking;
+    and what was found of the runs: whether they start at rest, and the clocks of their devices."""
 
     name: str
     mass: float | None = None
@@ -38,6 +40,7 @@ class Wanted:
     axes: str = ""
     holdout: Sequence[str] = ()
     at_rest: Mapping[str, bool] = field(default_factory=dict)
+    clocks: Mapping[str, Mapping[str, Mapping[str, float]]] | None = None  # by run and device, where they were looked for
 
 
 CHAIR = (
@@ -94,10 +97,17 @@ def _chair(wanted: Wanted) -> str:
     for key, option, meaning in CHAIR:
         value = getattr(wanted, option) if option else None
         lines.append(_line(f"{key} = {value:g}", meaning) if value is not None else f"# {key} =   # {meaning}: fill in")
-    lines += ["", "[wheel]"]
     meaning = "radius of the rear wheels with the person in the chair, m"
-    lines.append(_line(f"R = {wanted.radius:g}", meaning) if wanted.radius is not None else f"# R =   # {meaning}: fill in")
-    return "\n".join(lines)
+    radius = f"# R =   # {meaning}: fill in" if wanted.radius is None else _line(f"R = {wanted.radius:g}", meaning)
+    return "\n".join([*lines, "", "[wheel]", radius])
+
+
+def needs_radius(plans: Sequence[Plan]) -> bool:
+    """Does anything become SI only through the wheels' radius?"""
+    through = {"F_rl": "N.m", "F_rr": "N.m", "wheel_speed_l": "rad/s", "wheel_speed_r": "rad/s"}
+    turned = ("wheel_angle_l", "wheel_angle_r")
+    used = [choice for plan in plans for choice in plan.choices if choice.settled and not choice.beside]
+    return any(through.get(choice.channel) == choice.si or choice.channel in turned for choice in used)
 
 
 def _nuisance(plans: Sequence[Plan]) -> str:
@@ -163,9 +173,25 @@ def _run(run: str, files: Mapping[str, str], wanted: Wanted, alone: bool) -> str
              _line(f"manoeuvre = {quoted(named or run)}", "" if named else "say what was done"),
              _line(f"role = {quoted('holdout' if run in wanted.holdout else 'fit')}",
                    "kept to prove what was learnt" if run in wanted.holdout else "")]  # fmt: skip
-    lines += [] if alone else ["clocks = {}"]  # which is filled in on one line
+    lines += _clocks(wanted.clocks.get(run, {}), list(files)[1:]) if wanted.clocks is not None else []
     lines += [_line("u0 = 0.0", "by its signals: the wheels stand still at first")] if wanted.at_rest.get(run) else []
     return "\n".join(lines)
+
+
+def _clocks(sure: Mapping[str, Mapping[str, float]], devices: Sequence[str]) -> list[str]:
+    """The clocks that are sure; and which of the others, all but the first device's, are to be given."""
+    lines = [f"clocks = {_inline(sure)}"] if sure else []
+    for device in (name for name in devices if name not in sure):
+        meaning = f"what to add to its times, s, is not sure: give it in clocks = {{ {device} = ... }}"
+        lines.append(f"# {device}: {meaning}")
+    return lines
+
+
+def _inline(value: Mapping[str, Any] | float) -> str:
+    """Numbers and tables of them on one line."""
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_inline(inner)}' for key, inner in value.items())} }}"
+    return repr(value)
 
 
 def _line(entry: str, comment: str) -> str:
