@@ -72,11 +72,11 @@ def spoke(path: Path, s, late: float, side: str, sign: float, rng) -> None:
     write(path, time, np.concatenate([gyro, acc]))
 
 
-def markers(path: Path, s, late: float, rng, left: str = "LHUB", right: str = "RHUB") -> None:
+def markers(path: Path, s, late: float, rng, left: str = "LHUB", right: str = "RHUB", more: tuple = ()) -> None:
     """Two hubs and the breast bone, in mm, y up, z to the left, the lane along -x."""
     _, x, y, yaw = seen(s, 150, late, "x", "y", "yaw")
     found = {}
-    for name, out, up in ((left, -0.33, 0.3), (right, 0.33, 0.3), ("STERNUM", 0.05, 1.05)):
+    for name, out, up in ((left, -0.33, 0.3), (right, 0.33, 0.3), ("STERNUM", 0.05, 1.05), *((m, 0.0, 1.6) for m in more)):
         place = np.stack([-(x - out * np.sin(yaw)), np.full_like(x, up), -(y + out * np.cos(yaw))], axis=1)
         found[name] = 1000 * place + rng.normal(0, 0.4, place.shape)
     trc(path, 150, found)

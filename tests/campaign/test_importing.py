@@ -98,9 +98,12 @@ def two_rims(folder, run, s, rng):
 def test_rims_and_markers(tmp_path):
     def write(folder, run, s, rng):
         two_rims(folder, run, s, rng)
-        lab.markers(folder / f"{run}.trc", s, 0.4, rng)
+        lab.markers(folder / f"{run}.trc", s, 0.4, rng, more=("HEAD",) if run == "run03" else ())
 
-    found, by = chosen(make(tmp_path, write))
+    raw = make(tmp_path, write)
+    (raw / "run02_SWR.csv").unlink()
+    found, by = chosen(raw)
+    assert set(found.files["run02"]) == {"swl", "trc"} and set(found.files["run03"]) == {"swl", "swr", "trc"}
     assert found.runs == ["run01", "run02", "run03"]
     assert by["swl", "F_rl"].sign == 1 and by["swr", "F_rr"].sign == -1
     assert by["swl", "wheel_angle_l"].sign == 1 and by["swr", "wheel_angle_r"].sign == -1

@@ -19,6 +19,7 @@ from ..campaign.axes import AXES
 from ..campaign.document import FILE
 from ..campaign.formats import format_of
 from ..campaign.importing import (
+    AXES_CURE,
     RADIUS,
     Choice,
     Found,
@@ -165,8 +166,8 @@ def _on_one_clock(
     if standing_in:
         write(replace(wanted, clocks=sure))
         said.append(
-            "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write [wheel] R "
-            f"in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
+            "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
+            f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
         )
     return runs, faults, said
 
@@ -207,7 +208,8 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
         out.print(str(fault))
     if len(warnings) > MOST:
         out.print(f"and {len(warnings) - MOST} more warnings; see `wheelchair check {output}`")
-    for doubt in (doubt for plan in found.plans for doubt in plan.doubts):
+    doubts = [doubt for plan in found.plans for doubt in plan.doubts]
+    for doubt in (d for d in doubts if not (wanted.axes and d.endswith(AXES_CURE))):
         out.print(f"look at this: {doubt}")
     how = "linked to" if link else "copied into"
     out.print(f"{len(found.runs)} runs of {len(found.plans)} devices; recordings are {how} {output / RUNS}"

@@ -23,12 +23,14 @@ from ...faults import Fault
 from . import wheels
 from .choices import Choice, Plan
 from .deciding import RADIUS, decide
+from .frames import AXES_CURE
 from .gathering import opened, sources
 from .taking import taken
 from .writing import Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
-    "RADIUS", "Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "needs_radius", "open_axes", "still", "text",
+    "AXES_CURE", "RADIUS", "Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "needs_radius", "open_axes",
+    "still", "text",
 ]  # fmt: skip
 
 HOLDOUT = "holdout"

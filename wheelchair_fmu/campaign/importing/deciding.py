@@ -82,6 +82,8 @@ def _own(plan: Plan, column: Column) -> Choice:
     units = [known.unit.name] + ([known.rotary.name] if known.rotary else [])
     unit, why = sized(column, units, nothing, wheels.everything(plan.source, column))
     si = units[1] if len(units) > 1 and given(column, units[1:]) and not given(column, units[:1]) else units[0]
+    if unit == "?" and not column.unit:
+        unit, why = known.unit.name, f"the file gives no unit; {known.unit.name} is what a column of this name has: check it"
     chosen = Choice(channel, column.header, unit=unit, settled=unit != "?", column=column, si=si)
     return chosen.because(why) if why else chosen
 

@@ -20,6 +20,7 @@ from .together import Fit, Together
 from .turning import AXES, axes, gravity, upright
 from .wheels import everything
 
+AXES_CURE = f'write axes = "{ISO}" or "{SAE}", or give --axes'
 TRACK = 0.56  # m, about: for telling deg/s from rad/s
 NEAR = 1.6  # times as large or small as it should be, a unit is still believed
 
@@ -100,7 +101,7 @@ def _yaw(plan: Plan, choice: Choice, seen: Together, pairs: Sequence, heading: s
         plan.why_axes = f"by its yaw rate, which is positive {'clockwise' if fit.sign > 0 else 'counter-clockwise'}"
         plan.put(choice.because(f"by its signal: follows {by}, {fit.words}"))
     else:
-        plan.doubts.append(f"{plan.name}: nothing tells which way the yaw rate {choice.header!r} is positive; write its axes")
+        plan.doubts.append(f"{plan.name}: nothing tells which way the yaw rate {choice.header!r} is positive; {AXES_CURE}")
         plan.put(choice)
 
 
@@ -174,7 +175,11 @@ def _accelerations(plan: Plan, seen: Together) -> None:
         return
     fit = told.get(ahead)
     sign = fit.sign if fit else 1.0
-    why = f"by its signal: follows how the speed changes, {fit.words}" if fit else NAMED
+    why = (
+        f"by its signal: follows how the speed changes, {fit.words}"
+        if fit
+        else f"{NAMED}: no speed tells which way is forward, check it"
+    )
     _put(plan, "a_x", columns[ahead], sign, why, fit)
     side, right = _right(plan, ahead, sign)
     if side in columns:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from .naming import placed
 PROSE = (".md", ".txt", ".rst", ".pdf", ".doc", ".docx", ".html", "")  # endings that texts about recordings have
 OURS = (".toml", ".py", ".m", ".png", ".jpg", ".svg")
 FEWEST = 20  # rows of a recording
+ALIKE = 0.6  # of all headers that two files of one device have in common, at least
 LONGEST = 300.0  # s of a recording that are looked at
 STEPS = ((0.5, "s", 1.0), (500.0, "ms", 1e-3), (5e5, "us", 1e-6), (np.inf, "ns", 1e-9))  # largest step of a time in each unit
 Series = tuple[np.ndarray, np.ndarray]
@@ -82,11 +83,14 @@ class Source:
             return None
         clock, at = table.headers.index(self.time.header), table.headers.index(column.header)
         values = table.rows(sorted({clock, at})).values
+        if not np.isfinite(values[clock]).any():
+            return None
         time = values[clock] * (1.0 if clock in table.moments else scale_of(self.time_unit, "s"))
         good = np.isfinite(time)
         good[good] = np.concatenate([[True], np.diff(time[good]) > 0])[: good.sum()]
         good &= time < np.nanmin(time) + LONGEST
-        return (time[good], values[at][good]) if good.sum() > FEWEST else None
+        found = np.where(np.isfinite(values[at]), values[at], np.nan)[good]
+        return (time[good], found) if np.isfinite(found).sum() > FEWEST else None
 
 
 def scale_of(unit: str | None, si: str) -> float:
@@ -130,15 +134,23 @@ def _numbers(table: Table) -> bool:
     return all(len(v) >= FEWEST for v in values.values()) and any(np.isfinite(v).sum() >= FEWEST for v in values.values())
 
 
-def kind(one: Opened) -> Hashable:
-    """Files of one device have the same headers."""
-    return one.table.headers
+def kinds(files: Sequence[Opened]) -> dict[str, int]:
+    """Which files may be of one device: those with mostly the same headers, as a marker more or a column less may happen."""
+    heads: list[set[str]] = []
+    found = {}
+    for one in files:
+        own = set(one.table.headers)
+        near = next((i for i, head in enumerate(heads) if len(own & head) > ALIKE * len(own | head)), len(heads))
+        if near == len(heads):
+            heads.append(own)
+        found[one.file] = near
+    return found
 
 
 def sources(files: Sequence[Opened]) -> tuple[list[Source], list[str], list[Fault]]:
     """The devices, the names of the runs in order, and what is odd about files of one device."""
     by_file = {one.file: one for one in files}
-    places = placed(list(by_file), {one.file: kind(one) for one in files})
+    places = placed(list(by_file), kinds(files))
     runs = sorted({place.run for place in places}, key=_natural)
     devices = list(dict.fromkeys(place.device for place in sorted(places, key=lambda p: _natural(p.run))))
     told = sides(devices)

@@ -25,6 +25,7 @@ _WHO = """
     speed push rim rims pushrim sensor sensors xsens movella ngimu logger amplifier
 """
 PLACES = frozenset(_WHO.split())
+LONG_PLACES = tuple(word for word in PLACES if len(word) > 2)  # which may begin a word: imu2, leftwheel
 LONGEST = 5  # digits of a run's number: more are a date or a serial number
 _PACKED = (".gz", ".bz2", ".xz")
 _BETWEEN = re.compile(r"[-_ .]+")
@@ -143,7 +144,7 @@ def _merely_named(kinds: Mapping[str, set[Hashable]]) -> bool:
     """Are there devices with the same columns whose names do not say that they are several, such as slow and quick?"""
     for device, of in kinds.items():
         alike = [other for other in kinds if other != device and kinds[other] & of]
-        if alike and not any(word.rstrip("0123456789") in PLACES for word in device.split("_")):
+        if alike and not any(word.startswith(LONG_PLACES) or word in PLACES for word in device.split("_")):
             return True
     return False
 

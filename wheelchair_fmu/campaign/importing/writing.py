@@ -62,8 +62,10 @@ def text(plans: Sequence[Plan], runs: Sequence[str], files: Mapping[str, Mapping
 
 
 def axes_of(plans: Sequence[Plan], wanted: Wanted) -> str:
-    """Axes of the campaign: those of the frame sensor, else what the user says."""
-    return next((plan.axes for plan in plans if plan.axes), "") or wanted.axes or SAE
+    """Axes of the campaign: of a device alone those that its signals tell, else what the user says of those that no signal
+    tells."""
+    told = next((plan.axes for plan in plans if plan.axes), "")
+    return (told if len(plans) == 1 else "") or wanted.axes or told or SAE
 
 
 def open_axes(plans: Sequence[Plan]) -> bool:
@@ -74,22 +76,23 @@ def open_axes(plans: Sequence[Plan]) -> bool:
 
 def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     count = sum(map(len, files.values()))
-    told = next((plan for plan in plans if plan.axes), None)
-    why = (
-        f"of {told.name}, {told.why_axes}"
-        if told
-        else "as you said"
-        if wanted.axes
-        else "no signal tells: correct it"
-        if open_axes(plans)
-        else ""
-    )
+    why = _why_axes(plans, wanted)
     other = next((a for a in AXES if a != axes_of(plans, wanted)), "")
     return "\n".join([
         f"# Written by `wheelchair import` from {count} files. Behind each column stands what told it; see also preview.html.",
         "", "[campaign]", f"name = {quoted(wanted.name)}",
         _line(f"axes = {quoted(axes_of(plans, wanted))}", f"{why}; the other ones are {other}" if why else ""),
     ])  # fmt: skip
+
+
+def _why_axes(plans: Sequence[Plan], wanted: Wanted) -> str:
+    """What told the campaign's axes; nothing where there is nothing to tell."""
+    told = next((plan for plan in plans if plan.axes), None)
+    if told and (len(plans) == 1 or not wanted.axes):
+        return f"of {told.name}, {told.why_axes}"
+    if wanted.axes:
+        return "as you said"
+    return "no signal tells: correct it" if open_axes(plans) else ""
 
 
 def _chair(wanted: Wanted) -> str:
