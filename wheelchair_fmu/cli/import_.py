@@ -14,7 +14,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import Fault, Recorded
+from ..campaign import Judged, judged
 from ..campaign.axes import AXES
 from ..campaign.document import FILE
 from ..campaign.formats import format_of
@@ -32,10 +32,9 @@ from ..campaign.importing import (
     still,
     text,
 )
-from ..campaign.reading import recorded
 from ..campaign.syncing import find as find_clocks
 from ..errors import UsageError
-from ..faults import ERROR
+from ..faults import ERROR, Fault
 from ..loop.subject import known_parameters
 from ..writing import written
 from .check import MOST, draw
@@ -75,12 +74,12 @@ def import_(
         names = _placed(found, output, link)
     wanted = replace(wanted, at_rest=still(found, wanted.radius))
     with working("finding the clocks"):
-        runs, faults, said = _on_one_clock(output, found, names, wanted)
-    draw(wanted.name, runs, faults, output)
+        seen, said = _on_one_clock(output, found, names, wanted)
+    draw(wanted.name, seen.runs, seen.faults, output)
     _show(found)
     for line in said:
         console().print(line)
-    _conclude(output, found, wanted, faults, link)
+    _conclude(output, found, wanted, seen.faults, link)
 
 
 def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | None]) -> None:
@@ -143,8 +142,8 @@ def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]
 
 def _on_one_clock(
     output: Path, found: Found, names: Mapping[str, Mapping[str, str]], wanted: Wanted
-) -> tuple[Sequence[Recorded], list[Fault], list[str]]:
-    """Writes campaign.toml with the clocks that are sure; the runs as they are then, all faults, and what is not sure.
+) -> tuple[Judged, list[str]]:
+    """Writes campaign.toml with the clocks that are sure; the campaign as it is then, and what is not sure.
 
     Where a radius is needed that nobody gave, one stands in for it until all is read, and is not written.
     """
@@ -156,12 +155,12 @@ def _on_one_clock(
     standing_in = wanted.radius is None and needs_radius(found.plans)
     known = replace(wanted, radius=RADIUS) if standing_in else wanted
     write(known)
-    runs, faults = recorded(output, known_parameters())
-    clocks = find_clocks(tuple(runs))
+    seen = judged(output, known_parameters())
+    clocks = find_clocks(seen.runs)
     sure = {one.run.name: one.sure for one in clocks if one.sure}
     write(replace(known, clocks=sure))
     if sure:
-        runs, faults = recorded(output, known_parameters())
+        seen = judged(output, known_parameters())
     said = show(clocks)
     if standing_in:
         write(replace(wanted, clocks=sure))
@@ -169,7 +168,7 @@ def _on_one_clock(
             "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
             f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
         )
-    return runs, faults, said
+    return seen, said
 
 
 def _show(found: Found) -> None:
