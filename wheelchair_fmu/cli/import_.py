@@ -211,7 +211,7 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
     for doubt in (d for d in doubts if not (wanted.axes and d.endswith(AXES_CURE))):
         out.print(f"look at this: {doubt}")
     how = "linked to" if link else "copied into"
-    out.print(f"{len(found.runs)} runs of {len(found.plans)} devices; recordings are {how} {output / RUNS}"
+    out.print(f"runs: {len(found.runs)}; devices: {len(found.plans)}; recordings are {how} {output / RUNS}"
               + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else ""))  # fmt: skip
     left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "look at"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")

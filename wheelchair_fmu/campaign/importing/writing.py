@@ -25,6 +25,7 @@ MANOEUVRES = (
     "ausrollen",
 )
 PUSHES = ("F_rl", "F_rr", "M_rl", "M_rr")
+PLACE = "# at = [0.0, 0.0]  # where it sits, m forward and to the right of the centre of mass: fill in"
 WIDE = 90  # characters of a line behind which a comment stands on a line of its own
 
 
@@ -136,7 +137,7 @@ def _recording(plan: Plan, wanted: Wanted) -> str:
                            "x along the way, y to the right of it"))  # fmt: skip
     elif plan.place == "on the frame":
         lines += [_line(f"axes = {quoted(plan.axes)}", plan.why_axes)] if plan.axes else []
-        lines.append("# at = [0.0, 0.0]  # where it sits, m forward and to the right of the centre of mass: fill in")
+        lines += [PLACE] if plan.find("a_x") or plan.find("a_y") else []
     lines += list(_time("columns.", plan))
     lines += [_entry("columns.", choice) for choice in plan.choices]
     lines += [_line(f'columns.{channel} = ""', why) for channel, why in plan.empty.items()]
