@@ -15,7 +15,7 @@ import pytest
 
 httpx = pytest.importorskip("httpx", reason="the workbench's libraries are not installed")
 from tests.workbench.conftest import Server, started  # noqa: E402
-from wheelchair_fmu.model.effects import load  # noqa: E402
+from wheelchair_fmu.contracts.own import load  # noqa: E402
 
 HEAD = "time [s],F_rl [N],F_rr [N],yaw_rate [rad/s]\n"
 EFFECT = {"id": "my_drag", "title": "a drag", "to": "F_x", "expression": "-q * u", "size": 0.5, "lower": 0.0, "upper": 50.0}

@@ -59,7 +59,7 @@ def _dependencies() -> str:
 
 def _modules(face: Interface) -> dict[str, str]:
     """The model's files by their path in the package, and stepping.py beside them."""
-    files = [PACKAGE / "__init__.py", PACKAGE / "quantities.py", PACKAGE / "errors.py"]
+    files = [PACKAGE / f"{name}.py" for name in ("__init__", "quantities", "errors", "faults", "units", "unit_text")]
     files += [f for f in (PACKAGE / "model").rglob("*.py") if f.name != "variant.py"]
     files += [PACKAGE / "engine" / name for name in ENGINE]
     texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
