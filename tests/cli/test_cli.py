@@ -169,7 +169,7 @@ def spoilt(folder: Path) -> Path:
     change("coast-down.csv", "F_rr [N]", "F_rr [furlong]")  # wrong unit
     change("straight-strokes.csv", "\n0.02,", "\n0.005,")  # time goes back
     (runs / "steady-left.csv").write_text((runs / "steady-left.csv").read_text().splitlines()[0] + "\n")  # empty
-    (runs / "slalom-slow.csv").write_bytes(b"time [s],F_rl [N]\xff\n0,1\n")  # not UTF-8
+    (runs / "slalom-slow.csv").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))  # no recording at all
     return place
 
 
@@ -178,7 +178,7 @@ def test_check_reports_ten_faults_at_once(tmp_path):
     done = wheelchair("check", place)
     assert done.exit_code == 1 and "Traceback" not in done.output
     for word in ("campaign.toml line", "C_lamda", "'SAE'", "steady-rigth.csv", "spare", "furlong", "time goes back",
-                 "steady-left.csv", "UTF-8", "-80", "-0.006"):  # fmt: skip
+                 "steady-left.csv", "a PNG picture", "-80", "-0.006"):  # fmt: skip
         assert word in done.output, word
     told = json.loads(wheelchair("check", place, "--json").output)
     assert told["errors"] >= 10 and told["errors"] == sum(f["severity"] == "error" for f in told["faults"])

@@ -81,8 +81,8 @@ def test_what_the_fmu_refuses_comes_in_its_own_words(fmu):
     time = np.arange(11) * 0.01
     with pytest.raises(SimulationError, match=r"Wheelchair: push\.F_rl = nan is not a finite number"):
         fmu.run(time, {"push.F_rl": np.full(11, np.nan)})
-    with pytest.raises(SimulationError, match=r"push\.F_rr = 5000 N is above its maximum of 2000 N"):
-        fmu.run(time, {"push.F_rr": np.full(11, 5000.0)})
+    beyond = fmu.run(time, {"push.F_rr": np.full(11, 5000.0)})
+    assert any("push.F_rr = 5000 N is above its maximum of 2000 N" in warning for warning in beyond.warnings)
     with pytest.raises(SimulationError, match="time does not rise"):
         fmu.run(time[::-1], {})
     assert fmu.run(time, {})["chair.x"][-1] > 0.09

@@ -18,7 +18,7 @@ from .fine import left
 from .lag import Lag, find
 from .signals import Device, Signal, devices
 from .smoothing import Smooth
-from .views import FORWARDS, TURNS, View, equation, rigid
+from .views import FORWARDS, TURNS, View, equation, motion_known, rigid
 
 WAYS = (FORWARDS, TURNS)
 ENOUGH = 3  # runs that must tell a shift before one of them can be odd
@@ -30,7 +30,8 @@ STILL = 1e-6  # SI; what changes less in all runs (rolling resistance of a chair
 REWEIGHTED = 8  # times
 ROUNDS = 2  # of coefficients at the shift that is common, which needs coefficients
 
-Equations = Mapping[View, Equation]  # of one run and one way
+Kind = tuple[View, tuple[bool, bool]]  # a view, and whether speed and turning are known: equations alike but for their numbers
+Equations = Mapping[Kind, Equation]  # of one run and one way
 
 
 @dataclass(frozen=True)
@@ -87,8 +88,8 @@ def _ready(runs: Mapping[str, Iterable[Signal]]) -> dict[str, dict[str, Equation
     return ready
 
 
-def _equations(device: Device, way: str) -> dict[View, Equation]:
-    return {v: equation(v, device, device) for v in rigid(device, way)}
+def _equations(device: Device, way: str) -> dict[Kind, Equation]:
+    return {(v, motion_known(device)): equation(v, device, device) for v in rigid(device, way)}
 
 
 def _relative(ready: Mapping[str, Mapping[str, Equations]], pool: Sequence[str]) -> dict[str, Shift]:

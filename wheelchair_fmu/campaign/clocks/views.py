@@ -120,6 +120,11 @@ def equation(view: View, a: Device, b: Device) -> Equation:
     return Equation(target.time, target.value, target.slope, np.array(own), tuple(b.smooth(*f) for f in view.seen))
 
 
+def motion_known(a: Device) -> tuple[bool, bool]:
+    """Are its speed and its turning known, from which drag follows?"""
+    return any(a.has(f) for f in (MEAN, ALONG, LEFT, RIGHT)), a.has(TURN) or a.has(APART)
+
+
 def _drag(a: Device) -> list[np.ndarray]:
     """What brakes and turns a chair without pushes, up to factors: rolling resistance, air and tyres with speed and yaw rate,
     and the centre of mass ahead of the axle with their product and the yaw rate's square."""
