@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .clocks import is_stamp
+from .timestamps import is_stamp
 from .units import UnitError, coherent, is_unit, split
 
 GAPS = ("", "NaN", "nan", "NAN")

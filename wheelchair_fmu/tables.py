@@ -18,12 +18,12 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import pandas as pd
 
-from .clocks import Clock, ClockError, Seconds, count_over, counted, is_date, is_stamp, named_time, stamps
 from .dialect import GAPS as _GAPS
 from .dialect import grouped
 from .faults import SHOWN, Fault, run_fault
 from .given import what_is
 from .texts import Text, parse
+from .timestamps import Clock, ClockError, Seconds, count_over, counted, is_date, is_stamp, named_time, stamps
 from .units import split, suffixed, unit_of
 
 MOST = 2**30  # bytes that a packed recording may have unpacked: a day at 100 Hz has less

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...clocks import is_stamp, named_time
+from ...timestamps import is_stamp, named_time
 from ...units import suffixed
 from ._mat_tree import Opaque
 from ._record import Read

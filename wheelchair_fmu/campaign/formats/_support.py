@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...clocks import ClockError, Seconds, counted, datetimes, durations, is_stamp, named_time, stamps
 from ...dialect import bare
 from ...faults import Fault, run_fault
 from ...tables import FrameTable
+from ...timestamps import ClockError, Seconds, counted, datetimes, durations, is_stamp, named_time, stamps
 from ...units import split, suffixed, unit_of
 from ._record import Read
 

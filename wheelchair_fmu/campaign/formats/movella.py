@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...clocks import Clock, Seconds, count_over
+from ...timestamps import Clock, Seconds, count_over
 from ._defined import first_lines, read_defined
 from ._record import TEXT, Format, Read
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ...clocks import is_stamp, named_time
 from ...faults import Fault, once, run_fault
 from ...tables import FrameTable, Rows, numbers
+from ...timestamps import is_stamp, named_time
 from ...units import split, suffixed
 from ._record import DATES, RATE, Format, Read
 from ._support import EMPTY, by_library, framed, stated
