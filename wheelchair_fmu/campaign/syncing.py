@@ -85,7 +85,7 @@ def alike(run: Recorded) -> tuple[str, dict[str, tuple[np.ndarray, np.ndarray]]]
                 time, values = 0.5 * (time[1:] + time[:-1]), np.diff(values) / np.diff(time)
             low, middle, high = np.percentile(values, [1, 50, 99])
             curves[device] = (time, (values - middle) / ((high - low) or 1.0))
-    return "speed, or push", curves
+    return "speed or push", curves
 
 
 def find(runs: tuple[Recorded, ...]) -> list[RunClocks]:

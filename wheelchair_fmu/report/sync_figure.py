@@ -20,7 +20,7 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 
 def sync_figure(found: Sequence[RunClocks]) -> Figure:
-    """A row for each run: one motion as each device saw it, on its own clock and on the run's, in units of its scatter."""
+    """A row for each run: one motion as each device saw it, by its own clock and by the run's, in units of its own range."""
     figure = blank(11, 0.6 + 1.9 * len(found))
     axes = figure.subplots(len(found), 2, squeeze=False)
     for row, one in zip(axes, found, strict=True):
@@ -32,7 +32,7 @@ def sync_figure(found: Sequence[RunClocks]) -> Figure:
     axes[0][1].set_title("by the clocks that were found", fontsize=10)
     for ax in axes[-1]:
         ax.set_xlabel("time [s]")
-    axes[0][0].legend(frameon=False, fontsize=8, ncols=4, loc="upper right")
+    axes[0][0].legend(frameon=False, fontsize=8, loc="upper left")
     return figure
 
 
