@@ -63,7 +63,7 @@ OTHERS = (("libcosimpy", "libcosimpy"), ("CoFMUPy", "cofmupy"), ("Ecos", "ecospy
           ("PathSim", "pathsim"), ("FMU Manipulation Toolbox", "toolbox"))  # fmt: skip
 COUPLED = ("libcosimpy", "CoFMUPy")
 NOT_HAD = {
-    "OMSimulator": "not run: PyPI's package fetches the program from openmodelica.org when it is installed, out of reach here",
+    "OMSimulator": "not run: PyPI's package fetches the program from openmodelica.org when it is installed",
     "PyFMI": "not run: PyPI's package is to be compiled, and needs FMI Library and Assimulo with SUNDIALS first",
 }
 FMU_HEAD = ("importer", "version", "FMI", "interface", "what was run", "result")
