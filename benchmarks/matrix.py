@@ -34,10 +34,13 @@ def uv(*words: str) -> str:
 
 
 def found(version: str) -> str | None:
-    """The path of this Python, if the machine has it."""
+    """The path of this Python, if the machine has it: where uv finds it, or among pyenv's, which need not be on PATH."""
     words = [sys.executable, "-m", "uv", "python", "find", "--no-python-downloads", "--no-project", "--system", version]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else None
+    if done.returncode == 0:
+        return done.stdout.strip()
+    pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv") / "versions"
+    return next((str(path) for path in sorted(pyenv.glob(f"{version}.*/bin/python"))), None)
 
 
 def environment(python: str, name: str, resolution: str) -> Path:
@@ -57,7 +60,7 @@ def environment(python: str, name: str, resolution: str) -> Path:
 
 def tested(python: Path, tests: list[str]) -> tuple[bool, str]:
     """Whether the tests pass, and pytest's last line. What fails is shown."""
-    words = [str(python), "-m", "pytest", "-q", "-n", str(min(2, os.cpu_count() or 1)), "-p", "no:cacheprovider", *tests]
+    words = [str(python), "-m", "pytest", "-n", str(min(2, os.cpu_count() or 1)), "-p", "no:cacheprovider", *tests]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     if done.returncode:
         print(done.stdout[-20_000:], done.stderr[-4_000:], sep="\n")
