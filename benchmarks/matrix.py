@@ -27,6 +27,9 @@ TESTS = ("tests/test_writing.py", "tests/campaign", "tests/engine", "tests/cli/t
 MISSING = "not on this machine"
 
 
+WHEELS = ("--only-binary", ":all:", "--no-binary", "odfpy")  # which is of Python alone, and has never had any
+
+
 def uv(*words: str) -> str:
     """What uv says. Raises CalledProcessError, after uv's own words on stderr."""
     command = [sys.executable, "-m", "uv", "--no-progress", *words]
@@ -44,14 +47,14 @@ def found(version: str) -> str | None:
 
 
 def environment(python: str, name: str, resolution: str) -> Path:
-    """The Python of an environment with the package and what the resolution gives, as wheels."""
+    """The Python of an environment with the package and what the resolution gives, as wheels where there are any."""
     place = PLACE / name
     if not place.exists():
         uv("venv", "--quiet", "--python", python, str(place))
     inside = next(p for p in (place / "bin" / "python", place / "Scripts" / "python.exe") if p.exists())
     wanted = place / "requirements.txt"
     extras = [word for extra in EXTRAS for word in ("--extra", extra)]
-    uv("pip", "compile", "--quiet", "pyproject.toml", *extras, "--no-build", "--resolution", resolution, "--upgrade",
+    uv("pip", "compile", "--quiet", "pyproject.toml", *extras, *WHEELS, "--resolution", resolution, "--upgrade",
        "--python", str(inside), "-o", str(wanted))  # fmt: skip
     uv("pip", "sync", "--quiet", "--python", str(inside), str(wanted))
     uv("pip", "install", "--quiet", "--python", str(inside), "--no-deps", "-e", ".")
