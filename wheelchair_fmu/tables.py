@@ -153,7 +153,7 @@ class CsvTable:
                     io.StringIO(self.body), sep=self.separator, header=None, usecols=[index], dtype=str, na_filter=False,
                     index_col=False, quoting=csv.QUOTE_NONE,
                 )  # fmt: skip
-                return words[index].str.strip().tolist()
+                return [str(word).strip() for word in words[index]]
         filled = (row for row in self._cells() if any(cell.strip() for cell in row))
         return [row[index].strip() if index < len(row) else "" for row in filled]
 
