@@ -22,7 +22,8 @@ from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits
 
 from wheelchair_fmu.campaign import CHANNELS, Campaign, read
-from wheelchair_fmu.loop.diagnose import Search, begin
+from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.effects import bundled

@@ -57,16 +57,19 @@ def test_two_runs_cannot_tell_which_of_them_is_odd():
     assert odd_ones_out({"a": run(0), "b": run(1, 0.2)}) == {}
 
 
-def test_strokes_that_are_all_alike_name_nobody():
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_strokes_that_are_all_alike_tell_a_shift_but_for_whole_strokes(shift):
     rng = np.random.default_rng(0)
     t, force = strokes(rng, 9, regular=True)
     speed = np.cumsum(force - force.mean()) * 4e-5 + 1.0
     own = np.arange(0, 9, 0.01)
     alike = [Signal("file", q, own, np.interp(own + s, t, v) + coloured(rng, len(own), NOISE[q], 0.0)) for q, s, v in (
-        ("wheel_speed_l", 0, speed), ("wheel_speed_r", 0, speed), ("F_rl", 0.3, force), ("F_rr", 0.3, force))]  # fmt: skip
+        ("wheel_speed_l", 0, speed), ("wheel_speed_r", 0, speed), ("F_rl", shift, force), ("F_rr", shift, force))]  # fmt: skip
     runs = {f"run{i}": run(i) for i in range(3)} | {"strokes": alike}
-    assert "strokes" not in odd_ones_out(runs)
-    assert not push_shifts(runs)["strokes"].unique
+    odd, told = odd_ones_out(runs), push_shifts(runs)["strokes"]
+    assert list(odd) == (["strokes"] if shift else [])
+    assert not told.unique
+    assert min(abs(told.seconds - shift - whole) for whole in range(-3, 4)) < 0.01  # one stroke a second
 
 
 def test_signals_of_two_devices_are_refused():

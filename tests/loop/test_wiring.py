@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import Campaign
-from wheelchair_fmu.loop.diagnose import Search, begin
+from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.improve import add
+from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.wiring import SIDES, Wiring, wiring
 from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant

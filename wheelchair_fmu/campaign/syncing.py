@@ -15,6 +15,7 @@ from .document import Document
 from .layout import relaid
 from .recorded import PUSHES_CLOCK, Recorded
 
+CURE = f"give clocks = {{ {PUSHES_CLOCK} = … }} in the run if you know which it is"
 PLACES = 5  # decimals of a second that are written
 DRIFTS = 3.0  # standard errors from which a drift is written
 
@@ -35,19 +36,21 @@ class RunClocks:
     def why(self, device: str) -> str:
         """In words: what told it, or what is missing."""
         clock = self.clocks[device]
-        return f"its pushes against its readings, by {clock.way}" if isinstance(clock, Shift) else clock.why
+        if not isinstance(clock, Shift):
+            return clock.why
+        told = f"its pushes against its readings, by {clock.way}"
+        return told if clock.unique else f"{told}, tell {clock.seconds:.3f} s but for whole strokes; {CURE}"
 
     @property
     def sure(self) -> dict[str, dict[str, float]]:
         """What may be written, by device."""
         found = {}
         for device, clock in self.clocks.items():
-            if isinstance(clock, Shift):
-                found[device] = {"offset": round(clock.seconds, PLACES), "sd": round(clock.se, PLACES)}
-            elif clock.sure:
-                found[device] = {"offset": round(clock.offset, PLACES), "sd": round(clock.se, PLACES)}
-                if abs(clock.drift) > DRIFTS * clock.drift_se:
-                    found[device]["drift"] = float(f"{clock.drift:.3g}")
+            if not (clock.unique if isinstance(clock, Shift) else clock.sure):
+                continue
+            found[device] = {"offset": round(self.seconds(device), PLACES), "sd": round(clock.se, PLACES)}
+            if isinstance(clock, Clock) and abs(clock.drift) > DRIFTS * clock.drift_se:
+                found[device]["drift"] = float(f"{clock.drift:.3g}")
         return found
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from .diagnose import VISIBLE, Candidate, Round, Search, Step, begin, first_steps
+from .diagnose import VISIBLE, Candidate, Round, Search, Step
 from .fit import Fit
 from .joint import together
+from .preflight import begin, first_steps
 from .screen import AT_THE_FLOOR
 from .ties import beside, overtaker
 

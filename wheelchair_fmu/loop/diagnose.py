@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
@@ -19,8 +18,6 @@ from .score import Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
 from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
-from .timing import Late, by_model, by_signals, clocks
-from .wiring import wiring
 
 SIGNIFICANT = 0.05
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
@@ -298,43 +295,3 @@ def _small(along: np.ndarray, variance: np.ndarray) -> bool:
     """Are all these sizes, in δ, surely below 1? Standard errors allow for noise, `SURELY` for models that mean the same by a
     parameter and differ by a fifth."""
     return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < SURELY))
-
-
-def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
-    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
-
-    Channels that are not what they are called are left out; pushes that belong to another time than the readings of their run
-    are read at that time.
-    """
-    say("calibrating")
-    w = search.workshop
-    found = dict(by_signals(w.campaign))
-    w.retime(found)
-    columns = wiring(w.bench(), w.given)
-    if columns.wrong:
-        w.leave_out(channels=columns.wrong)
-    base, held, ladder = first_steps(search)
-    if columns.trusted:
-        more = by_model(w.bench(), base.evidence, base.values) | by_model(w.bench(), held, base.values)
-        if more:
-            w.retime(more)
-            found |= more
-            base, held, ladder = first_steps(search)
-    if search.recolour(base.evidence):
-        base, held, ladder = first_steps(search)
-    search.clocks = clocks(base.evidence) | clocks(held)
-    search.notes = [*columns.notes, *(_late(run, search.clocks[run][PUSHES_CLOCK]) for run in found)]
-    return base, held, ladder
-
-
-def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
-    """The calibrated fit, its held-out evidence, and the staircase up to there, with the noise as it is known."""
-    base, held, nominal, nominal_held = search.calibrate()
-    return base, held, [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
-
-
-def _late(run: str, late: Late) -> str:
-    side = "early" if late.seconds > 0 else "late"
-    return (f"{run}: its pushes were recorded {1000 * abs(late.seconds):.0f} ± {1000 * late.sd:.0f} ms too {side} for what was "
-            f"measured, and are read that much {'later' if late.seconds > 0 else 'earlier'}; `wheelchair sync` looks for it, "
-            f"and clocks = {{ {PUSHES_CLOCK} = {late.seconds:.3f} }} in the run says so for good")  # fmt: skip

@@ -21,7 +21,7 @@ from ..errors import SimulationError
 from ..model.variant import Variant
 from ..quantities import Parameter
 from .cores import each
-from .local import Marginal, felt, locals_of, read, slope
+from .local import Marginal, felt, locals_of, rate_of, read, slope
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
@@ -370,7 +370,7 @@ class Bench:
             if names[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
             elif names[j] in self._delays:  # every push changes by −F' per second of it
-                out[:, :, j] = whitener.response(-np.gradient(pushed, run.time, axis=0))
+                out[:, :, j] = whitener.response(-rate_of(run.time, pushed))
 
     def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
         sd, ar = self.colour.sd, self.colour.ar

@@ -9,9 +9,10 @@ from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.variant import Variant
 from ..quantities import Parameter
-from .diagnose import Search, Step, begin
+from .diagnose import Search, Step
 from .evidence import Evidence
 from .fit import Fit
+from .preflight import begin, settle_clocks
 from .statistics import standard_errors
 from .verdict import Diagnosis
 from .workshop import Workshop
@@ -43,6 +44,7 @@ def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = 
         base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
         on = (*on, one)
         ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
+    settle_clocks(search, base.evidence, held)
     notes = (*search.notes, *search.noise_notes)
     return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder), notes)
 

@@ -103,6 +103,12 @@ def read(run: Run, channels: Sequence[str], predicted: np.ndarray, sizes: Mappin
     return predicted
 
 
+def rate_of(time: np.ndarray, pushed: np.ndarray) -> np.ndarray:
+    """(n, nq) what recorded pushes (n, nq) change by per second; not from sample to sample, where it is mostly their noise."""
+    ahead, behind = (np.stack([np.interp(time + side * STROKE, time, p) for p in pushed.T], axis=1) for side in (1, -1))
+    return (ahead - behind) / (2 * STROKE)
+
+
 def slope(local: Local, run: Run, channels: Sequence[str], predicted: np.ndarray,
           pushes: Sequence[str], whitener: Whitener) -> np.ndarray:  # fmt: skip
     """What one unit of a constant would add to the readings (n, nz), to first order."""

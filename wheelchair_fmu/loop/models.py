@@ -27,6 +27,7 @@ class Models:
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
         self.notes: list[str] = []  # on columns and clocks
         self.clocks: dict[str, dict[str, Late]] = {}  # by run and device, where they are uncertain
+        self.retimed: dict[str, Late] = {}  # by run, whose pushes are read at another time than they have
         self.noise_notes: list[str] = []
 
     @property

@@ -15,10 +15,12 @@ import numpy as np
 from ..campaign import Campaign, Clock, Run, covered
 from ..campaign.channels import BY_FMU_NAME, PUSH_NAMES
 from ..campaign.clocks import Signal, odd_ones_out
+from ..campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
 from .evidence import Bench, Evidence, RunEvidence
 from .score import projector
+from .statistics import correlation_time
 
 SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way
 FINER = 0.1  # s, either side of the best of these, and how far off it may be
@@ -32,16 +34,18 @@ LEAST_SD = 0.002  # s: no smoother tells a clock better
 
 @dataclass(frozen=True)
 class Late:
-    """The pushes of a run belong `seconds` after the times they have, with a standard deviation of `sd`."""
+    """The pushes of a run belong `seconds` after the times they have, with a standard deviation of `sd`; where not `unique`,
+    whole strokes more or less would do as well."""
 
     seconds: float
     sd: float
+    unique: bool = True
 
 
 def by_signals(campaign: Campaign) -> dict[str, Late]:
     """Runs that stand out among the others by their signals alone, before any model: see `campaign.clocks.odd_ones_out`."""
     found = odd_ones_out({run.name: tuple(_signals(run)) for run in campaign.runs if _one_clock(run)})
-    return {name: Late(shift.seconds, max(shift.se, LEAST_SD)) for name, shift in found.items()}
+    return {name: Late(shift.seconds, max(shift.se, LEAST_SD), shift.unique) for name, shift in found.items()}
 
 
 def by_model(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[str, Late]:
@@ -60,6 +64,36 @@ def by_model(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> d
         if left[best] < EXPLAINED and abs(best) > SHIFTS[0] and others > UNIQUE * left[best]:
             found[e.run.name] = Late(float(best), FINER)
     return found
+
+
+def by_slopes(evidence: Evidence, delay: str) -> dict[str, Late]:
+    """Runs whose pushes are a little early or late beside those of the others, where a model explains the rest: `evidence` has
+    sensitivities by the parameter `delay`, by which all pushes would be felt later."""
+    shifts = {e.run.name: _by_slope(e, evidence.by.index(delay)) for e in evidence.runs if _one_clock(e.run) and _pushes(e.run)}
+    told = {name: late for name, late in shifts.items() if late is not None}
+    found = {}
+    for name, late in told.items():
+        others = [o for n, o in told.items() if n != name]
+        if len(others) + 1 < ENOUGH:
+            continue
+        common, se = weighted_median([o.seconds for o in others], [o.sd for o in others])
+        away, sd = late.seconds - common, float(np.hypot(late.sd, se))
+        if abs(away) > max(ODD * sd, LEAST):
+            found[name] = Late(away, abs(away))  # a first step, from readings that the fit has as well: they settle it
+    return found if 2 * len(found) < len(told) else {}
+
+
+def _by_slope(e: RunEvidence, column: int) -> Late | None:
+    """How much later the readings of one run want its pushes, to first order; errors that last count as fewer."""
+    good = np.isfinite(e.r)
+    r, later = e.r[good], e.S[:, :, column][good]
+    told = float(later @ later)
+    if told <= 0:
+        return None
+    seconds = float(later @ r) / told
+    left = r - later * seconds
+    spread = max(1.0, float(np.mean(left**2))) * correlation_time(Evidence((e,), ()))
+    return Late(seconds, float(np.sqrt(spread / told)))
 
 
 def retimed(run: Run, late: Late) -> Run:

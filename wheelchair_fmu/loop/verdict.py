@@ -22,6 +22,7 @@ from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
 from .limits import beyond
+from .preflight import retime_by_slopes, settle_clocks
 from .screen import AT_THE_FLOOR
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
@@ -95,6 +96,9 @@ def diagnose(
     search = Search(Workshop(campaign, variant, fixed, calibrated), progress)
     climb = Climb(search, climbed)
     climb.to_the_top()
+    if retime_by_slopes(search, climb.effects, climb.base):
+        climb = Climb(search, climbed)
+        climb.to_the_top()
     leftover, proposal = _leftover(climb, generic)
     included, base, ladder, rounds = climb.effects, climb.base, climb.ladder, climb.rounds
     if proposal is not None:
@@ -110,6 +114,7 @@ def diagnose(
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, groups, rounds, experiments)
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
+    settle_clocks(search, base.evidence, climb.held)
     thinned = (campaign.thinned,) if campaign.thinned else ()
     beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
     notes = (*thinned, *search.notes, *search.noise_notes, *beyond_limits)

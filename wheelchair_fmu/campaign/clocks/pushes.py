@@ -25,6 +25,7 @@ ENOUGH = 3  # runs that must tell a shift before one of them can be odd
 ODD = 5.0  # standard errors from the others, and
 LEAST = 0.012  # s, below which nobody puts a file together anew
 EXPLAINED = 0.5  # share of a run's squared error that its shift may leave: else it is something else that is wrong
+PERIODIC = 0.1  # the same, where another shift does as well: that the recorded times are wrong must then be plain
 ALIKE = 4.0  # standard errors that the two equations may differ by in one run: a clock shifts both
 STILL = 1e-6  # SI; what changes less in all runs (rolling resistance of a chair that never stops) tells nothing
 REWEIGHTED = 8  # times
@@ -38,8 +39,8 @@ Equations = Mapping[Kind, Equation]  # of one run and one way
 class Shift:
     """`seconds` to be added to the time of a run's pushes, so that they make the motion that was read, beside what is to be
     added in all runs; with its standard error, which holds the scatter between runs. `way` says what told it. Where not
-    `unique` another shift does nearly as well (strokes that are all alike), and `seconds` is a guess. `left` is the share of
-    the squared error at the common shift that this one leaves."""
+    `unique` another shift does nearly as well: strokes that are all alike are the same one stroke later, and `seconds` is told
+    but for whole strokes. `left` is the share of the squared error at the common shift that this one leaves."""
 
     seconds: float
     se: float
@@ -73,7 +74,7 @@ def push_shifts(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
 
 
 def _is_odd(s: Shift) -> bool:
-    return s.unique and s.left < EXPLAINED and abs(s.seconds) > max(ODD * s.se, LEAST)
+    return s.left < (EXPLAINED if s.unique else PERIODIC) and abs(s.seconds) > max(ODD * s.se, LEAST)
 
 
 def _ready(runs: Mapping[str, Iterable[Signal]]) -> dict[str, dict[str, Equations]]:
@@ -109,11 +110,13 @@ def _relative(ready: Mapping[str, Mapping[str, Equations]], pool: Sequence[str])
 
 def _together(found: Sequence[Shift]) -> Shift:
     """What two equations say of one clock; where they contradict each other it is not the clock."""
-    telling = [s for s in found if s.unique] or list(found)
+    telling = [s for s in found if s.unique]
+    if not telling:
+        return min(found, key=lambda s: s.se)
     weights = np.array([1 / s.se**2 for s in telling])
     mean = float(weights @ [s.seconds for s in telling] / weights.sum())
     agree = all(abs(s.seconds - mean) < ALIKE * s.se for s in telling)
-    return Shift(mean, float(weights.sum() ** -0.5), agree and telling[0].unique, " and ".join(s.way for s in telling),
+    return Shift(mean, float(weights.sum() ** -0.5), agree, " and ".join(s.way for s in telling),
                  min(s.left for s in telling))  # fmt: skip
 
 
@@ -177,8 +180,12 @@ def _known(e: Equation, coefficients: np.ndarray | None) -> Equation:
 
 
 def _common(lags: Sequence[Lag]) -> tuple[float, float]:
+    return weighted_median([lag.seconds for lag in lags], [lag.se for lag in lags])
+
+
+def weighted_median(of: Sequence[float], with_se: Sequence[float]) -> tuple[float, float]:
     """Weighted median, and its standard error with the scatter of the runs about it: what one more run may be away."""
-    seconds, ses = (np.array([getattr(lag, part) for lag in lags]) for part in ("seconds", "se"))
+    seconds, ses = np.array(of), np.array(with_se)
     order = np.argsort(seconds)
     weights = 1 / ses[order] ** 2
     middle = float(np.interp(0.5 * weights.sum(), np.cumsum(weights) - 0.5 * weights, seconds[order]))

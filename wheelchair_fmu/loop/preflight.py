@@ -1,0 +1,75 @@
+"""Before any physics, and once more after it: columns that are not what they are called, and clocks that are wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from ..campaign.recorded import PUSHES_CLOCK
+from .diagnose import Search, Step
+from .evidence import Evidence
+from .fit import Fit
+from .timing import Late, by_model, by_signals, by_slopes, clocks
+from .wiring import wiring
+
+
+def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
+    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
+
+    Channels that are not what they are called are left out; pushes that belong to another time than the readings of their run
+    are read at that time.
+    """
+    say("calibrating")
+    w = search.workshop
+    found = dict(by_signals(w.campaign))
+    w.retime(found)
+    columns = wiring(w.bench(), w.given)
+    if columns.wrong:
+        w.leave_out(channels=columns.wrong)
+    base, held, ladder = first_steps(search)
+    if columns.trusted:
+        more = by_model(w.bench(), base.evidence, base.values) | by_model(w.bench(), held, base.values)
+        if more:
+            w.retime(more)
+            found |= more
+            base, held, ladder = first_steps(search)
+    if search.recolour(base.evidence):
+        base, held, ladder = first_steps(search)
+    search.retimed |= found
+    search.notes = list(columns.notes)
+    return base, held, ladder
+
+
+def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
+    """Read the pushes in time of the runs that the model with these effects shows to be a little early or late; are there any?
+    Not while a delay of all pushes is in it."""
+    w = search.workshop
+    delay = next((e for e in w.catalogue.values() if e.delays_record), None)
+    if delay is None or delay.id in effects:
+        return False
+    name = w.parameters(delay.id)[0]
+    found = by_slopes(w.bench((*effects, delay.id)).evidence(w.campaign.runs, base.values, (name,)), name)
+    w.retime(found)
+    search.retimed |= found
+    return bool(found)
+
+
+def settle_clocks(search: Search, *evidence: Evidence) -> None:
+    """Keep what clocks are by this evidence, of fitted and of held-out runs, and say which pushes were read at another time."""
+    search.clocks = {run: of for e in evidence for run, of in clocks(e).items()}
+    search.notes += [_late(run, search.clocks[run][PUSHES_CLOCK], late.unique) for run, late in search.retimed.items()]
+
+
+def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
+    """The calibrated fit, its held-out evidence, and the staircase up to there, with the noise as it is known."""
+    base, held, nominal, nominal_held = search.calibrate()
+    return base, held, [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+
+
+def _late(run: str, late: Late, unique: bool) -> str:
+    side, moved = ("early", "later") if late.seconds > 0 else ("late", "earlier")
+    strokes = "" if unique else " (whole strokes more or less would do as well)"
+    return (
+        f"{run}: its pushes were recorded {1000 * abs(late.seconds):.0f} ± {1000 * late.sd:.0f} ms too {side} for what was "
+        f"measured{strokes}, and are read that much {moved}; `wheelchair sync` looks for it, and "
+        f"clocks = {{ {PUSHES_CLOCK} = {late.seconds:.3f} }} in the run says so for good"
+    )
