@@ -19,13 +19,21 @@ class Parser(argparse.ArgumentParser):
 def arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = Parser(description="Build dist/Wheelchair.fmu (FMI 2.0) and dist/Wheelchair.fmi3.fmu, or another variant's.")
     parser.add_argument("--variant", type=Path, metavar="TOML", help="laws, effects and values, as `wheelchair add` writes")
-    parser.add_argument("--effects", default="default", metavar="IDS",
-                        help="default (all without states of their own), all, none, ids, or a folder of your own")  # fmt: skip
+    parser.add_argument(
+        "--effects",
+        default="default",
+        metavar="IDS",
+        help="default (all without states of their own), all, none, ids, or a folder of your own",
+    )
     parser.add_argument("--equations", metavar="KIND", help="extended (any motion) or paper (the paper's to the letter)")
     parser.add_argument("--flavour", default="native", help="native (C inside) or python (needs Python around it)")
     parser.add_argument("--fmi", metavar="VERSION", help="2, 3 or both (the default; pythonfmu makes 2 only)")
-    parser.add_argument("--platforms", default="host", metavar="NAMES",
-                        help="host, all (Linux and macOS on x86-64 and ARM, Windows), or names with commas")  # fmt: skip
+    parser.add_argument(
+        "--platforms",
+        default="host",
+        metavar="NAMES",
+        help="host, all (Linux and macOS on x86-64 and ARM, Windows), or names with commas",
+    )
     parser.add_argument("-o", "--output", type=Path, metavar="FMU", help="where to write it; FMI 3.0 beside it, as .fmi3.fmu")
     return parser.parse_args(argv)
 
@@ -60,8 +68,14 @@ def built(given: argparse.Namespace) -> list[Path]:
     catalogue, effects = catalogue_of(given.effects)
     variant = read_variant(given.variant, catalogue) if given.variant else Variant(catalogue=catalogue)
     first = given.output or Path("dist") / f"{NAMES.get(given.flavour, 'Wheelchair')}.fmu"
-    return build_each(targets(given.fmi, given.flavour, first), variant, effects=effects, equations=given.equations,
-                      flavour=given.flavour, platforms=given.platforms)  # fmt: skip
+    return build_each(
+        targets(given.fmi, given.flavour, first),
+        variant,
+        effects=effects,
+        equations=given.equations,
+        flavour=given.flavour,
+        platforms=given.platforms,
+    )
 
 
 if __name__ == "__main__":

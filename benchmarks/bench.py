@@ -24,9 +24,13 @@ PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 def machine() -> dict[str, str]:
     return {
-        "processor": _processor(), "cores": str(os.cpu_count()), "system": platform.platform(),
-        "compiler": compiler.version(), "python": platform.python_version(), **{name: version(name) for name in PACKAGES},
-    }  # fmt: skip
+        "processor": _processor(),
+        "cores": str(os.cpu_count()),
+        "system": platform.platform(),
+        "compiler": compiler.version(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in PACKAGES},
+    }
 
 
 def _processor() -> str:

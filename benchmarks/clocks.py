@@ -46,8 +46,11 @@ def baseline_errors(lab: Path, truth: dict, side: str) -> Iterator[Row]:
 def run_signals(run: Run, early: float = 0.0) -> list[Signal]:
     """A run's readings, and its pushes standing `early` s before the motion that they make."""
     read_ = [Signal("file", name, run.time, values) for name, values in run.channels.items()]
-    pushed = [Signal("file", name.split(".")[1], run.time, np.interp(run.time + early, run.time, values))
-              for name, values in run.inputs.items() if name.startswith("push.")]  # fmt: skip
+    pushed = [
+        Signal("file", name.split(".")[1], run.time, np.interp(run.time + early, run.time, values))
+        for name, values in run.inputs.items()
+        if name.startswith("push.")
+    ]
     return read_ + pushed
 
 

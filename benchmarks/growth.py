@@ -133,6 +133,8 @@ def _fitted(measured: Campaign) -> tuple[Search, Fit]:
 def _chairs() -> Line:
     whole = sweep_cost.job()
     prepare(whole)
-    jobs = {n: replace(whole, chunk=n, plan=replace(whole.plan, design=replace(whole.plan.design, samples=n)))
-            for n in (64, 256, 1024, 4096)}  # fmt: skip
+    jobs = {
+        n: replace(whole, chunk=n, plan=replace(whole.plan, design=replace(whole.plan.design, samples=n)))
+        for n in (64, 256, 1024, 4096)
+    }
     return _line("chairs", {n: (lambda job=job: job.table(0)) for n, job in jobs.items()})

@@ -27,10 +27,29 @@ from .independent.campaigns import NOISE
 RATE, HOLD = 100.0, 0.8  # Hz; s between levels of the pushes
 HIDDEN = {"effect.rolling_resistance_asymmetry.D": 1.6}  # N
 SPEED, LOOKS = 1.0, 8.0  # m/s that the person keeps, by a look at the speed every so many seconds
-SENSORS = {"wheel_speed_l": "sensor.wheel_speed_l", "wheel_speed_r": "sensor.wheel_speed_r", "yaw_rate": "sensor.yaw_rate",
-           "a_x": "sensor.a_x", "a_y": "sensor.a_y", "x": "sensor.x", "y": "sensor.y", "yaw": "sensor.yaw"}  # fmt: skip
-UNITS = {"wheel_speed_l": "m/s", "wheel_speed_r": "m/s", "yaw_rate": "rad/s", "a_x": "m/s2", "a_y": "m/s2", "x": "m", "y": "m",
-         "yaw": "rad", "F_rl": "N", "F_rr": "N", "time": "s"}  # fmt: skip
+SENSORS = {
+    "wheel_speed_l": "sensor.wheel_speed_l",
+    "wheel_speed_r": "sensor.wheel_speed_r",
+    "yaw_rate": "sensor.yaw_rate",
+    "a_x": "sensor.a_x",
+    "a_y": "sensor.a_y",
+    "x": "sensor.x",
+    "y": "sensor.y",
+    "yaw": "sensor.yaw",
+}
+UNITS = {
+    "wheel_speed_l": "m/s",
+    "wheel_speed_r": "m/s",
+    "yaw_rate": "rad/s",
+    "a_x": "m/s2",
+    "a_y": "m/s2",
+    "x": "m",
+    "y": "m",
+    "yaw": "rad",
+    "F_rl": "N",
+    "F_rr": "N",
+    "time": "s",
+}
 
 
 @dataclass(frozen=True)
@@ -80,15 +99,17 @@ def _recorded(simulator: Simulator, seconds: float, rng: np.random.Generator) ->
         parts.append({"time": begin + piece[:-1]} | {name: v[:-1] for name, v in true.items()})
         begin += LOOKS
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return pd.DataFrame({f"{name} [{UNITS[name]}]": v + NOISE.get(name, 0.0) * rng.standard_normal(len(v))
-                         for name, v in columns.items()})  # fmt: skip
+    return pd.DataFrame(
+        {f"{name} [{UNITS[name]}]": v + NOISE.get(name, 0.0) * rng.standard_normal(len(v)) for name, v in columns.items()}
+    )
 
 
 def cost(words: Sequence[str | Path]) -> Cost:
     """Run the `wheelchair` command in a process of its own (POSIX)."""
     start = perf_counter()
-    process = subprocess.Popen([sys.executable, "-m", "wheelchair_fmu.cli.main", *map(str, words)], stdout=subprocess.PIPE,
-                               text=True)  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-m", "wheelchair_fmu.cli.main", *map(str, words)], stdout=subprocess.PIPE, text=True
+    )
     assert process.stdout is not None
     output = process.stdout.read()
     _, status, used = os.wait4(process.pid, 0)
@@ -100,8 +121,9 @@ def cost(words: Sequence[str | Path]) -> Cost:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.large", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.large", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("what", choices=("make", "check", "compare", "diagnose"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=20)

@@ -59,10 +59,15 @@ class _Peer:
         given = {**self.measured.known, **values, **run.set, "start.u": run.u0}
         with redirect_stdout(StringIO()):  # fmpy says each time which inputs are left at their start values
             done = fmpy.simulate_fmu(
-                self.folder, stop_time=run.time[-1], output_interval=0.01, input=signals, output=list(shown.values()),
-                start_values={n: v for n, v in given.items() if n in self.there}, model_description=self.description,
+                self.folder,
+                stop_time=run.time[-1],
+                output_interval=0.01,
+                input=signals,
+                output=list(shown.values()),
+                start_values={n: v for n, v in given.items() if n in self.there},
+                model_description=self.description,
                 fmu_instance=self.instance,
-            )  # fmt: skip
+            )
         n = min(len(run.time), len(done))
         return np.concatenate([(run.channels[c][:n] - done[fmu][:n]) / self.measured.noise[c] for c, fmu in shown.items()])
 
@@ -72,8 +77,12 @@ class _Peer:
         start = np.array([self.measured.known.get(n, self.records[n].default) for n in names])
         scale = np.array([self.records[n].smallest_interesting or self.records[n].nominal for n in names])
         start_time = perf_counter()
-        least_squares(lambda q: self.residuals(dict(zip(names, q, strict=True))), start, x_scale=scale,
-                      bounds=([self.records[n].lower for n in names], [self.records[n].upper for n in names]))  # fmt: skip
+        least_squares(
+            lambda q: self.residuals(dict(zip(names, q, strict=True))),
+            start,
+            x_scale=scale,
+            bounds=([self.records[n].lower for n in names], [self.records[n].upper for n in names]),
+        )
         return perf_counter() - start_time
 
 

@@ -21,9 +21,19 @@ PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 RESOLUTIONS = ("lowest-direct", "highest")
 EXTRAS = ("dev", "ssp")
 # What touches libraries of others, some way through all of the package; TESTS=tests is everything.
-TESTS = ("tests/test_writing.py", "tests/campaign", "tests/engine", "tests/cli/test_cli.py", "tests/cli/test_tyre.py",
-         "tests/cli/test_sweep.py", "tests/fmu/test_archive.py", "tests/tyres", "tests/workbench", "tests/ssp/test_archives.py",
-         "tests/studies/sweep")  # fmt: skip
+TESTS = (
+    "tests/test_writing.py",
+    "tests/campaign",
+    "tests/engine",
+    "tests/cli/test_cli.py",
+    "tests/cli/test_tyre.py",
+    "tests/cli/test_sweep.py",
+    "tests/fmu/test_archive.py",
+    "tests/tyres",
+    "tests/workbench",
+    "tests/ssp/test_archives.py",
+    "tests/studies/sweep",
+)
 MISSING = "not on this machine"
 
 
@@ -54,8 +64,21 @@ def environment(python: str, name: str, resolution: str) -> Path:
     inside = next(p for p in (place / "bin" / "python", place / "Scripts" / "python.exe") if p.exists())
     wanted = place / "requirements.txt"
     extras = [word for extra in EXTRAS for word in ("--extra", extra)]
-    uv("pip", "compile", "--quiet", "pyproject.toml", *extras, *WHEELS, "--resolution", resolution, "--upgrade",
-       "--python", str(inside), "-o", str(wanted))  # fmt: skip
+    uv(
+        "pip",
+        "compile",
+        "--quiet",
+        "pyproject.toml",
+        *extras,
+        *WHEELS,
+        "--resolution",
+        resolution,
+        "--upgrade",
+        "--python",
+        str(inside),
+        "-o",
+        str(wanted),
+    )
     uv("pip", "sync", "--quiet", "--python", str(inside), str(wanted))
     uv("pip", "install", "--quiet", "--python", str(inside), "--no-deps", "-e", ".")
     return inside

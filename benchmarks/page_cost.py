@@ -63,8 +63,14 @@ def _run(wasm: bytes, variant: Variant) -> tuple[list[float], float]:
     p, model = variant.vector(), simulator.model
     assert model.w.numel() == c.w.shape[1]
     native = simulator.run(c.t, c.w, p, tolerance=TOLERANCE)
-    sizes = {"nx": native.states.shape[1], "ny": native.results.shape[1], "nw": c.w.shape[1], "n": len(c.t),
-             "tolerance": TOLERANCE, "runs": RUNS}  # fmt: skip
+    sizes = {
+        "nx": native.states.shape[1],
+        "ny": native.results.shape[1],
+        "nw": c.w.shape[1],
+        "n": len(c.t),
+        "tolerance": TOLERANCE,
+        "runs": RUNS,
+    }
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "model"
         file.with_suffix(".wasm").write_bytes(wasm)

@@ -47,9 +47,17 @@ class Row:
         return f"{self.median:.3g} {self.unit}".rstrip() + f", not {self.target:g}"
 
     def as_json(self) -> dict[str, object]:
-        return {"what": self.what, "unit": self.unit, "median": self.median, "least": min(self.samples),
-                "greatest": max(self.samples), "ratio": self.ratio, "target": self.target, "met": self.met,
-                "note": self.note}  # fmt: skip
+        return {
+            "what": self.what,
+            "unit": self.unit,
+            "median": self.median,
+            "least": min(self.samples),
+            "greatest": max(self.samples),
+            "ratio": self.ratio,
+            "target": self.target,
+            "met": self.met,
+            "note": self.note,
+        }
 
 
 def timed(call: Callable[[], object], repeats: int) -> list[float]:

@@ -29,9 +29,15 @@ from wheelchair_fmu.model.variant import Variant
 from .rows import Row, timed
 
 TOLERANCE, REPEATS, TARGET = 1e-6, 9, 10.0
-COMPILED = {"jit": True, "compiler": "shell", "jit_options": {
-    "flags": ["-O2"], "compiler": " ".join(map(quote, compiler.command())), "linker": " ".join(map(quote, compiler.command())),
-}}  # fmt: skip
+COMPILED = {
+    "jit": True,
+    "compiler": "shell",
+    "jit_options": {
+        "flags": ["-O2"],
+        "compiler": " ".join(map(quote, compiler.command())),
+        "linker": " ".join(map(quote, compiler.command())),
+    },
+}
 ADAMS = {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"}
 AS_IT_COMES = "BDF and Newton, interpreted"
 METHODS = {
@@ -75,8 +81,9 @@ def case() -> Case:
     t = np.arange(2001) * 0.01
     noise = np.random.default_rng(1).normal(0, 0.4, (2, len(t)))  # N, as force sensors have it
     beat, turn = 25 * np.maximum(0, np.sin(2 * np.pi * t)), 3 * np.sin(t)
-    return Case(simulator, t, simulator.inputs(len(t), {"push.F_rl": beat + turn + noise[0],
-                                                        "push.F_rr": beat - turn + noise[1]}))  # fmt: skip
+    return Case(
+        simulator, t, simulator.inputs(len(t), {"push.F_rl": beat + turn + noise[0], "push.F_rr": beat - turn + noise[1]})
+    )
 
 
 def cvodes(c: Case, options: dict[str, object]) -> Callable[[], np.ndarray]:
@@ -118,11 +125,19 @@ def radau(c: Case) -> np.ndarray:
     slope = cs.Function("slope", [m.x, m.w, m.p], [cs.jacobian(c.rate, m.x)])
     rows = [c.x0]
     for i in range(len(c.t) - 1):
+
         def at(t: float, i: int = i) -> np.ndarray:
             return c.w[i] + c.slopes[i] * (t - c.t[i])
 
-        run = solve_ivp(lambda t, x, at=at: rate(x, at(t), c.p).full().ravel(), (c.t[i], c.t[i + 1]), rows[-1], method="Radau",
-                        rtol=1e-10, atol=1e-12, jac=lambda t, x, at=at: slope(x, at(t), c.p).full())  # fmt: skip
+        run = solve_ivp(
+            lambda t, x, at=at: rate(x, at(t), c.p).full().ravel(),
+            (c.t[i], c.t[i + 1]),
+            rows[-1],
+            method="Radau",
+            rtol=1e-10,
+            atol=1e-12,
+            jac=lambda t, x, at=at: slope(x, at(t), c.p).full(),
+        )
         rows.append(run.y[:, -1])
     return np.array(rows)
 
@@ -141,8 +156,9 @@ def rows() -> Iterator[Row]:
     own = timed(c.own, 3 * REPEATS)
     peers = {name: timed(call, REPEATS) for name, call in calls.items()}
     fastest = min(peers, key=lambda name: min(peers[name]))
-    yield Row("20 s run, own step map", "ms", own, TARGET, float(np.median(peers[AS_IT_COMES])),
-              f"beside CVODES; {error(c.own())}")  # fmt: skip
+    yield Row(
+        "20 s run, own step map", "ms", own, TARGET, float(np.median(peers[AS_IT_COMES])), f"beside CVODES; {error(c.own())}"
+    )
     yield Row("20 s run, own step map", "ms", own, peer=float(np.median(peers[fastest])), note=f"beside CVODES ({fastest})")
     for name, samples in peers.items():
         yield Row(f"20 s run, CVODES: {name}", "ms", samples, note=error(calls[name]()))

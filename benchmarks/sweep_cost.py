@@ -36,10 +36,22 @@ from wheelchair_fmu.studies.sweep.plan import Chair, Course
 from .rows import Row
 
 CHAIRS, FEWER, REPEATS, TARGET = 10_000, 64, 3, 50.0
-OUTPUTS = ["chair.x", "chair.y", "chair.u", "chair.psi_dot", "chair.curvature", "slip.rl", "slip.rr", "push.total_needed",
-           "load.lifted"]  # fmt: skip
-AXES = (Axis("tyre.C_lambda", lower=2500, upper=10_000), Axis("chair.m", lower=60, upper=100),
-        Axis("tyre.C_m_lambda", lower=50, upper=200))  # fmt: skip
+OUTPUTS = [
+    "chair.x",
+    "chair.y",
+    "chair.u",
+    "chair.psi_dot",
+    "chair.curvature",
+    "slip.rl",
+    "slip.rr",
+    "push.total_needed",
+    "load.lifted",
+]
+AXES = (
+    Axis("tyre.C_lambda", lower=2500, upper=10_000),
+    Axis("chair.m", lower=60, upper=100),
+    Axis("tyre.C_m_lambda", lower=50, upper=200),
+)
 
 
 def job() -> Job:
@@ -55,16 +67,21 @@ class _Loop:
         self.instance = instantiate_fmu(self.folder, self.description, "CoSimulation")
         self.course: Manoeuvre = manoeuvre("steady-turn")
         self.values = encoded(Variant(), self.course.values)
-        self.signals = np.rec.fromarrays([self.course.time, *self.course.inputs.values()],
-                                         names=["time", *self.course.inputs])  # fmt: skip
+        self.signals = np.rec.fromarrays([self.course.time, *self.course.inputs.values()], names=["time", *self.course.inputs])
 
     def run(self, values: dict[str, float]) -> float:
         """The curvature at the end."""
         self.instance.reset()
         done = fmpy.simulate_fmu(
-            self.folder, stop_time=self.course.time[-1], output_interval=0.01, start_values={**self.values, **values},
-            input=self.signals, output=OUTPUTS, model_description=self.description, fmu_instance=self.instance,
-        )  # fmt: skip
+            self.folder,
+            stop_time=self.course.time[-1],
+            output_interval=0.01,
+            start_values={**self.values, **values},
+            input=self.signals,
+            output=OUTPUTS,
+            model_description=self.description,
+            fmu_instance=self.instance,
+        )
         return float(done["chair.curvature"][-1])
 
 
@@ -113,6 +130,12 @@ def rows() -> Iterator[Row]:
     theirs, reference = _theirs(ours.plan.design.points(0, FEWER), workers)
     off = float(np.abs(curvature / reference - 1).max())
     per_chair = [1e3 * s / FEWER for s in theirs]
-    yield Row(f"a chair of a sweep of {CHAIRS}", "ms", [1e3 * s / CHAIRS for s in seconds], TARGET, float(np.median(per_chair)),
-              f"beside fmpy's loop on {workers} cores; curvatures agree to {off:.0e}")  # fmt: skip
+    yield Row(
+        f"a chair of a sweep of {CHAIRS}",
+        "ms",
+        [1e3 * s / CHAIRS for s in seconds],
+        TARGET,
+        float(np.median(per_chair)),
+        f"beside fmpy's loop on {workers} cores; curvatures agree to {off:.0e}",
+    )
     yield Row(f"a chair by fmpy's loop, of {FEWER}", "ms", per_chair)

@@ -55,8 +55,10 @@ def report(motion: HubMotion) -> list[str]:
         f"of which slip has to carry, of the weight: {interval(carried[:, steady].mean(axis=1), 2)}",
         "normalised stiffness C_λ/N, 17.75 to 17.95 s [1/rad]:",
     ]
-    lines += [f"    wheels at {angle:2d}° camber: {interval(stiffness(motion, at(camber=np.radians(angle)), steady))}"
-              for angle in (0, 10, 20)]  # fmt: skip
+    lines += [
+        f"    wheels at {angle:2d}° camber: {interval(stiffness(motion, at(camber=np.radians(angle)), steady))}"
+        for angle in (0, 10, 20)
+    ]
     c = stiffness(motion, unknown, steady)
     ratio = stiffness(motion, unknown, late) / stiffness(motion, unknown, onset)
     mu = friction_needed(motion, unknown, steady, TABLE_1)

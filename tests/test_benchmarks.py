@@ -8,8 +8,11 @@ from pathlib import Path
 import pytest
 
 FOLDER = Path(__file__).parent.parent / "benchmarks"
-NAMES = sorted(".".join(file.relative_to(FOLDER.parent).with_suffix("").parts) for file in FOLDER.rglob("*.py")
-               if file.parent.name != "importers" and file.stem != "__init__")  # fmt: skip
+NAMES = sorted(
+    ".".join(file.relative_to(FOLDER.parent).with_suffix("").parts)
+    for file in FOLDER.rglob("*.py")
+    if file.parent.name != "importers" and file.stem != "__init__"
+)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -56,8 +56,9 @@ def test_it_ends_with_the_block_and_so_does_what_it_has_started():
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_it_ends_with_its_parent(how):
     script = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)" + PARENT
-    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                          cwd=ROOT) as parent:  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, cwd=ROOT
+    ) as parent:
         assert parent.stdout and parent.stdout.readline() == "begun\n"
         time.sleep(0.2)
         family = descendants(parent.pid)

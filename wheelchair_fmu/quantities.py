@@ -67,8 +67,7 @@ UNITS = {unit.name: unit for unit in tuple(globals().values()) if isinstance(uni
 def per_second(unit: Unit) -> Unit:
     """The unit of a rate of change."""
     known = {M: M_S, M_S: M_S2, RAD: RAD_S, RAD_S: RAD_S2}
-    return known.get(unit) or Unit(f"{unit.name}/s", unit.kg, unit.m, unit.s - 1, unit.rad,
-                                   quantity=f"{unit.quantity}Rate")  # fmt: skip
+    return known.get(unit) or Unit(f"{unit.name}/s", unit.kg, unit.m, unit.s - 1, unit.rad, quantity=f"{unit.quantity}Rate")
 
 
 @dataclass(frozen=True)

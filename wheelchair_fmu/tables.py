@@ -150,9 +150,15 @@ class CsvTable:
         if '"' not in self.body and not blank:
             with suppress(ValueError):  # rows of different length: cell by cell, then
                 words = pd.read_csv(
-                    io.StringIO(self.body), sep=self.separator, header=None, usecols=[index], dtype=str, na_filter=False,
-                    index_col=False, quoting=csv.QUOTE_NONE,
-                )  # fmt: skip
+                    io.StringIO(self.body),
+                    sep=self.separator,
+                    header=None,
+                    usecols=[index],
+                    dtype=str,
+                    na_filter=False,
+                    index_col=False,
+                    quoting=csv.QUOTE_NONE,
+                )
                 return [str(word).strip() for word in words[index]]
         filled = (row for row in self._cells() if any(cell.strip() for cell in row))
         return [row[index].strip() if index < len(row) else "" for row in filled]
@@ -170,9 +176,16 @@ class CsvTable:
         numbers = [i for i in indices if i not in self.stamped]
         try:
             frame = pd.read_csv(
-                io.StringIO(body), sep=self.separator, decimal=self.decimal, header=None, usecols=numbers or [0],
-                dtype=float if numbers else str, keep_default_na=False, na_values=list(_GAPS), index_col=False,
-            )  # fmt: skip
+                io.StringIO(body),
+                sep=self.separator,
+                decimal=self.decimal,
+                header=None,
+                usecols=numbers or [0],
+                dtype=float if numbers else str,
+                keep_default_na=False,
+                na_values=list(_GAPS),
+                index_col=False,
+            )
         except ValueError:  # ParserError is one
             return None
         known = [self.stamped[i] for i in indices if i in self.stamped]
@@ -282,8 +295,17 @@ def read_csv(file: str, raw: bytes, options: Mapping[str, Any] | None = None) ->
     text, faults = parse(file, raw, options)
     if text is None:
         return None, faults
-    table = CsvTable(file, text.headers, text.body, text.separator, text.decimal, text.header_line, text.units, text.notes,
-                     first_line=text.first_line)  # fmt: skip
+    table = CsvTable(
+        file,
+        text.headers,
+        text.body,
+        text.separator,
+        text.decimal,
+        text.header_line,
+        text.units,
+        text.notes,
+        first_line=text.first_line,
+    )
     return _timed(table, text, options or {})
 
 

@@ -24,7 +24,7 @@ from .dialect import (
     sample,
     separator_of,
     uncommented,
-)  # fmt: skip
+)
 from .faults import Fault, run_fault
 from .units import split, suffixed
 
@@ -105,9 +105,18 @@ def _parsed(file: str, text: str, options: Mapping[str, Any], notes: list[str]) 
     notes += [f"{comments} line{'s' * (comments > 1)} of comment among the rows skipped"] if comments else []
     first_rows = tuple(tuple(cells(line, separator)) for line in body[:20000].split("\n")[:200] if line.strip())
     return Text(
-        headers, units, body, "\t" if separator == SPACES else separator, decimal, header_line, layout_first + 1,
-        tuple(numeric), first_rows, tuple(notes), tuple(lines[: layout.header]),
-    ), []  # fmt: skip
+        headers,
+        units,
+        body,
+        "\t" if separator == SPACES else separator,
+        decimal,
+        header_line,
+        layout_first + 1,
+        tuple(numeric),
+        first_rows,
+        tuple(notes),
+        tuple(lines[: layout.header]),
+    ), []
 
 
 def _by_header(text: str) -> str:

@@ -23,12 +23,38 @@ _EPOCH_RANGE = 3.0e8, 6.0e9  # s since 1970: 1979 to 2160
 _SERIAL_RANGE = 3.0e4, 8.0e4  # days since 1899-12-30: 1982 to 2119
 _SERIAL_STEP = 2e-5  # days, 1.7 s: seconds that were counted would step by less only above 50 kHz
 _SERIAL_ZERO = datetime(1899, 12, 30)
-NAMES = frozenset((
-    "time", "t", "zeit", "temps", "tiempo", "tempo", "tijd", "tid", "timestamp", "timestamps", "time stamp", "zeitstempel",
-    "datetime", "date time", "date/time", "datum/zeit", "datum zeit", "uhrzeit", "time of day", "clock", "elapsed time",
-    "messzeit", "ms since midnight", "milliseconds since midnight", "millisekunden seit mitternacht", "time since midnight",
-    "epoch", "unix time",
-))  # fmt: skip
+NAMES = frozenset(
+    (
+        "time",
+        "t",
+        "zeit",
+        "temps",
+        "tiempo",
+        "tempo",
+        "tijd",
+        "tid",
+        "timestamp",
+        "timestamps",
+        "time stamp",
+        "zeitstempel",
+        "datetime",
+        "date time",
+        "date/time",
+        "datum/zeit",
+        "datum zeit",
+        "uhrzeit",
+        "time of day",
+        "clock",
+        "elapsed time",
+        "messzeit",
+        "ms since midnight",
+        "milliseconds since midnight",
+        "millisekunden seit mitternacht",
+        "time since midnight",
+        "epoch",
+        "unix time",
+    )
+)
 _MIDNIGHT = ("midnight", "mitternacht", "minuit", "middernacht", "time of day")
 
 

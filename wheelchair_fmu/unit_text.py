@@ -17,15 +17,30 @@ LONGEST = 60  # characters
 MOST_POWER = 9
 # What a logger's name stands for, where libraries of units call something else by it, or nothing.
 ALIASES = {
-    "Nm": "N.m", "mNm": "mN.m", "kNm": "kN.m", "cNm": "cN.m", "dps": "deg/s", "mdps": "mdeg/s", "rev": "revolution",
-    "revs": "revolution", "°": "deg", "%": "percent", "kph": "km/h", "lbft": "lbf.ft", "ftlb": "lbf.ft",
-    "°C": "degC", "°F": "degF", "μs": "us", "µs": "us",
-}  # fmt: skip
+    "Nm": "N.m",
+    "mNm": "mN.m",
+    "kNm": "kN.m",
+    "cNm": "cN.m",
+    "dps": "deg/s",
+    "mdps": "mdeg/s",
+    "rev": "revolution",
+    "revs": "revolution",
+    "°": "deg",
+    "%": "percent",
+    "kph": "km/h",
+    "lbft": "lbf.ft",
+    "ftlb": "lbf.ft",
+    "°C": "degC",
+    "°F": "degF",
+    "μs": "us",
+    "µs": "us",
+}
 RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 LETTERS = rf"[^\W\d_{RAISED}]+"
 NAME = re.compile(rf"°[CF]?|%|{LETTERS}(?:_{LETTERS})*")
 EXPONENT = re.compile(
-    rf"\s*(?:\^|\*\*)\s*(?:([-+]?\d)(?!\.?\d)|\(\s*([-+]?\d)\s*\))|(-?\d)(?!\.?\d)|([⁺⁻]?[{RAISED}])(?![{RAISED}])", re.ASCII)
+    rf"\s*(?:\^|\*\*)\s*(?:([-+]?\d)(?!\.?\d)|\(\s*([-+]?\d)\s*\))|(-?\d)(?!\.?\d)|([⁺⁻]?[{RAISED}])(?![{RAISED}])", re.ASCII
+)
 JOINT = re.compile(rf"\s*(?:[*·⋅×.]|-(?=\s*{LETTERS}))\s*|\s+(?=[^/\s])")
 SLASH = re.compile(r"\s*/\s*|\s+per\s+")
 PLAIN = str.maketrans(f"⁺⁻{RAISED}", "+-0123456789")

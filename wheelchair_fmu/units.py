@@ -27,13 +27,27 @@ _ASIDE = {
     **dict.fromkeys(_FOOT_POUND, "lbf.ft"),  # nobody means a mass times a length
 }
 USUAL = {
-    ("ms", "s"): 1e-3, ("mm", "m"): 1e-3, ("cm", "m"): 1e-2, ("km/h", "m/s"): 1 / 3.6, ("deg", "rad"): math.radians(1),
-    ("deg/s", "rad/s"): math.radians(1), ("rpm", "rad/s"): math.pi / 30, ("%", "1"): 1e-2,
-}  # fmt: skip
+    ("ms", "s"): 1e-3,
+    ("mm", "m"): 1e-3,
+    ("cm", "m"): 1e-2,
+    ("km/h", "m/s"): 1 / 3.6,
+    ("deg", "rad"): math.radians(1),
+    ("deg/s", "rad/s"): math.radians(1),
+    ("rpm", "rad/s"): math.pi / 30,
+    ("%", "1"): 1e-2,
+}
 _EXAMPLES = {
-    "s": "s or ms", "m": "m or mm", "m/s": "m/s or km/h", "m/s2": "m/s2 or g", "rad": "rad or deg",
-    "rad/s": "rad/s or deg/s", "N": "N or lbf", "N.m": "N.m or lbf.ft", "1": "1 or %", "bar": "bar or kPa",
-}  # fmt: skip
+    "s": "s or ms",
+    "m": "m or mm",
+    "m/s": "m/s or km/h",
+    "m/s2": "m/s2 or g",
+    "rad": "rad or deg",
+    "rad/s": "rad/s or deg/s",
+    "N": "N or lbf",
+    "N.m": "N.m or lbf.ft",
+    "1": "1 or %",
+    "bar": "bar or kPa",
+}
 KEPT = 4096  # units that are remembered
 _PLAIN = {"rad": "1"}  # an angle is a plain number
 SI_OF = {**{si: si for si in _EXAMPLES}, **{text: si for text, si in USUAL}}
@@ -189,11 +203,34 @@ def quantity(text: str, si: str) -> float:
 
 
 _SUFFIXES = {
-    "_degps": "deg/s", "_deg_s": "deg/s", "_dps": "deg/s", "_radps": "rad/s", "_rad_s": "rad/s", "_rpm": "rpm",
-    "_mps2": "m/s2", "_m_s2": "m/s2", "_ms2": "m/s2", "_mps": "m/s", "_m_s": "m/s", "_kmh": "km/h", "_km_h": "km/h",
-    "_kph": "km/h", "_Nm": "N.m", "_N_m": "N.m", "_N": "N", "_ns": "ns", "_us": "us", "_ms": "ms", "_s": "s", "_mm": "mm",
-    "_cm": "cm", "_m": "m", "_deg": "deg", "_rad": "rad", "_g": "g",
-}  # fmt: skip
+    "_degps": "deg/s",
+    "_deg_s": "deg/s",
+    "_dps": "deg/s",
+    "_radps": "rad/s",
+    "_rad_s": "rad/s",
+    "_rpm": "rpm",
+    "_mps2": "m/s2",
+    "_m_s2": "m/s2",
+    "_ms2": "m/s2",
+    "_mps": "m/s",
+    "_m_s": "m/s",
+    "_kmh": "km/h",
+    "_km_h": "km/h",
+    "_kph": "km/h",
+    "_Nm": "N.m",
+    "_N_m": "N.m",
+    "_N": "N",
+    "_ns": "ns",
+    "_us": "us",
+    "_ms": "ms",
+    "_s": "s",
+    "_mm": "mm",
+    "_cm": "cm",
+    "_m": "m",
+    "_deg": "deg",
+    "_rad": "rad",
+    "_g": "g",
+}
 _ELECTRIC = ("uT", "µT", "V", "mV", "A", "mA", "degC", "°C", "°", "counts", "-")
 
 
@@ -242,10 +279,21 @@ def is_unit(text: str) -> bool:
 def _dimension(unit: Any) -> str:
     """What a unit measures, in words where there are any."""
     names = {
-        "m": "a length", "s": "a time", "m/s": "a speed", "m/s2": "an acceleration", "N": "a force",
-        "N.m": "a torque", "1": "an angle or a plain number", "rad/s": "an angular rate", "kg": "a mass",
-        "Pa": "a pressure", "V": "a voltage", "A": "a current", "K": "a temperature", "W": "a power",
-    }  # fmt: skip
+        "m": "a length",
+        "s": "a time",
+        "m/s": "a speed",
+        "m/s2": "an acceleration",
+        "N": "a force",
+        "N.m": "a torque",
+        "1": "an angle or a plain number",
+        "rad/s": "an angular rate",
+        "kg": "a mass",
+        "Pa": "a pressure",
+        "V": "a voltage",
+        "A": "a current",
+        "K": "a temperature",
+        "W": "a power",
+    }
     for si, name in names.items():
         if _parse(si).dimensionality == unit.dimensionality:
             return name

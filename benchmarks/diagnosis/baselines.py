@@ -27,9 +27,11 @@ def baselines(search: Search) -> dict[str, str | None]:
     evidence = w.wide().evidence(w.campaign.fit, base.values, names)
     delta = np.array([fresh.records[n].smallest_interesting for n in names])
     owner = [n.split(".")[1] for n in names]
-    return {"refit everything, BIC": _refit(fresh, base),
-            "residual correlation": _correlation(evidence.r, evidence.S, owner),
-            "sparse regression": _sparse(evidence.r, evidence.S * delta, owner)}  # fmt: skip
+    return {
+        "refit everything, BIC": _refit(fresh, base),
+        "residual correlation": _correlation(evidence.r, evidence.S, owner),
+        "sparse regression": _sparse(evidence.r, evidence.S * delta, owner),
+    }
 
 
 def _refit(search: Search, base) -> str | None:

@@ -9,10 +9,13 @@ from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, usual
 
 SIZES = (0.25, 1.0, 3.0)  # of δ
 PAIRS = (
-    ("caster_friction", "floor_cross_slope"), ("relaxation_length", "rolling_resistance_speed"),
-    ("scrub_torque", "gyro_scale"), ("trunk_motion", "rolling_resistance_asymmetry"),
-    ("cm_lateral_offset", "wheel_radius_error"), ("gyro_bias", "aerodynamic_drag"),
-)  # fmt: skip
+    ("caster_friction", "floor_cross_slope"),
+    ("relaxation_length", "rolling_resistance_speed"),
+    ("scrub_torque", "gyro_scale"),
+    ("trunk_motion", "rolling_resistance_asymmetry"),
+    ("cm_lateral_offset", "wheel_radius_error"),
+    ("gyro_bias", "aerodynamic_drag"),
+)
 NEAR_TIES = ("aerodynamic_drag", "rolling_resistance_speed")  # on straight runs, where nobody can tell them apart
 
 
@@ -60,6 +63,14 @@ class Plan:
             for effect in NEAR_TIES:
                 self._add("near-tie", (effect,), (2.0,), "white", seed, "straight")
 
-    def _add(self, kind: str, effects: tuple[str, ...], sizes: tuple[float, ...], noise: str, seed: int,
-             manoeuvres: str = "everyday", left_out: tuple[str, ...] = ()) -> None:  # fmt: skip
+    def _add(
+        self,
+        kind: str,
+        effects: tuple[str, ...],
+        sizes: tuple[float, ...],
+        noise: str,
+        seed: int,
+        manoeuvres: str = "everyday",
+        left_out: tuple[str, ...] = (),
+    ) -> None:
         self.cases += [Case(kind, effects, times, noise, manoeuvres, left_out, seed) for times in sizes]

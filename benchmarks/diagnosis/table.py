@@ -14,10 +14,12 @@ SHOWS = 1.01  # ratio of the whitened RMS on fitted runs, calibrated, to that wh
 FLOOR = 0.995  # whitened RMS where nothing is hidden in white noise; coloured noise has one for each draw
 QUIET = ("adequate", "cannot_see", "small")
 ALIASES = (
-    {"aerodynamic_drag", "rolling_resistance_speed"}, {"push_force_gain", "wheel_radius_error"},
-    {"scrub_torque", "scrub_torque_viscous"}, {"accelerometer_tilt", "accelerometer_bias"},
+    {"aerodynamic_drag", "rolling_resistance_speed"},
+    {"push_force_gain", "wheel_radius_error"},
+    {"scrub_torque", "scrub_torque_viscous"},
+    {"accelerometer_tilt", "accelerometer_bias"},
     {"toe_misalignment", "rolling_resistance_asymmetry", "floor_cross_slope", "camber_misalignment", "cm_lateral_offset"},
-)  # fmt: skip
+)
 """Effects that are known to look alike unless the data separate them."""
 
 
@@ -111,10 +113,12 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),
         ("held-out gain, median", f"{np.median(won):.2f} of {len(won)}" if won else "none run", ""),
         ("true value within the 95 % interval", f"{np.mean(inside):.0%} of {len(inside)}" if inside else "none run", "93–97 %"),
-        *(("  within the " + kind + " interval", share([c for t in missing for c in covered_by(t, kind)], bool), "93–97 %")
-          for kind in ("profile", "bootstrap")),
+        *(
+            ("  within the " + kind + " interval", share([c for t in missing for c in covered_by(t, kind)], bool), "93–97 %")
+            for kind in ("profile", "bootstrap")
+        ),
         ("processor seconds, median", f"{np.median([t['cpu'] for t in trials]):.1f}", ""),
-    ]  # fmt: skip
+    ]
     for method in next((t["baselines"] for t in trials if t["baselines"]), {}):
         hits = [t["baselines"][method] in t["effects"] for t in single if t["baselines"]]
         alarms = [t["baselines"][method] is not None for t in nulls if t["baselines"]]

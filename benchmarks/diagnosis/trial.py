@@ -35,11 +35,22 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
         others = baselines(found.search) if with_baselines else {}
     rows = {row["effect"]: row for row in said["ranking"]}
     return {
-        "case": case.name, "kind": case.kind, "effects": case.effects, "times": case.times, "noise": case.noise,
+        "case": case.name,
+        "kind": case.kind,
+        "effects": case.effects,
+        "times": case.times,
+        "noise": case.noise,
         "seed": case.seed,
-        "hidden": {e: dict(v) for e, v in case.hidden.items()}, "verdict": said["verdict"], "found": said["effects"],
-        "ties": said["ties"], "order": [row["effect"] for row in said["ranking"]], "ladder": said["ladder"],
-        "leftover": said["leftover"], "rows": {e: rows[e] for e in case.effects if e in rows}, "cpu": seconds,
-        "seconds": said["seconds"], "baselines": others,
+        "hidden": {e: dict(v) for e, v in case.hidden.items()},
+        "verdict": said["verdict"],
+        "found": said["effects"],
+        "ties": said["ties"],
+        "order": [row["effect"] for row in said["ranking"]],
+        "ladder": said["ladder"],
+        "leftover": said["leftover"],
+        "rows": {e: rows[e] for e in case.effects if e in rows},
+        "cpu": seconds,
+        "seconds": said["seconds"],
+        "baselines": others,
         "intervals": {"profile": dict(found.intervals), "bootstrap": {n: e[1:] for n, e in resampled.items()}},
-    }  # fmt: skip
+    }

@@ -36,8 +36,17 @@ with TemporaryDirectory() as folder:
         connections = [connection({**held, "variable": push}, "chair", push) for push in table.columns if push != "t"]
         names, watched, steps = [n for n in pd.read_csv(results).columns if n != "time"], "chair", len(table) - 1
     coordinator = Coordinator()
-    coordinator.start({"root": "", "fmus": fmus, "connections": connections, "cosim_method": "jacobi", "edge_sep": " -> ",
-                       "iterative": False, "data_storages": []})  # fmt: skip
+    coordinator.start(
+        {
+            "root": "",
+            "fmus": fmus,
+            "connections": connections,
+            "cosim_method": "jacobi",
+            "edge_sep": " -> ",
+            "iterative": False,
+            "data_storages": [],
+        }
+    )
     for _ in range(steps):
         coordinator.do_step(0.01)
     found = coordinator.get_results()

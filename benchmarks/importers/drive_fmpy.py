@@ -15,6 +15,13 @@ if interface == "ModelExchange":  # between two samples FMPy's CVode takes them 
     given = np.repeat(given, 2)[:-1]
     given["time"][1::2] = given["time"][2::2]
 outputs = [name for name in expected.dtype.names if name != "time"]
-run = fmpy.simulate_fmu(fmu, fmi_type=interface, stop_time=expected["time"][-1], output_interval=0.01, input=given,
-                        output=outputs, relative_tolerance=1e-9 if interface == "ModelExchange" else None)  # fmt: skip
+run = fmpy.simulate_fmu(
+    fmu,
+    fmi_type=interface,
+    stop_time=expected["time"][-1],
+    output_interval=0.01,
+    input=given,
+    output=outputs,
+    relative_tolerance=1e-9 if interface == "ModelExchange" else None,
+)
 print(json.dumps({"tool": "FMPy", "version": fmpy.__version__, "end": {name: float(run[name][-1]) for name in outputs}}))

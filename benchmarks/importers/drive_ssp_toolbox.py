@@ -25,5 +25,12 @@ with TemporaryDirectory() as folder:
     files = {c.get("name"): Path(c.get("source")).stem.lower() for c in root.iter(f"{SSD}Component")}  # it names them by file
     inside = {name: f"{files[name.partition('.')[0]]}.{name.partition('.')[2]}" for name in names}
     run = fmpy.simulate_fmu(str(made), stop_time=float(stop), output_interval=float(step), output=list(inside.values()))
-print(json.dumps({"tool": "FMU Manipulation Toolbox", "version": version("fmu-manipulation-toolbox"),
-                  "end": {name: float(run[own][-1]) for name, own in inside.items()}}))  # fmt: skip
+print(
+    json.dumps(
+        {
+            "tool": "FMU Manipulation Toolbox",
+            "version": version("fmu-manipulation-toolbox"),
+            "end": {name: float(run[own][-1]) for name, own in inside.items()},
+        }
+    )
+)

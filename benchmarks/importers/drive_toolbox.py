@@ -23,5 +23,12 @@ with TemporaryDirectory() as folder:
     Assembly("wrapped.json", fmu_directory=Path(folder)).make_fmu(fmi_version=2)
     made, end = str(Path(folder) / "wrapped.fmu"), expected["time"][-1]
     run = fmpy.simulate_fmu(made, stop_time=end, output_interval=0.01, input=given, output=outputs)
-print(json.dumps({"tool": "FMU Manipulation Toolbox", "version": version("fmu-manipulation-toolbox"),
-                  "end": {name: float(run[name][-1]) for name in outputs}}))  # fmt: skip
+print(
+    json.dumps(
+        {
+            "tool": "FMU Manipulation Toolbox",
+            "version": version("fmu-manipulation-toolbox"),
+            "end": {name: float(run[name][-1]) for name in outputs},
+        }
+    )
+)

@@ -72,8 +72,12 @@ def plain_host(row: Row, archive: Path, folder: Path) -> Result:
     names, expected = strokes()
     library = next((unpacked / "binaries").glob(f"*/*{compiler.SUFFIX}"))
     references = [at[n] for n in ("push.F_rl", "push.F_rr", *names)]
-    done = subprocess.run([str(program), str(library), description.guid, row.fmi, "400", "0.01", *references],
-                          capture_output=True, text=True, check=True)  # fmt: skip
+    done = subprocess.run(
+        [str(program), str(library), description.guid, row.fmi, "400", "0.01", *references],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     end = dict(zip(names, map(float, done.stdout.splitlines()[-1].split()), strict=True))
     return Result(row, compiler.version().split()[0], deviation(end, expected))
 
@@ -87,8 +91,14 @@ def _drive(row: Row, words: list[str], expected: dict[str, float]) -> Result:
     if not python:
         return Result(row, trouble="not run: no $IMPORTERS_PYTHON")
     clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
-    done = subprocess.run([python, str(HERE / f"drive_{row.script}.py"), *words], capture_output=True, text=True, env=clean,
-                          timeout=300, check=False)  # fmt: skip
+    done = subprocess.run(
+        [python, str(HERE / f"drive_{row.script}.py"), *words],
+        capture_output=True,
+        text=True,
+        env=clean,
+        timeout=300,
+        check=False,
+    )
     lines = [line for line in done.stdout.splitlines() if line.startswith('{"tool"')]
     if not lines:
         said = done.stderr.strip().splitlines() or ["no word"]

@@ -59,8 +59,14 @@ class Result:
         return "| " + " | ".join((tool, self.version or "–", *others, self.verdict)) + " |"
 
 
-OTHERS = (("libcosimpy", "libcosimpy"), ("CoFMUPy", "cofmupy"), ("Ecos", "ecospy"), ("fmuloader", "fmuloader"),
-          ("PathSim", "pathsim"), ("FMU Manipulation Toolbox", "toolbox"))  # fmt: skip
+OTHERS = (
+    ("libcosimpy", "libcosimpy"),
+    ("CoFMUPy", "cofmupy"),
+    ("Ecos", "ecospy"),
+    ("fmuloader", "fmuloader"),
+    ("PathSim", "pathsim"),
+    ("FMU Manipulation Toolbox", "toolbox"),
+)
 COUPLED = ("libcosimpy", "CoFMUPy")
 NOT_HAD = {
     "OMSimulator": "not run: PyPI's package fetches the program from openmodelica.org when it is installed",
@@ -73,16 +79,23 @@ SSP_HEAD = ("importer", "version", "system", "result")
 def fmu_rows(fmi: str) -> tuple[Row, ...]:
     """What is done with an archive of one version of FMI."""
     mine = [Row("FMPy", "fmpy", fmi, interface, run, here=True) for interface in (CS, ME) for run in (REFERENCE, BOUND)]
-    theirs = [Row(tool, script, fmi, CS, run) for tool, script in OTHERS for run in
-              (REFERENCE, BOUND, *([TWO] if tool in COUPLED else []))]  # fmt: skip
+    theirs = [
+        Row(tool, script, fmi, CS, run)
+        for tool, script in OTHERS
+        for run in (REFERENCE, BOUND, *([TWO] if tool in COUPLED else []))
+    ]
     lost = [Row(tool, "", fmi, CS, REFERENCE, reason=reason) for tool, reason in NOT_HAD.items()]
     return (*mine, Row("plain C host", "", fmi, CS, STROKES, here=True), *theirs, *lost)
 
 
 def ssp_rows() -> tuple[Row, ...]:
     """What is done with archives of systems."""
-    tools = (("FMPy", "ssp_fmpy", True), ("libcosimpy", "ssp_libcosimpy", False), ("Ecos", "ssp_ecospy", False),
-             ("FMU Manipulation Toolbox", "ssp_toolbox", False))  # fmt: skip
+    tools = (
+        ("FMPy", "ssp_fmpy", True),
+        ("libcosimpy", "ssp_libcosimpy", False),
+        ("Ecos", "ssp_ecospy", False),
+        ("FMU Manipulation Toolbox", "ssp_toolbox", False),
+    )
     run = [Row(tool, script, run=system, here=here) for tool, script, here in tools for system in SYSTEMS]
     return (*run, Row("OMSimulator", "", run="slalom", reason=NOT_HAD["OMSimulator"]))
 

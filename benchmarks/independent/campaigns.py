@@ -27,13 +27,34 @@ REFERENCE_PRESSURE = 4.0
 CHANNELS = ("wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y")
 ROOM_CHANNELS = (*CHANNELS, "x", "y", "yaw")
 UNITS = {
-    "time": "s", "F_rl": "N", "F_rr": "N", "wheel_speed_l": "m/s", "wheel_speed_r": "m/s", "yaw_rate": "rad/s",
-    "a_x": "m/s2", "a_y": "m/s2", "x": "m", "y": "m", "yaw": "rad", "u": "m/s", "v": "m/s",
-}  # fmt: skip
+    "time": "s",
+    "F_rl": "N",
+    "F_rr": "N",
+    "wheel_speed_l": "m/s",
+    "wheel_speed_r": "m/s",
+    "yaw_rate": "rad/s",
+    "a_x": "m/s2",
+    "a_y": "m/s2",
+    "x": "m",
+    "y": "m",
+    "yaw": "rad",
+    "u": "m/s",
+    "v": "m/s",
+}
 NOISE = {
-    "F_rl": 0.4, "F_rr": 0.4, "wheel_speed_l": 0.008, "wheel_speed_r": 0.008, "yaw_rate": 0.006,
-    "a_x": 0.05, "a_y": 0.05, "x": 0.003, "y": 0.003, "yaw": 0.004, "u": 0.008, "v": 0.008,
-}  # fmt: skip
+    "F_rl": 0.4,
+    "F_rr": 0.4,
+    "wheel_speed_l": 0.008,
+    "wheel_speed_r": 0.008,
+    "yaw_rate": 0.006,
+    "a_x": 0.05,
+    "a_y": 0.05,
+    "x": 0.003,
+    "y": 0.003,
+    "yaw": 0.004,
+    "u": 0.008,
+    "v": 0.008,
+}
 AR1 = 0.9
 CALIBRATION = {"C_lambda": 0.12, "C_m_lambda": 0.08, "f_r": 0.06, "f_f": 0.06, "I_z": 0.05}
 """Half-widths of the uniform relative difference between the true chair and the file."""

@@ -22,9 +22,21 @@ from pathlib import Path
 import numpy as np
 
 OUTPUTS = (
-    "wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y", "x", "y", "yaw", "u", "v",
-    "yaw_acceleration", "swivel_r", "swivel_l", "energy",
-)  # fmt: skip
+    "wheel_speed_l",
+    "wheel_speed_r",
+    "yaw_rate",
+    "a_x",
+    "a_y",
+    "x",
+    "y",
+    "yaw",
+    "u",
+    "v",
+    "yaw_acceleration",
+    "swivel_r",
+    "swivel_l",
+    "energy",
+)
 STATES = 15
 STEPS_PER_SAMPLE = 50
 

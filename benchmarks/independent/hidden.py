@@ -42,10 +42,7 @@ class Instruments:
     def forces(self, time: np.ndarray, F_rl: np.ndarray, F_rr: np.ndarray) -> Columns:
         """The recorded pushes; an early record shows at t what the wheel gets at t + force_early."""
         at = time + self.force_early
-        return {
-            "F_rl": (1 + self.force_l) * np.interp(at, time, F_rl),
-            "F_rr": (1 + self.force_r) * np.interp(at, time, F_rr),
-        }
+        return {"F_rl": (1 + self.force_l) * np.interp(at, time, F_rl), "F_rr": (1 + self.force_r) * np.interp(at, time, F_rr)}
 
     def motion(self, true: Mapping[str, np.ndarray], g: float) -> Columns:
         """The recorded motion channels, without noise."""
@@ -167,8 +164,7 @@ EFFECTS: dict[str, Effect] = {
         _one("amplitude", "chair.trunk", "m", 0.01, "positive: CM goes forward on the frame by this per 80 N, lag 0.15 s")
     ),
     "caster_inertia": Effect(
-        _one("I", "chair.I_swivel", "kg m2", 0.005, "each caster's; replaces their own 0.003", combine=_at_least),
-        sees="slow",
+        _one("I", "chair.I_swivel", "kg m2", 0.005, "each caster's; replaces their own 0.003", combine=_at_least), sees="slow"
     ),
     "caster_friction": Effect(
         _one("M", "chair.swivel_dry", "N m", 0.05, "each bearing, against its swivel rate; replaces 0.002", combine=_at_least)

@@ -176,9 +176,15 @@ PRESSURE = _PICKED + tuple(replace(r, name=f"{r.name}-pressure", other_pressure=
 BOTH_WAYS = (*EVERYDAY, BACKWARD, CIRCLE)
 
 SETS: dict[str, tuple[Run, ...]] = {
-    "everyday": EVERYDAY, "slow": SLOW, "straight": STRAIGHT, "mass": MASS, "pressure": PRESSURE, "both-ways": BOTH_WAYS,
-    "hard": HARD, "fierce": FIERCE,
-}  # fmt: skip
+    "everyday": EVERYDAY,
+    "slow": SLOW,
+    "straight": STRAIGHT,
+    "mass": MASS,
+    "pressure": PRESSURE,
+    "both-ways": BOTH_WAYS,
+    "hard": HARD,
+    "fierce": FIERCE,
+}
 
 
 def pick(what: str | Iterable[str | Run]) -> tuple[Run, ...]:

@@ -23,15 +23,21 @@ try:
     from pythonfmu.enums import Fmi2Status
 except ImportError as error:
     # By the log, and for hosts that show none on the console.
-    reason = (f"this FMU needs the package {error.name}, which the Python of this host cannot import ({error}); pip install "
-              "casadi numpy, as documentation/externalDependencies.txt says")  # fmt: skip
+    reason = (
+        f"this FMU needs the package {error.name}, which the Python of this host cannot import ({error}); pip install "
+        "casadi numpy, as documentation/externalDependencies.txt says"
+    )
     print(reason, file=sys.stderr, flush=True)
     raise ImportError(reason) from error
 
 PACKAGE = "wheelchair_package"
 KIND = {"Real": Real, "Enumeration": Integer, "Boolean": Boolean}
-CAUSALITY = {"time": Fmi2Causality.local, "parameter": Fmi2Causality.parameter, "input": Fmi2Causality.input,
-             "output": Fmi2Causality.output}  # fmt: skip
+CAUSALITY = {
+    "time": Fmi2Causality.local,
+    "parameter": Fmi2Causality.parameter,
+    "input": Fmi2Causality.input,
+    "output": Fmi2Causality.output,
+}
 PHASES = ("instantiated", "initializing", "stepping")
 INITIAL = {"parameter": Fmi2Initial.exact, "output": Fmi2Initial.calculated}
 TIMES = ("tolerance", "start_time", "stop_time", "time", "elapsed", "lost")
@@ -58,8 +64,14 @@ def load(resources: Path) -> SimpleNamespace:
         package.effects = import_module(f"{name}.model.effects").bundled()
     package = sys.modules[name]
     wheelchair, stepping = import_module(f"{name}.model.wheelchair"), import_module(f"{name}.stepping")
-    return SimpleNamespace(interface=package.interface, effects=package.effects, Choice=wheelchair.Choice,
-                           assemble=wheelchair.assemble, Stepper=stepping.Stepper, CannotGoOn=stepping.CannotGoOn)  # fmt: skip
+    return SimpleNamespace(
+        interface=package.interface,
+        effects=package.effects,
+        Choice=wheelchair.Choice,
+        assemble=wheelchair.assemble,
+        Stepper=stepping.Stepper,
+        CannotGoOn=stepping.CannotGoOn,
+    )
 
 
 class WheelchairPython(Fmi2Slave):
@@ -84,10 +96,17 @@ class WheelchairPython(Fmi2Slave):
             self._register(v)
 
     def _register(self, v: dict[str, Any]) -> None:
-        self.register_variable(KIND[v["type"]](
-            v["name"], causality=CAUSALITY[v["kind"]], variability=Fmi2Variability[v["variability"]],
-            initial=INITIAL.get(v["kind"]), getter=lambda: self._value(v), setter=lambda value: self._assign(v, value),
-        ), nested=False)  # fmt: skip
+        self.register_variable(
+            KIND[v["type"]](
+                v["name"],
+                causality=CAUSALITY[v["kind"]],
+                variability=Fmi2Variability[v["variability"]],
+                initial=INITIAL.get(v["kind"]),
+                getter=lambda: self._value(v),
+                setter=lambda value: self._assign(v, value),
+            ),
+            nested=False,
+        )
 
     # ---- values
 
@@ -113,8 +132,9 @@ class WheelchairPython(Fmi2Slave):
         """All or none; what is wrong is told, never raised, because pythonfmu ends the simulation on any exception."""
         for vr, value in zip(vrs, values, strict=True):
             if not (0 <= vr < len(self.table) and self.table[vr]["type"] == kind):
-                return self._say(Fmi2Status.error, f"no variable of type {kind} has value reference {vr}; "
-                                                   "modelDescription.xml lists them")  # fmt: skip
+                return self._say(
+                    Fmi2Status.error, f"no variable of type {kind} has value reference {vr}; modelDescription.xml lists them"
+                )
             if fault := self._fault(self.table[vr], value):
                 return self._say(Fmi2Status.discard, fault)
         for vr, value in zip(vrs, values, strict=True):
@@ -131,9 +151,12 @@ class WheelchairPython(Fmi2Slave):
         rounding = abs(value - bound) <= 1e-9 * (range_ if isfinite(range_) else 1 + abs(bound))
         if not rounding and v["name"] not in self.clamped:
             self.clamped.add(v["name"])
-            self._say(Fmi2Status.warning, f"t = {self.time:.9g} s: {v['name']} = {_shown(v, value)} is {side} its {which} of "
-                                          f"{_shown(v, bound)}; the {which} is used instead, now and whenever this input is "
-                                          "out of bounds")  # fmt: skip
+            self._say(
+                Fmi2Status.warning,
+                f"t = {self.time:.9g} s: {v['name']} = {_shown(v, value)} is {side} its {which} of "
+                f"{_shown(v, bound)}; the {which} is used instead, now and whenever this input is "
+                "out of bounds",
+            )
         return bound
 
     def _fault(self, v: dict[str, Any], value: float) -> str:
@@ -228,8 +251,10 @@ class WheelchairPython(Fmi2Slave):
         try:
             x = self.stepper.advance(self.x, self.p, self.w, self.elapsed, elapsed, self.tolerance, self.interface["grid"])
         except self.lib.CannotGoOn as error:
-            self._say(Fmi2Status.error, f"between t = {self.time:.9g} s and {self.time + step_size:.9g} s {error}; "
-                                        "the chair stays at the first")  # fmt: skip
+            self._say(
+                Fmi2Status.error,
+                f"between t = {self.time:.9g} s and {self.time + step_size:.9g} s {error}; the chair stays at the first",
+            )
             return False
         self.x, self.y = x, self.stepper.output(x, self.p, self.w)
         self.lost = (elapsed - self.elapsed) - added
@@ -242,11 +267,14 @@ class WheelchairPython(Fmi2Slave):
         if not (isfinite(h) and h > 0):
             return f"a step of {h:g} s is not a positive finite time; the chair stays at t = {self.time:.9g} s"
         if not abs(point - self.time) <= slack:
-            return (f"the step starts at {point:g} s but the chair is at t = {self.time:.9g} s; start it there or "
-                    "restore a state")  # fmt: skip
+            return (
+                f"the step starts at {point:g} s but the chair is at t = {self.time:.9g} s; start it there or restore a state"
+            )
         if self.stop_time is not None and point + h > self.stop_time + slack:
-            return (f"the step ends at {point + h:.9g} s, after the stop time {self.stop_time:.9g} s; give a later "
-                    "stop time or none")  # fmt: skip
+            return (
+                f"the step ends at {point + h:.9g} s, after the stop time {self.stop_time:.9g} s; give a later "
+                "stop time or none"
+            )
         return ""
 
     def _watch(self) -> None:
@@ -259,8 +287,11 @@ class WheelchairPython(Fmi2Slave):
             beyond = [name for name in watch["variables"] if abs(self.y[self.place[name]]) > limit]
             if beyond:
                 self.warned.add(i)
-                self._say(Fmi2Status.warning, f"t = {self.time:.9g} s: {beyond[0]} = {self.y[self.place[beyond[0]]]:.10g} "
-                                              f"is beyond {limit:g}: {watch['meaning']}")  # fmt: skip
+                self._say(
+                    Fmi2Status.warning,
+                    f"t = {self.time:.9g} s: {beyond[0]} = {self.y[self.place[beyond[0]]]:.10g} "
+                    f"is beyond {limit:g}: {watch['meaning']}",
+                )
 
     # ---- saved states: pythonfmu would save no more than the registered variables
 
@@ -286,9 +317,11 @@ class WheelchairPython(Fmi2Slave):
         values, x, times = state["values"], state["x"], [state[name] for name in TIMES if state[name] is not None]
         if not isinstance(values, dict) or values.keys() != settable.keys() or state["phase"] not in PHASES:
             return False
-        return (all(_lawful(v, values[name]) for name, v in settable.items())
-                and all(map(_number, times))
-                and (x is None or (isinstance(x, list) and all(map(_number, x)))))  # fmt: skip
+        return (
+            all(_lawful(v, values[name]) for name, v in settable.items())
+            and all(map(_number, times))
+            and (x is None or (isinstance(x, list) and all(map(_number, x))))
+        )
 
     @staticmethod
     def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:

@@ -68,8 +68,9 @@ class Stepper:
     def output(self, x: np.ndarray, p: np.ndarray, w: np.ndarray) -> np.ndarray:
         return self._output(x, w, p)[0].copy()
 
-    def advance(self, x: np.ndarray, p: np.ndarray, w: np.ndarray, t0: float, t1: float, tolerance: float,
-                grid: float) -> np.ndarray:  # fmt: skip
+    def advance(
+        self, x: np.ndarray, p: np.ndarray, w: np.ndarray, t0: float, t1: float, tolerance: float, grid: float
+    ) -> np.ndarray:
         """The states at t1; no step crosses a multiple of the grid, and none remembers the last."""
         cell = floor(t0 / grid + SNAP)
         begin = 0.0 if abs(t0 / grid - cell) < SNAP else t0 - cell * grid
@@ -103,6 +104,9 @@ class Stepper:
             else:
                 h = now * (factor if factor > 0.1 else 0.1)
                 if h < SHORTEST:
-                    raise CannotGoOn("no internal step is short enough for the tolerance" if isfinite(error)
-                                     else "the equations give NaN or infinity")  # fmt: skip
+                    raise CannotGoOn(
+                        "no internal step is short enough for the tolerance"
+                        if isfinite(error)
+                        else "the equations give NaN or infinity"
+                    )
         return x if tested is None else self.project(x, p, w)

@@ -15,8 +15,16 @@ from wheelchair_fmu.cli.main import app
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "sample-campaign"
 DIAGNOSIS = Path(__file__).with_name("sample-diagnosis.json")  # by `wheelchair diagnose examples/sample-campaign --json`
-OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-           "--disable-background-networking", "--disable-component-update", "--disable-sync"]  # fmt: skip
+OPTIONS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 PATIENCE = 60_000  # ms; what takes long on a busy machine is no fault
 
 

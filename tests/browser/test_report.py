@@ -50,12 +50,15 @@ def test_ticking_the_hidden_effect_brings_the_held_out_bar_to_the_floor(reader):
     assert page.evaluate("report.now.heldout") == pytest.approx(before["heldout"], rel=1e-9)
 
 
-@pytest.mark.parametrize(("step", "model", "more"), [
-    ("nominal", 0, {}),
-    (f"+{HIDDEN}", 0, {}),
-    ("calibrated", 0, {"effect.push_force_delay.tau": 0.013, "offset.yaw_rate": 0.02}),
-    ("calibrated", 1, {"effect.relaxation_length.sigma": 0.08, "effect.trunk_motion.amplitude": 0.01}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("step", "model", "more"),
+    [
+        ("nominal", 0, {}),
+        (f"+{HIDDEN}", 0, {}),
+        ("calibrated", 0, {"effect.push_force_delay.tau": 0.013, "offset.yaw_rate": 0.02}),
+        ("calibrated", 1, {"effect.relaxation_length.sigma": 0.08, "effect.trunk_motion.amplitude": 0.01}),
+    ],
+)
 def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
     """The same start, weights and errors as `Bench`, which `wheelchair compare` whitens with."""
     values = {**MODELS[step], **more}
@@ -94,11 +97,14 @@ def test_the_simulation_is_pythons(reader, campaign, model, tolerance, grid, bou
     brought = [{}, {"effect.relaxation_length.sigma": 0.1}, {"effect.caster_inertia.I": 0.005}][model]
     values = {"tyre.C_lambda": 4500.0, "effect.scrub_torque.M": 0.3, "start.u": 0.8, **brought}
     run = campaign.runs[-1]
-    page = reader.page.evaluate("""async ({values, tolerance, grid}) => {
+    page = reader.page.evaluate(
+        """async ({values, tolerance, grid}) => {
         const {time, inputs} = report.campaign.runs.at(-1);
         const {outputs, y} = await report.pool.trace({values, time, inputs, tolerance, grid});
         return {outputs, y: [...y]};
-    }""", {"values": values, "tolerance": tolerance, "grid": grid})  # fmt: skip
+    }""",
+        {"values": values, "tolerance": tolerance, "grid": grid},
+    )
     p = simulator.variant.vector({**campaign.known, **values})
     there = simulator.run(run.time, simulator.inputs(len(run.time), run.inputs), p, tolerance=tolerance, grid=grid)
     assert tuple(page["outputs"]) == there.names
@@ -127,8 +133,10 @@ def test_dragging_follows_at_once(reader):
     one, every = median(t["one"] for t in timings), median(t["all"] for t in timings)
     paint = page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
     exact = page.evaluate("report.timings.filter(t => t.exact).at(-1).all")
-    print(f"\nfirst paint {paint:.0f} ms; one run {one:.0f} ms, ten runs {every:.0f} ms (median of {len(timings)}); "
-          f"exact, ten runs {exact:.0f} ms")  # fmt: skip
+    print(
+        f"\nfirst paint {paint:.0f} ms; one run {one:.0f} ms, ten runs {every:.0f} ms (median of {len(timings)}); "
+        f"exact, ten runs {exact:.0f} ms"
+    )
     assert errors[-1] > errors[0] + 0.1  # away from the truth, the error grows
     assert len(timings) > 3
     assert paint < 1000
@@ -199,7 +207,9 @@ def test_each_model_is_small_and_simulates_in_no_time(reader):
     """What a run of 20 s at 100 Hz takes is printed with -s: the fastest of nine."""
     sizes = reader.page.evaluate("report.campaign.models.map(m => atob(m.wasm).length)")
     brought = [{}, {"effect.relaxation_length.sigma": 0.1}, {"effect.caster_inertia.I": 0.005}]
-    times = [reader.page.evaluate("""async (values) => {
+    times = [
+        reader.page.evaluate(
+            """async (values) => {
         const {inputs} = report.campaign.runs.at(-1), n = 2001, time = Float64Array.from({length: n}, (_, i) => i / 100);
         const longer = Object.fromEntries(Object.entries(inputs).map(([k, v]) => [k, time.map((_, i) => v[i % v.length])]));
         let least = Infinity;
@@ -208,7 +218,11 @@ def test_each_model_is_small_and_simulates_in_no_time(reader):
             least = Math.min(least, ms);
         }
         return least;
-    }""", {"start.u": 0.8, **values}) for values in brought]  # fmt: skip
+    }""",
+            {"start.u": 0.8, **values},
+        )
+        for values in brought
+    ]
     print("\nWebAssembly: " + ", ".join(f"{b} bytes and {ms:.1f} ms" for b, ms in zip(sizes, times, strict=True)))
     assert max(sizes) <= 100_000
 

@@ -52,8 +52,11 @@ def recordings() -> list[Path]:
 
 
 def done(page: Any, kind: str) -> None:
-    page.wait_for_function("kind => (({job}) => job?.kind === kind && job.state !== 'running')(window.workbench?.state ?? {})",
-                           arg=kind, timeout=LONG)  # fmt: skip
+    page.wait_for_function(
+        "kind => (({job}) => job?.kind === kind && job.state !== 'running')(window.workbench?.state ?? {})",
+        arg=kind,
+        timeout=LONG,
+    )
     assert page.evaluate("workbench.state.job.state") == "done", page.inner_text("#job")
 
 

@@ -48,8 +48,10 @@ def local(path: Path, frame: pd.DataFrame) -> None:
     moments = [START + timedelta(seconds=t) for t in frame.iloc[:, 0]]
     head = ";".join(["Datum", "Uhrzeit", *frame.columns[1:], "Bemerkung"])
     numbers = [";".join(row[1:]).replace(".", ",") for row in cells(frame)]
-    rows = [f"{m:%d.%m.%Y};{m:%H:%M:%S,%f};{row};{'gut' if i % 2 else ''}"
-            for i, (m, row) in enumerate(zip(moments, numbers, strict=True))]  # fmt: skip
+    rows = [
+        f"{m:%d.%m.%Y};{m:%H:%M:%S,%f};{row};{'gut' if i % 2 else ''}"
+        for i, (m, row) in enumerate(zip(moments, numbers, strict=True))
+    ]
     path.write_bytes("\n".join([head, *rows]).encode("utf-8-sig"))
 
 
@@ -95,8 +97,12 @@ def mat_5(path: Path, frame: pd.DataFrame) -> None:
     """A structure with time, data, names and units."""
     import scipy.io
 
-    rec = {"time": frame.iloc[:, [0]].to_numpy(), "data": frame.iloc[:, 1:].to_numpy(),
-           "names": np.array(names(frame)[1:], dtype=object), "units": np.array(units(frame)[1:], dtype=object)}  # fmt: skip
+    rec = {
+        "time": frame.iloc[:, [0]].to_numpy(),
+        "data": frame.iloc[:, 1:].to_numpy(),
+        "names": np.array(names(frame)[1:], dtype=object),
+        "units": np.array(units(frame)[1:], dtype=object),
+    }
     scipy.io.savemat(path, {"rec": rec})
 
 
@@ -119,25 +125,40 @@ def mf4(path: Path, frame: pd.DataFrame) -> None:
 
     time = frame.iloc[:, 0].to_numpy()
     with MDF() as mdf:
-        mdf.append([Signal(frame.iloc[:, i].to_numpy(), time, name=names(frame)[i], unit=units(frame)[i])
-                    for i in range(1, frame.shape[1])])  # fmt: skip
+        mdf.append(
+            [
+                Signal(frame.iloc[:, i].to_numpy(), time, name=names(frame)[i], unit=units(frame)[i])
+                for i in range(1, frame.shape[1])
+            ]
+        )
         mdf.save(path, overwrite=True)
 
 
 WRITERS = {
-    "german.csv": german, "utf16.txt": utf16, "iso.csv": iso, "local.csv": local, "midnight.csv": midnight,
-    "a.parquet": parquet, "a.xlsx": xlsx, "a.ods": ods, "v5.mat": mat_5, "v73.mat": mat_73, "a.mf4": mf4,
-}  # fmt: skip
+    "german.csv": german,
+    "utf16.txt": utf16,
+    "iso.csv": iso,
+    "local.csv": local,
+    "midnight.csv": midnight,
+    "a.parquet": parquet,
+    "a.xlsx": xlsx,
+    "a.ods": ods,
+    "v5.mat": mat_5,
+    "v73.mat": mat_73,
+    "a.mf4": mf4,
+}
 
 
 def trc(path: Path, rate: float, markers: dict[str, np.ndarray]) -> None:
     """Markers (n, 3) in mm by name, NaN where hidden."""
     n = len(next(iter(markers.values())))
-    lines = ["PathFileType\t4\t(X/Y/Z)\trun.trc",
-             "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
-             f"{rate:g}\t{rate:g}\t{n}\t{len(markers)}\tmm\t{rate:g}\t1\t{n}",
-             "Frame#\tTime\t" + "\t\t\t".join(markers) + "\t\t",
-             "\t\t" + "\t".join(f"{axis}{k + 1}" for k in range(len(markers)) for axis in "XYZ")]  # fmt: skip
+    lines = [
+        "PathFileType\t4\t(X/Y/Z)\trun.trc",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"{rate:g}\t{rate:g}\t{n}\t{len(markers)}\tmm\t{rate:g}\t1\t{n}",
+        "Frame#\tTime\t" + "\t\t\t".join(markers) + "\t\t",
+        "\t\t" + "\t".join(f"{axis}{k + 1}" for k in range(len(markers)) for axis in "XYZ"),
+    ]
     for i in range(n):
         values = np.concatenate([marker[i] for marker in markers.values()])
         lines.append("\t".join([str(i + 1), f"{i / rate:.4f}", *("" if np.isnan(v) else f"{v:.3f}" for v in values)]))
@@ -157,8 +178,13 @@ def c3d(path: Path, rate: float, markers: dict[str, np.ndarray]) -> None:
 
 
 def optipush(path: Path, torque: np.ndarray, angle: np.ndarray) -> None:
-    head = ["%  Name/ID : S01 ", "%  Wheel Size :24 in/540mm", "% Comment : ", "%%%%%",
-            "%Time(s) \tPush Start \tPush End \tFx \tFy \tFz \tTx \tTy \tTz \tAngle "]  # fmt: skip
+    head = [
+        "%  Name/ID : S01 ",
+        "%  Wheel Size :24 in/540mm",
+        "% Comment : ",
+        "%%%%%",
+        "%Time(s) \tPush Start \tPush End \tFx \tFy \tFz \tTx \tTy \tTz \tAngle ",
+    ]
     rows = [
         f"{i / 200:.3f}\t0\t0\t1.5\t-0.5\t0.1\t0.0\t0.1\t{m:.5f}\t{a:.4f}"
         for i, (m, a) in enumerate(zip(torque, angle, strict=True))

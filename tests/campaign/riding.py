@@ -41,5 +41,13 @@ def ride(rng: np.random.Generator, seconds: float, until: float = np.inf) -> dic
         drag = 10 * np.tanh(u[i] / 0.02) + 6 * u[i]
         u[i + 1] = u[i] + STEP * (left[i] + right[i] - drag) / MASS
         r[i + 1] = r[i] + STEP * (TRACK / 2 * (left[i] - right[i]) - 8 * r[i] - MASS * AHEAD * u[i] * r[i]) / INERTIA
-    return {"t": t, "F_rl": left, "F_rr": right, "u": u, "yaw_rate": r, "wheel_speed_l": u + TRACK / 2 * r,
-            "wheel_speed_r": u - TRACK / 2 * r, "a_x": np.gradient(u, t)}  # fmt: skip
+    return {
+        "t": t,
+        "F_rl": left,
+        "F_rr": right,
+        "u": u,
+        "yaw_rate": r,
+        "wheel_speed_l": u + TRACK / 2 * r,
+        "wheel_speed_r": u - TRACK / 2 * r,
+        "a_x": np.gradient(u, t),
+    }

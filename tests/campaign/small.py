@@ -4,15 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-SI = (
-    "time [s]",
-    "F_rl [N]",
-    "F_rr [N]",
-    "wheel_speed_l [m/s]",
-    "wheel_speed_r [m/s]",
-    "yaw_rate [rad/s]",
-    "a_y [m/s2]",
-)
+SI = ("time [s]", "F_rl [N]", "F_rr [N]", "wheel_speed_l [m/s]", "wheel_speed_r [m/s]", "yaw_rate [rad/s]", "a_y [m/s2]")
 HEAD = '[campaign]\nname = "small"\naxes = "SAE-J670"\n[chair]\nm = 80.0\n'
 NOISE = "[noise]\nF_rl = 0.4\nF_rr = 0.4\nwheel_speed_l = 0.01\nwheel_speed_r = 0.01\nyaw_rate = 0.006\na_y = 0.05\n"
 RUNS = (

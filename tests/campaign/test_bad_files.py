@@ -38,19 +38,28 @@ def zipped(name: str = "a.csv") -> bytes:
 
 BINARIES = [
     ("a.csv", zipped(), "the file is a ZIP archive, not a recording; unpack it and name the file that it holds"),
-    ("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
-     "the file is an OLE2 file, such as an old .xls workbook, not a recording; save it as .xlsx or CSV"),
+    (
+        "a.xls",
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
+        "the file is an OLE2 file, such as an old .xls workbook, not a recording; save it as .xlsx or CSV",
+    ),
     ("a.csv", b"\x89PNG\r\n\x1a\n" + bytes(600), "the file is a PNG picture, not a recording; name the recording instead"),
-    ("a.csv", b"\x89HDF\r\n\x1a\n" + bytes(600), 'the file is an HDF5 file, not a recording; if MATLAB wrote it, '
-     'write format = "mat"; ' "else export it as CSV"),
-    ("a.csv", gzip.compress(CSV.encode()),
-     "the file is compressed by gzip, not a recording; let its name end in .gz, as in run.csv.gz"),
+    (
+        "a.csv",
+        b"\x89HDF\r\n\x1a\n" + bytes(600),
+        'the file is an HDF5 file, not a recording; if MATLAB wrote it, write format = "mat"; else export it as CSV',
+    ),
+    (
+        "a.csv",
+        gzip.compress(CSV.encode()),
+        "the file is compressed by gzip, not a recording; let its name end in .gz, as in run.csv.gz",
+    ),
     ("a.dat", b"%PDF-1.7\n" + bytes(600), "the file is a PDF document, not a recording; export the numbers as CSV"),
     ("a.csv", bytes(range(256)) * 4, "the file is binary, of no kind that is known; export it as CSV, or name its format"),
     ("a.csv", b"", "the file is empty; export it again, or leave it out"),
     ("a.trc", b"", "the file is empty; export it again, or leave it out"),
     ("a.parquet", b"", "the file is empty; export it again, or leave it out"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("name", "content", "sentence"), BINARIES, ids=[f"{n}-{s[12:30]}" for n, _, s in BINARIES])
@@ -100,9 +109,11 @@ def test_separators_of_thousands(tmp_path):
     assert text(tmp_path, "time [s];F [N]\n0,0;1.234,5\n0,1;1.230,5\n") == [
         "run a.csv line 2: '1.234,5' has a separator of thousands; export the numbers without one"
     ]
-    table, _ = open_recording(tmp_path / "a.csv", "a.csv", {}) if text(
-        tmp_path, "time [s];F [N]\n" + "".join(f"0,{i:03d};12,5\n" for i in range(30)) + "0,031;1.234\n"
-    ) == [] else (None, [])  # fmt: skip
+    table, _ = (
+        open_recording(tmp_path / "a.csv", "a.csv", {})
+        if text(tmp_path, "time [s];F [N]\n" + "".join(f"0,{i:03d};12,5\n" for i in range(30)) + "0,031;1.234\n") == []
+        else (None, [])
+    )
     assert str(table.rows([1]).faults[0]).startswith("run a.csv line 32 column 'F [N]': '1.234' is not a number")
 
 
@@ -129,9 +140,12 @@ def test_dates_that_may_be_read_in_two_ways(tmp_path):
 
 
 TIMES = [
-    ("time", 1.7e9, 1.0, "s since 1970"), ("timestamp", 1.7e12, 1e3, "ms since 1970"), ("t", 1.7e15, 1e6, "µs since 1970"),
-    ("time", 1.7e18, 1e9, "ns since 1970"), ("Zeit", 46349.5, 1 / 86400, "days of a spreadsheet"),
-]  # fmt: skip
+    ("time", 1.7e9, 1.0, "s since 1970"),
+    ("timestamp", 1.7e12, 1e3, "ms since 1970"),
+    ("t", 1.7e15, 1e6, "µs since 1970"),
+    ("time", 1.7e18, 1e9, "ns since 1970"),
+    ("Zeit", 46349.5, 1 / 86400, "days of a spreadsheet"),
+]
 
 
 @pytest.mark.parametrize(("name", "start", "scale", "note"), TIMES)
@@ -317,12 +331,18 @@ def test_a_user_adds_a_format_and_a_broken_one_is_a_sentence(tmp_path, monkeypat
 
 LAB = {
     "lab-00": {"run01.trc": ("RHUB.x [mm]", "mm"), "run01_SWL.csv": ("Mz [N.m]", "N.m")},
-    "lab-01": {"run01_optipush_right.txt": ("Tz", "N.m"), "run01_smartwheel_left.csv": ("angle [deg]", "deg"),
-               "run01_frame_sensors.csv": ("Gyroscope Z (deg/s)", "deg/s"),
-               "run01_left_sensors.csv": ("Accelerometer X (g)", "g")},
-    "lab-02": {"m01.xlsx": ("v links [km/h]", "km/h"), "m01_Moment.csv": ("Antriebsmoment links [N·m]", "N·m"),
-               "m01_imu.mat": ("rec.data.omega_z", None)},
-}  # fmt: skip
+    "lab-01": {
+        "run01_optipush_right.txt": ("Tz", "N.m"),
+        "run01_smartwheel_left.csv": ("angle [deg]", "deg"),
+        "run01_frame_sensors.csv": ("Gyroscope Z (deg/s)", "deg/s"),
+        "run01_left_sensors.csv": ("Accelerometer X (g)", "g"),
+    },
+    "lab-02": {
+        "m01.xlsx": ("v links [km/h]", "km/h"),
+        "m01_Moment.csv": ("Antriebsmoment links [N·m]", "N·m"),
+        "m01_imu.mat": ("rec.data.omega_z", None),
+    },
+}
 
 
 @pytest.mark.parametrize("lab", LAB)

@@ -24,9 +24,11 @@ def recorded(rng, truth, device, quantities, rate, start, seconds=10.0, a=0.0, d
 def test_the_offset_is_what_is_added_to_a_devices_time_to_get_the_references():
     rng = np.random.default_rng(1)
     truth = ride(rng, 12)
-    signals = [*recorded(rng, truth, "frame", ["u", "yaw_rate"], 150, 0.3),
-               *recorded(rng, truth, "left", ["wheel_speed_l"], 240, 0.9),
-               *recorded(rng, truth, "right", ["wheel_speed_r"], 100, -0.2)]  # fmt: skip
+    signals = [
+        *recorded(rng, truth, "frame", ["u", "yaw_rate"], 150, 0.3),
+        *recorded(rng, truth, "left", ["wheel_speed_l"], 240, 0.9),
+        *recorded(rng, truth, "right", ["wheel_speed_r"], 100, -0.2),
+    ]
     clocks = offsets(signals)
     for name, offset in (("left", 0.6), ("right", -0.5)):
         assert clocks[name].sure, clocks[name].why
@@ -105,8 +107,12 @@ def test_a_wrong_sign_a_wrong_unit_and_the_other_wheel_show_in_gain_and_correlat
 def test_pushes_and_motion_tell_each_others_clock():
     rng = np.random.default_rng(6)
     truth = ride(rng, 12)
-    clocks = offsets([*recorded(rng, truth, "wheels", ["wheel_speed_l", "wheel_speed_r"], 100, 0.0),
-                      *recorded(rng, truth, "amplifier", ["F_rl", "F_rr"], 200, -0.25)])  # fmt: skip
+    clocks = offsets(
+        [
+            *recorded(rng, truth, "wheels", ["wheel_speed_l", "wheel_speed_r"], 100, 0.0),
+            *recorded(rng, truth, "amplifier", ["F_rl", "F_rr"], 200, -0.25),
+        ]
+    )
     assert clocks["amplifier"].sure and clocks["amplifier"].offset == pytest.approx(-0.25, abs=0.02)
 
 

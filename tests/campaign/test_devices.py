@@ -54,8 +54,15 @@ def moved(t: np.ndarray) -> dict[str, np.ndarray]:
     yaw = 0.2 * np.sin(2 * t)
     forward, right = np.stack([np.cos(yaw), np.sin(yaw)]), np.stack([-np.sin(yaw), np.cos(yaw)])
     axle = np.stack([t, 0.1 * np.sin(2 * t)])
-    return {"yaw": yaw, "yaw_rate": 0.4 * np.cos(2 * t), "push": 10 + 5 * np.sin(3 * t), "turned": t / 0.3 + 5.0,
-            "left": axle - 0.3 * right, "right": axle + 0.3 * right, "cm": axle + 0.1 * forward}  # fmt: skip
+    return {
+        "yaw": yaw,
+        "yaw_rate": 0.4 * np.cos(2 * t),
+        "push": 10 + 5 * np.sin(3 * t),
+        "turned": t / 0.3 + 5.0,
+        "left": axle - 0.3 * right,
+        "right": axle + 0.3 * right,
+        "cm": axle + 0.1 * forward,
+    }
 
 
 @pytest.fixture
@@ -69,15 +76,24 @@ def lab(tmp_path):
 
     rims, imu, seen = at["rims"], at["imu"], at["cameras"]
     tables = {
-        "one_rims.csv": {"time [s]": time["rims"], "torque left": 0.3 * rims["push"] + noise("rims", 0.1),
-                         "torque right": 0.3 * rims["push"] + noise("rims", 0.1),
-                         "angle": (np.degrees(rims["turned"]) + noise("rims", 0.02)) % 360},
-        "one_imu.csv": {"time [s]": time["imu"], "gyro z": -np.degrees(imu["yaw_rate"]) + noise("imu", 0.3),
-                        "acc": -0.01 * imu["push"] + noise("imu", 0.01)},
+        "one_rims.csv": {
+            "time [s]": time["rims"],
+            "torque left": 0.3 * rims["push"] + noise("rims", 0.1),
+            "torque right": 0.3 * rims["push"] + noise("rims", 0.1),
+            "angle": (np.degrees(rims["turned"]) + noise("rims", 0.02)) % 360,
+        },
+        "one_imu.csv": {
+            "time [s]": time["imu"],
+            "gyro z": -np.degrees(imu["yaw_rate"]) + noise("imu", 0.3),
+            "acc": -0.01 * imu["push"] + noise("imu", 0.01),
+        },
         "one_markers.csv": {"time [s]": time["cameras"]}
-        | {f"{marker}.{axis} [mm]": 1000 * sign * seen[side][i] + noise("cameras", 0.5)
-           for marker, side in (("LHUB", "left"), ("RHUB", "right")) for axis, sign, i in (("z", 1, 0), ("x", -1, 1))},
-    }  # fmt: skip
+        | {
+            f"{marker}.{axis} [mm]": 1000 * sign * seen[side][i] + noise("cameras", 0.5)
+            for marker, side in (("LHUB", "left"), ("RHUB", "right"))
+            for axis, sign, i in (("z", 1, 0), ("x", -1, 1))
+        },
+    }
     for name, columns in tables.items():
         pd.DataFrame(columns).to_csv(tmp_path / name, index=False)
     (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
@@ -134,21 +150,27 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
     assert np.nanmean(speed) == pytest.approx(1, abs=1e-3)
 
 
-@pytest.mark.parametrize(("old", "new", "expected"), [
-    ('device = "imu"\n', 'device = "gyro"\n', "run 1: no device 'imu'; did you mean 'rims'?"),
-    ('device = "imu"\n', 'device = "rims"\n', "recording 2 describes the device 'rims' again, as recording 1 does"),
-    ('device = "imu"\n', "", "recording 2 has no device; add device = \"...\""),
-    ('imu = "one_imu.csv"', 'imu = "imu.csv"', "run 1: no such file as 'imu.csv' of imu; did you mean 'one_imu.csv' or"),
-    ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give a point"),
-    ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
-    ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
-    ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
-    ('"LHUB"', '"LHIP"', "no column 'LHIP.z' for the marker axle_l"),
-    ("offset = 0.3", "offset = 30",
-     "imu recorded from 30 to 34.99 s, the pushes from 0 to 4.996 s: they have no time in common"),
-    ("columns.a_x", "columns.wheel_speed_l = \"acc\"\ncolumns.a_x", "wheel_speed_l comes from rims and imu"),
-    ("[[recording]]\ndevice = \"cameras\"", "[recordings]\n[[recording]]\ndevice = \"cameras\"", "no table 'recordings'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('device = "imu"\n', 'device = "gyro"\n', "run 1: no device 'imu'; did you mean 'rims'?"),
+        ('device = "imu"\n', 'device = "rims"\n', "recording 2 describes the device 'rims' again, as recording 1 does"),
+        ('device = "imu"\n', "", 'recording 2 has no device; add device = "..."'),
+        ('imu = "one_imu.csv"', 'imu = "imu.csv"', "run 1: no such file as 'imu.csv' of imu; did you mean 'one_imu.csv' or"),
+        ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give a point"),
+        ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
+        ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
+        ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
+        ('"LHUB"', '"LHIP"', "no column 'LHIP.z' for the marker axle_l"),
+        (
+            "offset = 0.3",
+            "offset = 30",
+            "imu recorded from 30 to 34.99 s, the pushes from 0 to 4.996 s: they have no time in common",
+        ),
+        ("columns.a_x", 'columns.wheel_speed_l = "acc"\ncolumns.a_x', "wheel_speed_l comes from rims and imu"),
+        ('[[recording]]\ndevice = "cameras"', '[recordings]\n[[recording]]\ndevice = "cameras"', "no table 'recordings'"),
+    ],
+)
 def test_faults(lab, old, new, expected):
     found = edited(lab, old, new)
     assert any(expected in fault for fault in found), found

@@ -46,9 +46,7 @@ def test_no_folder(tmp_path):
 
 
 def test_no_campaign_toml(tmp_path):
-    assert lines(tmp_path) == [
-        f"{tmp_path}: no campaign.toml in this folder; write one that names the chair and the runs"
-    ]
+    assert lines(tmp_path) == [f"{tmp_path}: no campaign.toml in this folder; write one that names the chair and the runs"]
 
 
 def test_syntax_error(campaign):
@@ -64,66 +62,122 @@ def test_toml_not_utf8(campaign):
 
 
 TOML_FAULTS = [
-    ("unknown table", lambda h, r: (h + "[tire]\nC = 1\n", r),
-     "line 6: no table 'tire' in a campaign; did you mean 'tyre'?"),
-    ("unknown key", lambda h, r: (h.replace("axes", "axis"), r),
-     "line 3: no key 'axis' in [campaign]; did you mean 'axes'?"),
-    ("unknown key of a run", lambda h, r: (h, r.replace("role", "rolle", 1)),
-     "line 16: run 1 (a.csv) has no key 'rolle'; did you mean 'role'?"),
-    ("no role", lambda h, r: (h, r.replace("role", "rolle", 1)),
-     """line 13: run 1 (a.csv) has no role; add role = "fit" or "holdout\""""),
-    ("bad role", lambda h, r: (h, r.replace('"holdout"', '"test"')),
-     """line 21: run 2 (b.csv) has the unknown role 'test'; use "fit" or "holdout\""""),
-    ("no fit run", lambda h, r: (h, r.replace('"fit"', '"holdout"')),
-     """no run has the role 'fit'; give role = "fit" to the runs to learn from"""),
-    ("missing file", lambda h, r: (h, r.replace("b.csv", "bb.csv")),
-     "line 19: run 2 (bb.csv): no such file; did you mean 'b.csv' or 'a.csv'?"),
-    ("wrong type", lambda h, r: (h, r.replace("u0 = 1.0", 'u0 = "one"', 1)),
-     "line 17: run 1 (a.csv) has u0 = 'one', which is no number; give a number"),
-    ("from after to", lambda h, r: (h, r + "from = 2.0\nto = 1.0\n"),
-     "line 23: run 2 (b.csv) is cut from 2 to 1 s, which is no time; make from smaller than to"),
-    ("bad axes", lambda h, r: (h.replace("SAE-J670", "ISO8855"), r),
-     """line 3: no axes 'ISO8855'; use "SAE-J670" (y right) or "ISO-8855" (y left)"""),
-    ("parameter that is no number", lambda h, r: (h.replace("80.0", '"heavy"'), r),
-     "line 5: chair.m = 'heavy' is not a finite number; give a number in SI units"),
-    ("unknown parameter", lambda h, r: (h + "mass = 80\n", r),
-     "line 6: no parameter 'chair.mass'; did you mean 'chair.m' or 'chair.I_z'?"),
-    ("negative mass", lambda h, r: (h.replace("80.0", "-80.0"), r),
-     "line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units"),
-    ("unknown set", lambda h, r: (h, r + 'set = { "chair.I_zz" = 3 }\n'),
-     "line 23: run 2 (b.csv): no parameter 'chair.I_zz'; did you mean 'chair.I_z' or 'chair.m'?"),
-    ("impossible set", lambda h, r: (h, r + 'set = { "chair.m" = 900 }\n'),
-     "line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; correct it; parameters are in SI units"),
-    ("unknown prior", lambda h, r: (h + "[prior]\nchair.I = 0.1\n", r),
-     "line 7: no parameter 'chair.I'; did you mean 'chair.I_z' or 'chair.m'?"),
-    ("prior not positive", lambda h, r: (h + "[prior]\nchair.m = 0\n", r),
-     "line 7: the prior of chair.m is 0; give a standard deviation above 0 in the unit of the parameter"),
-    ("unknown constant", lambda h, r: (h, r + "constant = { F_l = 0.0 }\n"),
-     "line 23: run 2 (b.csv): constant has no channel 'F_l'; did you mean 'F_rl' or 'M_rl' or 'F_rr'?"),
-    ("constant that is no number", lambda h, r: (h, r + "constant = { F_rl = true }\n"),
-     "line 23: run 2 (b.csv): constant F_rl: True is not a number; write a number in N"),
-    ("unknown channel in columns", lambda h, r: (h + '[columns]\nyaw_rat = "z"\n', r),
-     "line 7: [columns] has no channel 'yaw_rat'; did you mean 'yaw_rate' or 'yaw'?"),
-    ("renamed column that is not there", lambda h, r: (h + '[columns]\nu = "speed_l"\n', r),
-     "line 7: no run has the column 'speed_l' that [columns] gives for u; "
-     "did you mean 'wheel_speed_l [m/s]'?"),
-    ("radius not positive", lambda h, r: (h + '[columns]\nF_rl = { column = "F_rl [N]", radius = 0 }\n', r),
-     "line 7: [columns] F_rl: radius = 0; give a radius above 0, in m"),
-    ("unknown format", lambda h, r: (h, r + 'format = "cvs"\n'),
-     "line 23: run 2 (b.csv): no format 'cvs'; did you mean 'csv'?"),
-]  # fmt: skip
+    ("unknown table", lambda h, r: (h + "[tire]\nC = 1\n", r), "line 6: no table 'tire' in a campaign; did you mean 'tyre'?"),
+    ("unknown key", lambda h, r: (h.replace("axes", "axis"), r), "line 3: no key 'axis' in [campaign]; did you mean 'axes'?"),
+    (
+        "unknown key of a run",
+        lambda h, r: (h, r.replace("role", "rolle", 1)),
+        "line 16: run 1 (a.csv) has no key 'rolle'; did you mean 'role'?",
+    ),
+    (
+        "no role",
+        lambda h, r: (h, r.replace("role", "rolle", 1)),
+        """line 13: run 1 (a.csv) has no role; add role = "fit" or "holdout\"""",
+    ),
+    (
+        "bad role",
+        lambda h, r: (h, r.replace('"holdout"', '"test"')),
+        """line 21: run 2 (b.csv) has the unknown role 'test'; use "fit" or "holdout\"""",
+    ),
+    (
+        "no fit run",
+        lambda h, r: (h, r.replace('"fit"', '"holdout"')),
+        """no run has the role 'fit'; give role = "fit" to the runs to learn from""",
+    ),
+    (
+        "missing file",
+        lambda h, r: (h, r.replace("b.csv", "bb.csv")),
+        "line 19: run 2 (bb.csv): no such file; did you mean 'b.csv' or 'a.csv'?",
+    ),
+    (
+        "wrong type",
+        lambda h, r: (h, r.replace("u0 = 1.0", 'u0 = "one"', 1)),
+        "line 17: run 1 (a.csv) has u0 = 'one', which is no number; give a number",
+    ),
+    (
+        "from after to",
+        lambda h, r: (h, r + "from = 2.0\nto = 1.0\n"),
+        "line 23: run 2 (b.csv) is cut from 2 to 1 s, which is no time; make from smaller than to",
+    ),
+    (
+        "bad axes",
+        lambda h, r: (h.replace("SAE-J670", "ISO8855"), r),
+        """line 3: no axes 'ISO8855'; use "SAE-J670" (y right) or "ISO-8855" (y left)""",
+    ),
+    (
+        "parameter that is no number",
+        lambda h, r: (h.replace("80.0", '"heavy"'), r),
+        "line 5: chair.m = 'heavy' is not a finite number; give a number in SI units",
+    ),
+    (
+        "unknown parameter",
+        lambda h, r: (h + "mass = 80\n", r),
+        "line 6: no parameter 'chair.mass'; did you mean 'chair.m' or 'chair.I_z'?",
+    ),
+    (
+        "negative mass",
+        lambda h, r: (h.replace("80.0", "-80.0"), r),
+        "line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units",
+    ),
+    (
+        "unknown set",
+        lambda h, r: (h, r + 'set = { "chair.I_zz" = 3 }\n'),
+        "line 23: run 2 (b.csv): no parameter 'chair.I_zz'; did you mean 'chair.I_z' or 'chair.m'?",
+    ),
+    (
+        "impossible set",
+        lambda h, r: (h, r + 'set = { "chair.m" = 900 }\n'),
+        "line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; correct it; parameters are in SI units",
+    ),
+    (
+        "unknown prior",
+        lambda h, r: (h + "[prior]\nchair.I = 0.1\n", r),
+        "line 7: no parameter 'chair.I'; did you mean 'chair.I_z' or 'chair.m'?",
+    ),
+    (
+        "prior not positive",
+        lambda h, r: (h + "[prior]\nchair.m = 0\n", r),
+        "line 7: the prior of chair.m is 0; give a standard deviation above 0 in the unit of the parameter",
+    ),
+    (
+        "unknown constant",
+        lambda h, r: (h, r + "constant = { F_l = 0.0 }\n"),
+        "line 23: run 2 (b.csv): constant has no channel 'F_l'; did you mean 'F_rl' or 'M_rl' or 'F_rr'?",
+    ),
+    (
+        "constant that is no number",
+        lambda h, r: (h, r + "constant = { F_rl = true }\n"),
+        "line 23: run 2 (b.csv): constant F_rl: True is not a number; write a number in N",
+    ),
+    (
+        "unknown channel in columns",
+        lambda h, r: (h + '[columns]\nyaw_rat = "z"\n', r),
+        "line 7: [columns] has no channel 'yaw_rat'; did you mean 'yaw_rate' or 'yaw'?",
+    ),
+    (
+        "renamed column that is not there",
+        lambda h, r: (h + '[columns]\nu = "speed_l"\n', r),
+        "line 7: no run has the column 'speed_l' that [columns] gives for u; did you mean 'wheel_speed_l [m/s]'?",
+    ),
+    (
+        "radius not positive",
+        lambda h, r: (h + '[columns]\nF_rl = { column = "F_rl [N]", radius = 0 }\n', r),
+        "line 7: [columns] F_rl: radius = 0; give a radius above 0, in m",
+    ),
+    (
+        "unknown format",
+        lambda h, r: (h, r + 'format = "cvs"\n'),
+        "line 23: run 2 (b.csv): no format 'cvs'; did you mean 'csv'?",
+    ),
+]
 
 
 @pytest.mark.parametrize(("change", "line"), [case[1:] for case in TOML_FAULTS], ids=[case[0] for case in TOML_FAULTS])
 def test_faults_of_campaign_toml(campaign, change, line):
     head, runs = change(HEAD, RUNS)
     noise = NOISE if head == HEAD or len(head.split("\n")) == len(HEAD.split("\n")) else ""
-    found = [
-        s for s in lines(campaign(head=head, noise=noise, runs=runs), known_parameters=KNOWN) if "warning" not in s
-    ]
-    assert any(s in (f"campaign.toml {line}", f"campaign.toml: {line}") or s.endswith(": " + line) for s in found), (
-        found
-    )
+    found = [s for s in lines(campaign(head=head, noise=noise, runs=runs), known_parameters=KNOWN) if "warning" not in s]
+    assert any(s in (f"campaign.toml {line}", f"campaign.toml: {line}") or s.endswith(": " + line) for s in found), found
 
 
 def test_no_runs(campaign):
@@ -168,66 +222,117 @@ def test_held_out_samples_that_are_fitted_too(campaign):
         ("time [s]\n".encode("utf-16"), "run a.csv: the file has a header but no rows; export it again, or leave it out"),
         (bytes(range(256)), "run a.csv: the file is binary, of no kind that is known; export it as CSV, or name its format"),
     ],
-)  # fmt: skip
+)
 def test_files_that_are_no_tables(campaign, content, line):
     assert lines(campaign(files={"a.csv": content})) == [line]
 
 
 CELL_FAULTS = [
-    ("text", put(5, 6, "n/a"),
-     "run a.csv line 6 column 'a_y [m/s2]': 'n/a' is not a number; write a number, or leave the cell empty for a gap"),
-    ("infinite", put(5, 6, "-inf"),
-     "run a.csv line 6 column 'a_y [m/s2]': the value is infinite; leave the cell empty where the sensor gave nothing"),
-    ("time goes back", put(100, 0, "0.95"),
-     "run a.csv line 101: time goes back from 0.98 to 0.95 s; remove or sort the rows"),
+    (
+        "text",
+        put(5, 6, "n/a"),
+        "run a.csv line 6 column 'a_y [m/s2]': 'n/a' is not a number; write a number, or leave the cell empty for a gap",
+    ),
+    (
+        "infinite",
+        put(5, 6, "-inf"),
+        "run a.csv line 6 column 'a_y [m/s2]': the value is infinite; leave the cell empty where the sensor gave nothing",
+    ),
+    ("time goes back", put(100, 0, "0.95"), "run a.csv line 101: time goes back from 0.98 to 0.95 s; remove or sort the rows"),
     ("time twice", put(100, 0, "0.98"), "run a.csv line 101: time 0.98 s is there twice; remove one of the rows"),
     ("time empty", put(100, 0, ""), "run a.csv line 101: the time is empty; fill it in, or remove the row"),
-    ("unknown unit", put(0, 5, "yaw_rate [rad/sek]"),
-     "run a.csv line 1 column 'yaw_rate [rad/sek]': unit 'rad/sek' is unknown; "
-     "write it as, for example, rad/s or deg/s"),
-    ("wrong dimension", put(0, 1, "F_rl [kg]"),
-     "run a.csv line 1 column 'F_rl [kg]': unit 'kg' measures a mass, but 'N' is needed, which measures a force; "
-     "give a unit such as N or lbf"),
-    ("torque without a radius", put(0, 1, "F_rl [N.m]"),
-     "run a.csv line 1 column 'F_rl [N.m]': F_rl is given in N.m, which needs the wheel's radius to become N; "
-     "write [columns] F_rl = { column = ..., radius = ... } or [wheel] R, in m"),
-    ("duplicate header", put(0, 6, "yaw_rate [rad/s]"),
-     "run a.csv line 1: the header 'yaw_rate [rad/s]' stands there 2 times; rename or remove all but one"),
-    ("ambiguous", put(0, 6, "yaw_rate [deg/s]"),
-     "run a.csv line 1: yaw_rate could be 'yaw_rate [rad/s]' and 'yaw_rate [deg/s]'; "
-     "remove one, or choose one by its whole header in [columns] yaw_rate"),
-    ("no time", put(0, 0, "moment [s]"),
-     "run a.csv line 1: no time column among 'moment [s]', 'F_rl [N]', 'F_rr [N]', 'wheel_speed_l [m/s]', "
-     "'wheel_speed_r [m/s]', 'yaw_rate [rad/s]', 'a_y [m/s2]'; "
-     "name it 'time [s]', or give its header in [columns] time"),
-    ("no push", put(0, 1, "left [N]"),
-     "run a.csv line 1: no push force F_rl; add a column 'F_rl [N]', name it in [columns], "
-     "or write constant = { F_rl = 0.0 } in the run"),
-    ("input gap at the end", put(200, 1, ""),
-     "run a.csv line 201 column 'F_rl [N]': F_rl is missing at the end of the run; "
-     "fill it in, or cut the run by from and to"),
-    ("row too long", lambda cells: cells[7].append("3"),
-     "run a.csv line 8: 8 cells, but the header has 7; write one cell for each column"),
-    ("row too short", lambda cells: cells[7].pop(),
-     "run a.csv line 8: 6 cells, but the header has 7; write one cell for each column"),
-    ("unused column", put(0, 6, "temperature [degC]"),
-     "warning: run a.csv line 1: column 'temperature [degC]' not used; "
-     "name them in [columns] if they measure something"),
-    ("no unit", put(0, 6, "a_y"),
-     "warning: run a.csv line 1 column 'a_y': no unit given, m/s2 assumed; write the header as 'a_y [m/s2]'"),
-    ("implausible push", put(9, 2, "2500"),
-     "warning: run a.csv line 10 column 'F_rr [N]': F_rr reaches 2500 N, above any plausible 2000 N; "
-     "check its unit (is it lbf or N.m?)"),
-    ("implausible speed", put_twice(9, 3, "-16"),
-     "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reaches -16 m/s, "
-     "below any plausible -15 m/s; check its unit (is it km/h?)"),
-    ("implausible yaw rate", put_twice(9, 5, "57.3"),
-     "warning: run a.csv line 10 column 'yaw_rate [rad/s]': yaw_rate reaches 57.3 rad/s, "
-     "above any plausible 20 rad/s; check its unit (is it deg/s?)"),
-    ("a reading that stands alone", put(9, 3, "-16"),
-     "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reads -16 m/s at 0.08 s, alone between "
-     "readings that agree, and is left out there; check the sensor and its cable; no chair moves so"),
-]  # fmt: skip
+    (
+        "unknown unit",
+        put(0, 5, "yaw_rate [rad/sek]"),
+        "run a.csv line 1 column 'yaw_rate [rad/sek]': unit 'rad/sek' is unknown; write it as, for example, rad/s or deg/s",
+    ),
+    (
+        "wrong dimension",
+        put(0, 1, "F_rl [kg]"),
+        "run a.csv line 1 column 'F_rl [kg]': unit 'kg' measures a mass, but 'N' is needed, which measures a force; "
+        "give a unit such as N or lbf",
+    ),
+    (
+        "torque without a radius",
+        put(0, 1, "F_rl [N.m]"),
+        "run a.csv line 1 column 'F_rl [N.m]': F_rl is given in N.m, which needs the wheel's radius to become N; "
+        "write [columns] F_rl = { column = ..., radius = ... } or [wheel] R, in m",
+    ),
+    (
+        "duplicate header",
+        put(0, 6, "yaw_rate [rad/s]"),
+        "run a.csv line 1: the header 'yaw_rate [rad/s]' stands there 2 times; rename or remove all but one",
+    ),
+    (
+        "ambiguous",
+        put(0, 6, "yaw_rate [deg/s]"),
+        "run a.csv line 1: yaw_rate could be 'yaw_rate [rad/s]' and 'yaw_rate [deg/s]'; "
+        "remove one, or choose one by its whole header in [columns] yaw_rate",
+    ),
+    (
+        "no time",
+        put(0, 0, "moment [s]"),
+        "run a.csv line 1: no time column among 'moment [s]', 'F_rl [N]', 'F_rr [N]', 'wheel_speed_l [m/s]', "
+        "'wheel_speed_r [m/s]', 'yaw_rate [rad/s]', 'a_y [m/s2]'; "
+        "name it 'time [s]', or give its header in [columns] time",
+    ),
+    (
+        "no push",
+        put(0, 1, "left [N]"),
+        "run a.csv line 1: no push force F_rl; add a column 'F_rl [N]', name it in [columns], "
+        "or write constant = { F_rl = 0.0 } in the run",
+    ),
+    (
+        "input gap at the end",
+        put(200, 1, ""),
+        "run a.csv line 201 column 'F_rl [N]': F_rl is missing at the end of the run; "
+        "fill it in, or cut the run by from and to",
+    ),
+    (
+        "row too long",
+        lambda cells: cells[7].append("3"),
+        "run a.csv line 8: 8 cells, but the header has 7; write one cell for each column",
+    ),
+    (
+        "row too short",
+        lambda cells: cells[7].pop(),
+        "run a.csv line 8: 6 cells, but the header has 7; write one cell for each column",
+    ),
+    (
+        "unused column",
+        put(0, 6, "temperature [degC]"),
+        "warning: run a.csv line 1: column 'temperature [degC]' not used; name them in [columns] if they measure something",
+    ),
+    (
+        "no unit",
+        put(0, 6, "a_y"),
+        "warning: run a.csv line 1 column 'a_y': no unit given, m/s2 assumed; write the header as 'a_y [m/s2]'",
+    ),
+    (
+        "implausible push",
+        put(9, 2, "2500"),
+        "warning: run a.csv line 10 column 'F_rr [N]': F_rr reaches 2500 N, above any plausible 2000 N; "
+        "check its unit (is it lbf or N.m?)",
+    ),
+    (
+        "implausible speed",
+        put_twice(9, 3, "-16"),
+        "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reaches -16 m/s, "
+        "below any plausible -15 m/s; check its unit (is it km/h?)",
+    ),
+    (
+        "implausible yaw rate",
+        put_twice(9, 5, "57.3"),
+        "warning: run a.csv line 10 column 'yaw_rate [rad/s]': yaw_rate reaches 57.3 rad/s, "
+        "above any plausible 20 rad/s; check its unit (is it deg/s?)",
+    ),
+    (
+        "a reading that stands alone",
+        put(9, 3, "-16"),
+        "warning: run a.csv line 10 column 'wheel_speed_l [m/s]': wheel_speed_l reads -16 m/s at 0.08 s, alone between "
+        "readings that agree, and is left out there; check the sensor and its cable; no chair moves so",
+    ),
+]
 
 
 @pytest.mark.parametrize(("change", "line"), [case[1:] for case in CELL_FAULTS], ids=[case[0] for case in CELL_FAULTS])
@@ -264,8 +369,11 @@ def test_stuck_and_empty_channels(campaign):
 def test_uneven_and_coarse_sampling(campaign):
     data = motion()
     coarse = data[::10].copy()
-    found = lines(campaign(files={"a.csv": csv_text(SI, rows(np.delete(data, [50, 51, 52], axis=0))),
-                                  "b.csv": csv_text(SI, rows(coarse))}))  # fmt: skip
+    found = lines(
+        campaign(
+            files={"a.csv": csv_text(SI, rows(np.delete(data, [50, 51, 52], axis=0))), "b.csv": csv_text(SI, rows(coarse))}
+        )
+    )
     assert found[:2] == [
         "warning: run a.csv line 52 column 'time [s]': 1 time step far from the usual 0.01 s; "
         "the largest is 0.04 s after 0.49 s; check the logger for lost samples",
@@ -276,8 +384,7 @@ def test_uneven_and_coarse_sampling(campaign):
 
 def test_cut_that_leaves_too_little(campaign):
     assert lines(campaign(runs=RUNS + "from = 1.95\n")) == [
-        "run b.csv: the cut from 1.95 s leaves 5 samples, at least 10 are needed; widen it; "
-        "the file runs from 0 to 1.99 s"
+        "run b.csv: the cut from 1.95 s leaves 5 samples, at least 10 are needed; widen it; the file runs from 0 to 1.99 s"
     ]
 
 
@@ -313,8 +420,7 @@ def test_a_flood_is_counted(campaign):
 
     found = data_fault(campaign, change)
     assert found[10] == (
-        "run a.csv line 12 column 'a_y [m/s2]': 190 more cells like these; "
-        "write a number, or leave the cell empty for a gap"
+        "run a.csv line 12 column 'a_y [m/s2]': 190 more cells like these; write a number, or leave the cell empty for a gap"
     )
 
 
@@ -322,9 +428,7 @@ def test_text_in_an_unused_column_is_nobodys_business(campaign):
     cells = [[*row, 'said "stop", then left' if i else "remark"] for i, row in enumerate([list(SI), *rows(motion())])]
     quoted = [[*row[:-1], '"' + row[-1].replace('"', '""') + '"'] for row in cells]
     found = lines(campaign(files={"a.csv": "\n".join(",".join(row) for row in quoted)}))
-    assert found == [
-        "warning: run a.csv line 1: column 'remark' not used; name them in [columns] if they measure something"
-    ]
+    assert found == ["warning: run a.csv line 1: column 'remark' not used; name them in [columns] if they measure something"]
 
 
 def test_a_file_used_twice_reports_its_faults_once(campaign):
@@ -349,10 +453,7 @@ def test_ten_faults_at_once_give_ten_lines(campaign):
     head = HEAD.replace("m = 80.0", "m = -80.0\nI_x = 3.0")  # 8, 9
     runs = RUNS + '[[run]]\nfile = "c.csv"\nmanoeuvre = "x"\nrole = "fit"\n'  # 10
     folder = campaign(
-        head=head,
-        noise=NOISE,
-        runs=runs,
-        files={n: "\n".join(map(",".join, c)) for n, c in (("a.csv", a), ("b.csv", b))},
+        head=head, noise=NOISE, runs=runs, files={n: "\n".join(map(",".join, c)) for n, c in (("a.csv", a), ("b.csv", b))}
     )
     with pytest.raises(CampaignError) as caught:
         read(folder, KNOWN)
@@ -360,19 +461,17 @@ def test_ten_faults_at_once_give_ten_lines(campaign):
         "campaign.toml line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units",
         "campaign.toml line 6: no parameter 'chair.I_x'; did you mean 'chair.I_z' or 'chair.m'?",
         "campaign.toml line 25: run 3 (c.csv): no such file; did you mean 'b.csv' or 'a.csv'?",
-        "run a.csv line 11 column 'a_y [m/s2]': 'abc' is not a number; "
-        "write a number, or leave the cell empty for a gap",
+        "run a.csv line 11 column 'a_y [m/s2]': 'abc' is not a number; write a number, or leave the cell empty for a gap",
         "run a.csv line 21 column 'yaw_rate [rad/s]': the value is infinite; "
         "leave the cell empty where the sensor gave nothing",
         "run a.csv line 101: time 0.98 s is there twice; remove one of the rows",
         "run a.csv line 151: time goes back from 1.48 to 0.1 s; remove or sort the rows",
-        "run b.csv line 1 column 'yaw_rate [rad/sek]': unit 'rad/sek' is unknown; "
-        "write it as, for example, rad/s or deg/s",
+        "run b.csv line 1 column 'yaw_rate [rad/sek]': unit 'rad/sek' is unknown; write it as, for example, rad/s or deg/s",
         "run b.csv line 1 column 'F_rl [m]': unit 'm' measures a length, but 'N' is needed, which measures a force; "
         "give a unit such as N or lbf",
         "run b.csv line 1: no push force F_rr; add a column 'F_rr [N]', name it in [columns], "
         "or write constant = { F_rr = 0.0 } in the run",
-    ]  # fmt: skip
+    ]
     assert len(caught.value.faults) == 10
 
 

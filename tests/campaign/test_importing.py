@@ -20,20 +20,32 @@ def named(files: list[str], kind=lambda file: 0) -> dict[str, tuple[str, str]]:
     return {p.file: (p.run, p.device) for p in placed(files, {file: kind(file) for file in files})}
 
 
-@pytest.mark.parametrize(("files", "expected"), [
-    (["run01_SWL.csv", "run01_SWR.csv", "run01.trc", "run02_SWL.csv", "run02_SWR.csv", "run02.trc"],
-     {"run01_SWR.csv": ("run01", "swr"), "run02.trc": ("run02", "trc")}),
-    (["m01.xlsx", "m01_Moment.csv", "m01_imu.mat", "m02.xlsx", "m02_Moment.csv", "m02_imu.mat"],
-     {"m01.xlsx": ("m01", "xlsx"), "m02_Moment.csv": ("m02", "moment")}),
-    (["imu trial 2.csv", "imu trial 10.csv", "rad-trial 2.csv", "rad-trial 10.csv"],
-     {"imu trial 2.csv": ("trial_2", "imu"), "rad-trial 10.csv": ("trial_10", "rad")}),
-    (["run01_imu1.csv", "run01_imu2.csv", "run02_imu1.csv", "run02_imu2.csv"], {"run02_imu1.csv": ("run02", "imu1")}),
-    (["slalom_imu.csv", "slalom_wheels.csv", "coast_imu.csv", "coast_wheels.csv"], {"coast_wheels.csv": ("coast", "wheels")}),
-    (["run01/imu.csv", "run02/imu.csv", "run01/rim.csv", "run02/rim.csv"], {"run02/rim.csv": ("run02", "rim")}),
-    (["run1_imu.csv", "run1_imu.mat", "run2_imu.csv"], {"run1_imu.mat": ("run1", "imu_mat")}),
-    (["left.csv", "right.csv", "frame.csv"], {"left.csv": ("run", "left"), "frame.csv": ("run", "frame")}),
-    (["left_slalom.csv", "right_slalom.csv", "left_coast.csv", "right_coast.csv"], {"left_coast.csv": ("coast", "left")}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        (
+            ["run01_SWL.csv", "run01_SWR.csv", "run01.trc", "run02_SWL.csv", "run02_SWR.csv", "run02.trc"],
+            {"run01_SWR.csv": ("run01", "swr"), "run02.trc": ("run02", "trc")},
+        ),
+        (
+            ["m01.xlsx", "m01_Moment.csv", "m01_imu.mat", "m02.xlsx", "m02_Moment.csv", "m02_imu.mat"],
+            {"m01.xlsx": ("m01", "xlsx"), "m02_Moment.csv": ("m02", "moment")},
+        ),
+        (
+            ["imu trial 2.csv", "imu trial 10.csv", "rad-trial 2.csv", "rad-trial 10.csv"],
+            {"imu trial 2.csv": ("trial_2", "imu"), "rad-trial 10.csv": ("trial_10", "rad")},
+        ),
+        (["run01_imu1.csv", "run01_imu2.csv", "run02_imu1.csv", "run02_imu2.csv"], {"run02_imu1.csv": ("run02", "imu1")}),
+        (
+            ["slalom_imu.csv", "slalom_wheels.csv", "coast_imu.csv", "coast_wheels.csv"],
+            {"coast_wheels.csv": ("coast", "wheels")},
+        ),
+        (["run01/imu.csv", "run02/imu.csv", "run01/rim.csv", "run02/rim.csv"], {"run02/rim.csv": ("run02", "rim")}),
+        (["run1_imu.csv", "run1_imu.mat", "run2_imu.csv"], {"run1_imu.mat": ("run1", "imu_mat")}),
+        (["left.csv", "right.csv", "frame.csv"], {"left.csv": ("run", "left"), "frame.csv": ("run", "frame")}),
+        (["left_slalom.csv", "right_slalom.csv", "left_coast.csv", "right_coast.csv"], {"left_coast.csv": ("coast", "left")}),
+    ],
+)
 def test_runs_and_devices_are_told_by_names(files, expected):
     found = named(files, lambda file: file.rpartition(".")[2])
     assert {file: found[file] for file in expected} == expected
@@ -51,15 +63,30 @@ def test_recordings_without_a_pattern_are_runs_of_one_device():
     }
 
 
-@pytest.mark.parametrize(("header", "quantity", "axis", "side"), [
-    ("Zeit [s]", "time", "", ""), ("temps", "time", "", ""), ("Gyroscope Z (deg/s)", "gyro", "z", ""),
-    ("gyr_z", "gyro", "z", ""), ("GyroZ", "gyro", "z", ""),
-    ("rec.data.omega_z", "gyro", "z", ""), ("Gierrate [deg/s]", "yaw_rate", "", ""),
-    ("vitesse de lacet", "yaw_rate", "", ""), ("AccX", "acc", "x", ""), ("a längs [g]", "acc", "x", ""),
-    ("Antriebsmoment links [N·m]", "torque", "", "l"), ("couple droit", "torque", "", "r"), ("Tz", "torque", "z", ""),
-    ("v rechts [km/h]", "speed", "", "r"), ("vitesse roue gauche", "speed", "", "l"), ("Winkel", "wheel_angle", "", ""),
-    ("wheelR_radps", "speed", "", "r"), ("FTan_L [N]", "force", "", "l"), ("F_rl [N]", "F_rl", "", ""),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("header", "quantity", "axis", "side"),
+    [
+        ("Zeit [s]", "time", "", ""),
+        ("temps", "time", "", ""),
+        ("Gyroscope Z (deg/s)", "gyro", "z", ""),
+        ("gyr_z", "gyro", "z", ""),
+        ("GyroZ", "gyro", "z", ""),
+        ("rec.data.omega_z", "gyro", "z", ""),
+        ("Gierrate [deg/s]", "yaw_rate", "", ""),
+        ("vitesse de lacet", "yaw_rate", "", ""),
+        ("AccX", "acc", "x", ""),
+        ("a längs [g]", "acc", "x", ""),
+        ("Antriebsmoment links [N·m]", "torque", "", "l"),
+        ("couple droit", "torque", "", "r"),
+        ("Tz", "torque", "z", ""),
+        ("v rechts [km/h]", "speed", "", "r"),
+        ("vitesse roue gauche", "speed", "", "l"),
+        ("Winkel", "wheel_angle", "", ""),
+        ("wheelR_radps", "speed", "", "r"),
+        ("FTan_L [N]", "force", "", "l"),
+        ("F_rl [N]", "F_rl", "", ""),
+    ],
+)
 def test_headers_of_usual_loggers_are_understood(header, quantity, axis, side):
     from wheelchair_fmu.units import unit_of
 
@@ -121,9 +148,10 @@ def test_markers_with_the_names_of_the_other_side_are_said(tmp_path):
     assert any("backwards" in doubt for doubt in trc.doubts)
 
 
-@pytest.mark.parametrize(("axes", "ahead", "side", "frame"), [
-    (lab.AS_ISO, ("X", 1), ("Y", 1), "ISO-8855"), (lab.BACKWARDS, ("Y", -1), ("X", 1), "SAE-J670"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("axes", "ahead", "side", "frame"),
+    [(lab.AS_ISO, ("X", 1), ("Y", 1), "ISO-8855"), (lab.BACKWARDS, ("Y", -1), ("X", 1), "SAE-J670")],
+)
 def test_sensors_on_spokes_and_on_the_frame_whichever_way_they_lie(tmp_path, axes, ahead, side, frame):
     def write(folder, run, s, rng):
         lab.spoke(folder / f"{run}_imu_left.csv", s, 0.5, "l", 1, rng)

@@ -58,8 +58,10 @@ def test_only_the_lines_that_change_do():
     content["run"][0]["u0"] = 0.35
     del content["noise"]["a_x"]
     about = "   # m/s at the first sample, about"
-    assert changed(SAMPLE, content) == ({"yaw_rate = 0.006", "a_x = 0.05", f"u0 = 0.3{about}"},
-                                        {'yaw_rate = "0.5 deg/s"', f"u0 = 0.35{about}"})  # fmt: skip
+    assert changed(SAMPLE, content) == (
+        {"yaw_rate = 0.006", "a_x = 0.05", f"u0 = 0.3{about}"},
+        {'yaw_rate = "0.5 deg/s"', f"u0 = 0.35{about}"},
+    )
 
 
 def test_runs_come_and_go():

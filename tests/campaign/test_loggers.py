@@ -83,9 +83,12 @@ def test_absolute_starts_relate_two_devices(frame, tmp_path):
 def test_notes_say_what_was_found(frame, tmp_path):
     loggers.german(tmp_path / "g.csv", frame)
     assert open_recording(tmp_path / "g.csv", "g.csv", {})[0].notes == (
-        "encoding cp1252", "separator ';'", "decimal comma", "2 lines before the header skipped",
+        "encoding cp1252",
+        "separator ';'",
+        "decimal comma",
+        "2 lines before the header skipped",
         "a row of units below the header",
-    )  # fmt: skip
+    )
 
 
 MARKERS = {"RHUB": np.arange(90.0).reshape(30, 3), "LHUB": np.arange(90.0).reshape(30, 3) * 2}
@@ -144,12 +147,15 @@ def test_imu_exports(tmp_path):
     (tmp_path / "n.csv").write_text(
         "Time (s),Gyroscope X (deg/s),Accelerometer X (g)\n" + "".join(f"{i / 100},1.5,0.1\n" for i in range(20))
     )
-    (tmp_path / "x.txt").write_text("// Start Time: Unknown\n// Update Rate: 100.0Hz\n"
-                                    "PacketCounter\tSampleTimeFine\tAcc_X\tGyr_X\n"
-                                    + "".join(f"{(65530 + i) % 65536}\t\t9.8\t0.5\n" for i in range(20) if i != 3))  # fmt: skip
-    (tmp_path / "d.csv").write_text("sep=,\nDeviceTag:,left\nPacketCounter,SampleTimeFine,Euler_X,Acc_X,Gyr_X\n"
-                                    + "".join(f"{i},{(2**32 - 50000 + i * 16667) % 2**32},1.5,9.8,30.5\n"
-                                              for i in range(20)))  # fmt: skip
+    (tmp_path / "x.txt").write_text(
+        "// Start Time: Unknown\n// Update Rate: 100.0Hz\n"
+        "PacketCounter\tSampleTimeFine\tAcc_X\tGyr_X\n"
+        + "".join(f"{(65530 + i) % 65536}\t\t9.8\t0.5\n" for i in range(20) if i != 3)
+    )
+    (tmp_path / "d.csv").write_text(
+        "sep=,\nDeviceTag:,left\nPacketCounter,SampleTimeFine,Euler_X,Acc_X,Gyr_X\n"
+        + "".join(f"{i},{(2**32 - 50000 + i * 16667) % 2**32},1.5,9.8,30.5\n" for i in range(20))
+    )
     tables = {}
     for name in ("n.csv", "x.txt", "d.csv"):
         tables[name], faults = open_recording(tmp_path / name, name, {})

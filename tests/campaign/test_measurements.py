@@ -20,8 +20,20 @@ def folder(name: str) -> Path:
     return path
 
 
-OPEN = ("00-null", "01-relaxation", "02-crossfall", "03-camber", "04-scrub", "05-caster-friction", "06-left-drag",
-        "07-cm-offset", "08-straight-only", "09-outside", "10-slow-null", "11-trunk")  # fmt: skip
+OPEN = (
+    "00-null",
+    "01-relaxation",
+    "02-crossfall",
+    "03-camber",
+    "04-scrub",
+    "05-caster-friction",
+    "06-left-drag",
+    "07-cm-offset",
+    "08-straight-only",
+    "09-outside",
+    "10-slow-null",
+    "11-trunk",
+)
 
 
 @pytest.mark.parametrize("name", OPEN)
@@ -49,9 +61,7 @@ def test_a_real_chair_in_iso_axes():
     assert all(fault.severity == "warning" for fault in check(path))
 
 
-@pytest.mark.parametrize(
-    "name", ["worklab/Smartwheel_example.txt.gz", "kineticstoolkit/pushrimkinetics_propulsion.csv.gz"]
-)
+@pytest.mark.parametrize("name", ["worklab/Smartwheel_example.txt.gz", "kineticstoolkit/pushrimkinetics_propulsion.csv.gz"])
 def test_real_smartwheels_push_forward(name):
     frame = read_smartwheel(folder(f"real/{name}"), "l", 0.3)
     assert 20 < frame["M_rl [N.m]"].max() < 40

@@ -38,15 +38,11 @@ def test_noise_in_two_units_asks_which(campaign):
 
 
 def test_noise_faults(campaign):
-    noise = (
-        NOISE.replace("a_y = 0.05", "a_y = 0.0").replace("yaw_rate =", "yaw_rte =").replace("F_rr = 0.4", "F_rr = 40.0")
-    )
+    noise = NOISE.replace("a_y = 0.05", "a_y = 0.0").replace("yaw_rate =", "yaw_rte =").replace("F_rr = 0.4", "F_rr = 40.0")
     lines = [str(f) for f in check(campaign(noise=noise))]
     assert lines[0] == "campaign.toml line 11: [noise] has no channel 'yaw_rte'; did you mean 'yaw_rate' or 'yaw'?"
     assert lines[1] == "campaign.toml line 12: [noise] a_y: 0.0 is not positive; give a standard deviation above 0"
-    assert lines[3].startswith(
-        "warning: campaign.toml line 8: noise of F_rr is 40 N, but from sample to sample only 0."
-    )
+    assert lines[3].startswith("warning: campaign.toml line 8: noise of F_rr is 40 N, but from sample to sample only 0.")
     assert len(lines) == 4
 
 

@@ -63,8 +63,15 @@ def test_strokes_that_are_all_alike_tell_a_shift_but_for_whole_strokes(shift):
     t, force = strokes(rng, 9, regular=True)
     speed = np.cumsum(force - force.mean()) * 4e-5 + 1.0
     own = np.arange(0, 9, 0.01)
-    alike = [Signal("file", q, own, np.interp(own + s, t, v) + coloured(rng, len(own), NOISE[q], 0.0)) for q, s, v in (
-        ("wheel_speed_l", 0, speed), ("wheel_speed_r", 0, speed), ("F_rl", shift, force), ("F_rr", shift, force))]  # fmt: skip
+    alike = [
+        Signal("file", q, own, np.interp(own + s, t, v) + coloured(rng, len(own), NOISE[q], 0.0))
+        for q, s, v in (
+            ("wheel_speed_l", 0, speed),
+            ("wheel_speed_r", 0, speed),
+            ("F_rl", shift, force),
+            ("F_rr", shift, force),
+        )
+    ]
     runs = {f"run{i}": run(i) for i in range(3)} | {"strokes": alike}
     odd, told = odd_ones_out(runs), push_shifts(runs)["strokes"]
     assert list(odd) == (["strokes"] if shift else [])

@@ -49,19 +49,20 @@ def test_the_fingerprint_follows_every_file(campaign):
 
 
 def test_every_channel_has_a_prediction_and_a_meaning():
-    assert [c.name for c in CHANNELS] == [
-        "wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y", "x", "y", "yaw", "u", "v",
-    ]  # fmt: skip
-    assert [c.fmu for c in INPUTS] == [
-        "push.F_rl", "push.F_rr", "push.M_rl", "push.M_rr", "brake.rl", "brake.rr",
-    ]  # fmt: skip
+    assert [c.name for c in CHANNELS] == ["wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y", "x", "y", "yaw", "u", "v"]
+    assert [c.fmu for c in INPUTS] == ["push.F_rl", "push.F_rr", "push.M_rl", "push.M_rr", "brake.rl", "brake.rr"]
     assert all(c.meaning and c.fmu and c.low < c.high for c in CHANNELS + INPUTS)
 
 
 UNITS = [
-    ("time [ms]", 0, 1e3), ("F_rl [lbf]", 1, 1 / LBF), ("F_rr [kN]", 2, 1e-3), ("wheel_speed_l [km/h]", 3, 3.6),
-    ("wheel_speed_r [mph]", 4, 1 / 0.44704), ("yaw_rate [deg/s]", 5, 180 / np.pi), ("a_y [g]", 6, 1 / 9.80665),
-]  # fmt: skip
+    ("time [ms]", 0, 1e3),
+    ("F_rl [lbf]", 1, 1 / LBF),
+    ("F_rr [kN]", 2, 1e-3),
+    ("wheel_speed_l [km/h]", 3, 3.6),
+    ("wheel_speed_r [mph]", 4, 1 / 0.44704),
+    ("yaw_rate [deg/s]", 5, 180 / np.pi),
+    ("a_y [g]", 6, 1 / 9.80665),
+]
 
 
 def test_any_unit_of_the_right_dimension(campaign):
@@ -86,9 +87,7 @@ def test_push_torque_by_a_radius_in_columns_and_by_the_wheels(campaign):
     data = motion()
     headers = [SI[0], "left [N.m]", "F_rr [N.m]", *SI[3:]]
     head = HEAD + '[wheel]\nR = 0.3\n[columns]\nF_rl = { column = "left", radius = 0.25 }\n'
-    run = read(
-        campaign(head=head, noise="", files=dict.fromkeys(("a.csv", "b.csv"), csv_text(headers, rows(data))))
-    ).runs[0]
+    run = read(campaign(head=head, noise="", files=dict.fromkeys(("a.csv", "b.csv"), csv_text(headers, rows(data))))).runs[0]
     np.testing.assert_allclose(run.inputs["push.F_rl"], data[:, 1] / 0.25)
     np.testing.assert_allclose(run.inputs["push.F_rr"], data[:, 2] / 0.3)
 

@@ -95,8 +95,21 @@ def test_a_coarse_converter_repeats_values_and_none_is_left_out(seed, steps, how
     assert resampled(np.round((how(T) + 0.006 * np.random.default_rng(seed).standard_normal(T.size)) / step) * step) is None
 
 
-@pytest.mark.parametrize("name", ["no noise", "six digits", "coarse ramp", "ramp", "coasts to rest", "square", "every third",
-                                  "encoder", "lost", "slow noise"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "no noise",
+        "six digits",
+        "coarse ramp",
+        "ramp",
+        "coasts to rest",
+        "square",
+        "every third",
+        "encoder",
+        "lost",
+        "slow noise",
+    ],
+)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_what_is_sampled_in_each_row_is_left_alone(name, seed):
     rng = np.random.default_rng(seed)

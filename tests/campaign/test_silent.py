@@ -42,8 +42,10 @@ def test_a_standing_chair_whose_sensors_are_noisy_says_something(campaign):
 def test_where_no_run_is_left_to_learn_from_that_is_an_error(campaign):
     folder = campaign(files={"a.csv": standing()})
     errors = [str(f) for f in check(folder) if f.severity == "error"]
-    assert errors == ["campaign.toml: no channel changes in any run with the role 'fit', so there is nothing to "
-                      "learn from; give role = 'fit' to a run in which the chair moves"]  # fmt: skip
+    assert errors == [
+        "campaign.toml: no channel changes in any run with the role 'fit', so there is nothing to "
+        "learn from; give role = 'fit' to a run in which the chair moves"
+    ]
     with pytest.raises(CampaignError, match="nothing to learn from"):
         read(folder)
 

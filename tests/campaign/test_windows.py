@@ -18,8 +18,17 @@ def turning(name, role="fit", seconds=600.0, rate=0.2, **channels) -> Run:
     time = np.arange(round(seconds * 100) + 1) / 100
     yaw_rate = np.where(np.mod(time, 2) < 1, 0.0, rate)
     push = np.sin(time)
-    return Run(name, Path(f"{name}.csv"), "turns", role, 0.7, {"chair.m": 90.0}, time, {"push.F_rl": push, "push.F_rr": -push},
-               {"wheel_speed_l": 1 + 0 * time, "wheel_speed_r": 1.2 + 0 * time, "yaw_rate": yaw_rate, **channels})  # fmt: skip
+    return Run(
+        name,
+        Path(f"{name}.csv"),
+        "turns",
+        role,
+        0.7,
+        {"chair.m": 90.0},
+        time,
+        {"push.F_rl": push, "push.F_rr": -push},
+        {"wheel_speed_l": 1 + 0 * time, "wheel_speed_r": 1.2 + 0 * time, "yaw_rate": yaw_rate, **channels},
+    )
 
 
 def campaign(*runs) -> Campaign:

@@ -62,13 +62,15 @@ DOCUMENTS = {
     "a number of 4000 digits": (RUNS.replace("u0 = 1.0", "u0 = 1" + "0" * 4000), "which is no number"),
     "noise of nothing": (RUNS + "[noise]\nyaw_rate = 1e-300\n", "1e-300 rad/s is no noise of a sensor"),
     "noise of everything": (RUNS + "[noise]\na_y = 1e300\n", "1e+300 m/s2 is no noise of a sensor"),
-    "a hundred thousand keys": (RUNS + "[chair]\n" + "".join(f"k{i} = {i}\n" for i in range(100_000)),
-                                "[chair] has 100000 keys, but at most 1000 make sense"),
+    "a hundred thousand keys": (
+        RUNS + "[chair]\n" + "".join(f"k{i} = {i}\n" for i in range(100_000)),
+        "[chair] has 100000 keys, but at most 1000 make sense",
+    ),
     "nine hundred keys": (RUNS + "[chair]\n" + "".join(f"k{i} = {i}\n" for i in range(900)), "and 890 more like these"),
     "the speed of a rocket": (RUNS.replace("u0 = 1.0", "u0 = 1e12", 1), "u0 = 1e+12 m/s is no speed of a wheelchair"),
     "a name that no disk can have": (RUNS.replace("a.csv", "a" * 5000), "no such file"),
     "a name with a zero": (RUNS.replace("a.csv", "a\\u0000.csv"), "no such file"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
@@ -82,18 +84,24 @@ def test_an_odd_campaign_file(small, name):
 
 
 RECORDINGS = {
-    "a long cell": (lambda: csv_text(SI, [["1" * 200_000, *row[1:]] if i == 3 else row for i, row in enumerate(rows(motion()))])
-                    .replace("0.05", '"0.05"', 1), "field larger than field limit (131072)"),
+    "a long cell": (
+        lambda: csv_text(SI, [["1" * 200_000, *row[1:]] if i == 3 else row for i, row in enumerate(rows(motion()))]).replace(
+            "0.05", '"0.05"', 1
+        ),
+        "field larger than field limit (131072)",
+    ),
     "a long header": (lambda: "x" * 200_000 + csv_text(SI, rows(motion())), "no time column among"),
     "a gap of 30 years": (lambda: data(100, 0, 1e9), "the largest is 1e+09 s"),
     "a push of a trillion newton": (lambda: data(50, 1, 1e12), "F_rl reaches 1e+12 N, above any plausible 2000 N"),
     "a hundred thousand columns": (
         lambda: csv_text([*SI, *(f"c{i}" for i in range(100_000))], [row + ["0"] * 100_000 for row in rows(motion(20))]),
-        "and 99990 more not used"),
+        "and 99990 more not used",
+    ),
     "a hundred thousand times the same": (
         lambda: csv_text([*SI, *(f"c{i // 2}" for i in range(100_000))], [row + ["0"] * 100_000 for row in rows(motion(20))]),
-        "49990 more headers like these"),
-}  # fmt: skip
+        "49990 more headers like these",
+    ),
+}
 
 
 @pytest.mark.parametrize("name", RECORDINGS)
@@ -145,8 +153,11 @@ def test_of_a_parquet_file_only_what_is_asked_for_is_read(small, monkeypatch):
     frame = pd.DataFrame(dict(zip(SI, motion().T, strict=True))).assign(**{f"c{i}": "text" for i in range(50)})
     frame.to_parquet(folder / "a.parquet")
     read, asked = pyarrow.parquet.ParquetFile.read, []
-    monkeypatch.setattr(pyarrow.parquet.ParquetFile, "read",
-                        lambda self, columns=None, **how: asked.extend(columns) or read(self, columns=columns, **how))
+    monkeypatch.setattr(
+        pyarrow.parquet.ParquetFile,
+        "read",
+        lambda self, columns=None, **how: asked.extend(columns) or read(self, columns=columns, **how),
+    )
     done = wheelchair("check", folder)
     assert done.exit_code == 0 and "and 40 more not used" in done.output
     assert set(asked) == set(SI)

@@ -87,26 +87,29 @@ def test_leaving_the_models_range_is_said_on_stderr(tmp_path):
     assert done.exit_code == 0 and "warning: " in done.stderr
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (["stedy-turn"], 2, "no manoeuvre 'stedy-turn'; did you mean 'steady-turn'?"),
-    (["slalom", "--set", "nonsense"], 2, "--set 'nonsense' is not NAME=VALUE; write for example --set chair.m=90"),
-    (["slalom", "--set", "chair.m="], 2, "--set 'chair.m=' is not NAME=VALUE"),
-    (["slalom", "--set", "chair.m=-1"], 2, "chair.m = -1 is outside its bounds 1 to 1000 kg; give a value between them"),
-    (["slalom", "--set", "chair.m=nan"], 2, "chair.m = nan is outside its bounds"),
-    (["slalom", "--set", "chair.m=heavy"], 2, "chair.m = 'heavy' is not a number; give a number in kg"),
-    (["slalom", "--set", "chair.mm=1"], 2, "no parameter 'chair.mm'; did you mean 'chair.m'"),
-    (["slalom", "--set", "effect.relaxation.sigma=1"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
-    (["slalom", "--set", "effect.push_force_delay.tau=0.1"], 2, "shifts recorded pushes in time and is no part of an FMU"),
-    (["slalom", "--set", "tyre.law=magic"], 2, "choose one of linear, dugoff, magic_formula"),
-    (["slalom", "--speed", "nan"], 2, "--speed nan m/s is impossible here; give a number above 0, at most 20 m/s"),
-    (["slalom", "--speed", "fast"], 2, "--speed"),
-    (["slalom", "--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
-    (["slalom", "--equations", "papr"], 2, "did you mean 'paper'?"),
-    (["slalom", "--variant", "none.toml"], 1, "none.toml: no such file"),
-    (["slalom", "--fmu", "none.fmu"], 1, "none.fmu: no such file; build one with `python build_fmu.py`"),
-    (["start-stop", "--equations", "paper", "--effects", "none"], 1, "the equations give NaN or infinity"),
-    (["slalom", "--colour", "red"], 2, "No such option"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (["stedy-turn"], 2, "no manoeuvre 'stedy-turn'; did you mean 'steady-turn'?"),
+        (["slalom", "--set", "nonsense"], 2, "--set 'nonsense' is not NAME=VALUE; write for example --set chair.m=90"),
+        (["slalom", "--set", "chair.m="], 2, "--set 'chair.m=' is not NAME=VALUE"),
+        (["slalom", "--set", "chair.m=-1"], 2, "chair.m = -1 is outside its bounds 1 to 1000 kg; give a value between them"),
+        (["slalom", "--set", "chair.m=nan"], 2, "chair.m = nan is outside its bounds"),
+        (["slalom", "--set", "chair.m=heavy"], 2, "chair.m = 'heavy' is not a number; give a number in kg"),
+        (["slalom", "--set", "chair.mm=1"], 2, "no parameter 'chair.mm'; did you mean 'chair.m'"),
+        (["slalom", "--set", "effect.relaxation.sigma=1"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
+        (["slalom", "--set", "effect.push_force_delay.tau=0.1"], 2, "shifts recorded pushes in time and is no part of an FMU"),
+        (["slalom", "--set", "tyre.law=magic"], 2, "choose one of linear, dugoff, magic_formula"),
+        (["slalom", "--speed", "nan"], 2, "--speed nan m/s is impossible here; give a number above 0, at most 20 m/s"),
+        (["slalom", "--speed", "fast"], 2, "--speed"),
+        (["slalom", "--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
+        (["slalom", "--equations", "papr"], 2, "did you mean 'paper'?"),
+        (["slalom", "--variant", "none.toml"], 1, "none.toml: no such file"),
+        (["slalom", "--fmu", "none.fmu"], 1, "none.fmu: no such file; build one with `python build_fmu.py`"),
+        (["start-stop", "--equations", "paper", "--effects", "none"], 1, "the equations give NaN or infinity"),
+        (["slalom", "--colour", "red"], 2, "No such option"),
+    ],
+)
 def test_bad_input_gets_one_sentence_and_writes_nothing(tmp_path, words, code, sentence):
     done = wheelchair("simulate", *words, "-o", tmp_path / "out")
     assert done.exit_code == code and sentence in done.stderr
@@ -177,8 +180,19 @@ def test_check_reports_ten_faults_at_once(tmp_path):
     place = spoilt(tmp_path)
     done = wheelchair("check", place)
     assert done.exit_code == 1 and "Traceback" not in done.output
-    for word in ("campaign.toml line", "C_lamda", "'SAE'", "steady-rigth.csv", "spare", "furlong", "time goes back",
-                 "steady-left.csv", "a PNG picture", "-80", "-0.006"):  # fmt: skip
+    for word in (
+        "campaign.toml line",
+        "C_lamda",
+        "'SAE'",
+        "steady-rigth.csv",
+        "spare",
+        "furlong",
+        "time goes back",
+        "steady-left.csv",
+        "a PNG picture",
+        "-80",
+        "-0.006",
+    ):
         assert word in done.output, word
     told = json.loads(wheelchair("check", place, "--json").output)
     assert told["errors"] >= 10 and told["errors"] == sum(f["severity"] == "error" for f in told["faults"])
@@ -203,8 +217,11 @@ def test_an_unknown_effect_is_bad_usage():
 
 
 def test_every_source_that_looks_like_a_key_is_in_the_references():
-    keys = {line.partition("{")[2].rstrip(",") for line in (ROOT / "references.bib").read_text().splitlines()
-            if line.startswith("@")}  # fmt: skip
+    keys = {
+        line.partition("{")[2].rstrip(",")
+        for line in (ROOT / "references.bib").read_text().splitlines()
+        if line.startswith("@")
+    }
     records: list[Parameter] = list(Variant().with_effects(bundled()).parameters())
     cited = {p.source for p in records if p.source[-4:].isdigit() and " " not in p.source}
     assert cited and cited <= keys
@@ -219,31 +236,42 @@ def test_version_help_and_unknown_commands():
         assert wheelchair(*words).exit_code == 2, words
 
 
-@pytest.mark.parametrize("command, unit", [("simulate", "Forward speed [m/s]"), ("paper", "slalom [s]"),
-                                           ("linearize", "R_c [m]")])  # fmt: skip
+@pytest.mark.parametrize(
+    "command, unit", [("simulate", "Forward speed [m/s]"), ("paper", "slalom [s]"), ("linearize", "R_c [m]")]
+)
 def test_help_of_a_command_tells_units(command, unit):
     assert unit in " ".join(wheelchair(command, "--help").output.split())
 
 
 def test_help_waits_for_no_command():
-    script = ("import sys\nfrom wheelchair_fmu.cli.main import COMMANDS, main\nsys.argv = ['wheelchair', '--help']\n"
-              "try:\n    main()\nexcept SystemExit:\n    pass\n"
-              "sys.exit(any(f'wheelchair_fmu.cli.{name}' in sys.modules for name in COMMANDS))")  # fmt: skip
+    script = (
+        "import sys\nfrom wheelchair_fmu.cli.main import COMMANDS, main\nsys.argv = ['wheelchair', '--help']\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "sys.exit(any(f'wheelchair_fmu.cli.{name}' in sys.modules for name in COMMANDS))"
+    )
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, check=False).returncode == 0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
 def test_an_interrupt_ends_with_one_line_and_130(tmp_path):
     # where the tests run in the background SIGINT is ignored, and children inherit that
-    script = ("import wheelchair_fmu.cli.simulate as s, signal, time, sys\n"
-              "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-              "def wait(*a, **k): print('waiting', flush=True); time.sleep(60)\n"
-              "s.fmu_of = wait\n"
-              "from wheelchair_fmu.cli.main import main\n"
-              "sys.argv = ['wheelchair', 'simulate', 'slalom']\n"
-              "main()\n")  # fmt: skip
-    process = subprocess.Popen([sys.executable, "-c", script], cwd=tmp_path, env={"PYTHONPATH": str(ROOT), "PATH": ""},
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # fmt: skip
+    script = (
+        "import wheelchair_fmu.cli.simulate as s, signal, time, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "def wait(*a, **k): print('waiting', flush=True); time.sleep(60)\n"
+        "s.fmu_of = wait\n"
+        "from wheelchair_fmu.cli.main import main\n"
+        "sys.argv = ['wheelchair', 'simulate', 'slalom']\n"
+        "main()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", script],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ROOT), "PATH": ""},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     assert process.stdout and process.stdout.readline() == "waiting\n"
     time.sleep(0.1)
     process.send_signal(signal.SIGINT)

@@ -35,16 +35,24 @@ def test_a_spoilt_effect_is_refused_wherever_it_would_be_used(tmp_path):
     assert run("effects", "new", "my_own", "-o", tmp_path).exit_code == 0
     file = tmp_path / "my_own.py"
     file.write_text(file.read_text(encoding="utf-8").replace("N_S_M", "N"), encoding="utf-8")
-    for words in (("effects", "list"), ("effects", "show", "my_own"), ("diagnose", "examples/sample-campaign"),
-                  ("add", "my_own", "examples/sample-campaign", "-o", tmp_path / "x.toml"),
-                  ("improve", "examples/sample-campaign", "-o", tmp_path / "x.toml"), ("simulate", "coast-down"),
-                  ("linearize", "--radius", "2"), ("sweep", "examples/sweep.toml", "-o", tmp_path / "x.parquet"),
-                  ("report", "examples/sample-campaign", "-o", tmp_path / "x.html"),
-                  ("fleet", "examples", "-o", tmp_path / "x.csv")):  # fmt: skip
+    for words in (
+        ("effects", "list"),
+        ("effects", "show", "my_own"),
+        ("diagnose", "examples/sample-campaign"),
+        ("add", "my_own", "examples/sample-campaign", "-o", tmp_path / "x.toml"),
+        ("improve", "examples/sample-campaign", "-o", tmp_path / "x.toml"),
+        ("simulate", "coast-down"),
+        ("linearize", "--radius", "2"),
+        ("sweep", "examples/sweep.toml", "-o", tmp_path / "x.parquet"),
+        ("report", "examples/sample-campaign", "-o", tmp_path / "x.html"),
+        ("fleet", "examples", "-o", tmp_path / "x.csv"),
+    ):
         done = run(*words, "--effects", tmp_path)
         assert done.exit_code == 1, words
-        assert done.stderr == ("effect my_own, units: its term in F_x comes out in W where N belongs; "
-                               "give q the unit N.s/m instead of N, or change the law\n")  # fmt: skip
+        assert done.stderr == (
+            "effect my_own, units: its term in F_x comes out in W where N belongs; "
+            "give q the unit N.s/m instead of N, or change the law\n"
+        )
 
 
 def test_a_misspelt_effect_of_ones_own_is_suggested(tmp_path):
@@ -68,13 +76,15 @@ def test_quantities_are_what_a_law_may_name():
     assert told["F_x"]["acted_on"] and told["F_x"]["unit"] == "N"
     assert not told["u"]["acted_on"] and told["u"]["needs"] == {}
     assert told["swivel_rate"]["needs"] == {"caster": "swivelling"}
-    assert "needs={\"caster\": \"swivelling\"}" in run("effects", "quantities").stdout
+    assert 'needs={"caster": "swivelling"}' in run("effects", "quantities").stdout
 
 
 def test_ones_own_effects_are_in_the_ranking_however_unlikely():
     parameter = {"q": {"estimate": 1.0, "se": 0.5, "unit": "N", "smallest_interesting": 1.0}}
-    rows = [{"effect": f"e{i}", "p": 10.0**-i, "power": 0.5, "lr": 3.0, "verdict": "not needed", "parameters": parameter}
-            for i in range(20)]  # fmt: skip
+    rows = [
+        {"effect": f"e{i}", "p": 10.0**-i, "power": 0.5, "lr": 3.0, "verdict": "not needed", "parameters": parameter}
+        for i in range(20)
+    ]
     rows[0] |= {"p": 0.0, "verdict": "cannot_see"}
     rows[1] |= {"p": 0.9, "verdict": "cannot_see"}
     columns = [list(c.cells) for c in _ranking({"ranking": rows}, {"e3", "e17"}).columns]

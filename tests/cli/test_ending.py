@@ -34,16 +34,23 @@ def ended(monkeypatch, error: BaseException):
     return done
 
 
-@pytest.mark.parametrize(("error", "code", "sentence"), [
-    (Failure("the fact; the cure"), 1, "the fact; the cure"),
-    (KeyboardInterrupt(), 130, "interrupted"),
-    (MemoryError(), 1, "not enough memory"),
-    (RecursionError("maximum recursion depth exceeded"), 1, "nested too deeply"),
-    (SystemExit(0), 1, "code that was run ended the command (exit code 0)"),
-    (OSError(errno.ENOSPC, "No space left on device", "out.csv"), 1, "out.csv: no space left on device; make room"),
-    (PermissionError(errno.EACCES, "Permission denied", "out.csv"), 1, "out.csv: permission denied; give another place"),
-    (ValueError("need at\n least one"), 1, "an error that nobody expected (ValueError: need at least one); please report it"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("error", "code", "sentence"),
+    [
+        (Failure("the fact; the cure"), 1, "the fact; the cure"),
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (MemoryError(), 1, "not enough memory"),
+        (RecursionError("maximum recursion depth exceeded"), 1, "nested too deeply"),
+        (SystemExit(0), 1, "code that was run ended the command (exit code 0)"),
+        (OSError(errno.ENOSPC, "No space left on device", "out.csv"), 1, "out.csv: no space left on device; make room"),
+        (PermissionError(errno.EACCES, "Permission denied", "out.csv"), 1, "out.csv: permission denied; give another place"),
+        (
+            ValueError("need at\n least one"),
+            1,
+            "an error that nobody expected (ValueError: need at least one); please report it",
+        ),
+    ],
+)
 def test_one_sentence_and_a_code(monkeypatch, error, code, sentence):
     done = ended(monkeypatch, error)
     assert done.exit_code == code and sentence in done.output
@@ -73,16 +80,18 @@ def test_a_reader_that_has_seen_enough_ends_it_without_a_word():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
 def test_an_interrupt_while_the_command_loads_ends_with_one_line_and_130():
-    code = ("import signal, sys, builtins\n"
-            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-            "real = builtins.__import__\n"
-            "def stop(name, *a, **k):\n"
-            "    if name == 'typer': signal.raise_signal(signal.SIGINT)\n"
-            "    return real(name, *a, **k)\n"
-            "builtins.__import__ = stop\n"
-            "sys.argv = ['wheelchair', 'check', '.']\n"
-            "from wheelchair_fmu.cli.start import main\n"
-            "main()\n")  # fmt: skip
+    code = (
+        "import signal, sys, builtins\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "real = builtins.__import__\n"
+        "def stop(name, *a, **k):\n"
+        "    if name == 'typer': signal.raise_signal(signal.SIGINT)\n"
+        "    return real(name, *a, **k)\n"
+        "builtins.__import__ = stop\n"
+        "sys.argv = ['wheelchair', 'check', '.']\n"
+        "from wheelchair_fmu.cli.start import main\n"
+        "main()\n"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 128 + signal.SIGINT
     assert done.stderr.splitlines() == ["interrupted; files already there are as they were"]

@@ -24,8 +24,12 @@ def simulated(name: str, capsys) -> np.ndarray:
 
 
 def test_the_input_files_are_those_of_their_script(tmp_path):
-    subprocess.run([sys.executable, str(EXAMPLES / "make_inputs.py"), str(tmp_path)], check=True, cwd=EXAMPLES.parent,
-                   env={"PYTHONPATH": str(EXAMPLES.parent)})  # fmt: skip
+    subprocess.run(
+        [sys.executable, str(EXAMPLES / "make_inputs.py"), str(tmp_path)],
+        check=True,
+        cwd=EXAMPLES.parent,
+        env={"PYTHONPATH": str(EXAMPLES.parent)},
+    )
     for name in ("push", "turn", "slalom"):
         assert (tmp_path / f"{name}.csv").read_text() == (EXAMPLES / f"{name}.csv").read_text()
 

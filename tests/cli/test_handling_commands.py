@@ -37,8 +37,18 @@ def test_linearize_prints_the_keys_that_are_fixed(tmp_path):
 
 def test_linearize_knows_laws_effects_values_and_free_speed(tmp_path):
     (tmp_path / "v.toml").write_text('[laws]\ntyre = "dugoff"\n[values]\n"chair.m" = 90\n')
-    words = ("linearize", "--radius", -2, "--variant", tmp_path / "v.toml", "--effects", "relaxation_length", "--free-speed",
-             "--set", "effect.relaxation_length.sigma=0.1")  # fmt: skip
+    words = (
+        "linearize",
+        "--radius",
+        -2,
+        "--variant",
+        tmp_path / "v.toml",
+        "--effects",
+        "relaxation_length",
+        "--free-speed",
+        "--set",
+        "effect.relaxation_length.sigma=0.1",
+    )
     told = json.loads(wheelchair(*words, "--json").output)
     assert told["states"] == ["u", "v", "psi_dot", *(f"effect.relaxation_length.lagged_slip.{w}" for w in ("rl", "rr"))]
     assert told["trim"]["radius"] == pytest.approx(-2) and told["trim"]["delta_force"] < 0
@@ -53,20 +63,23 @@ def test_linearize_straight_on():
     assert "straight on" in wheelchair("linearize", "--radius", "inf").output
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (("--delta-force", 1900), 1, "no steady turn at 1 m/s with ΔF = 1900 N"),
-    (("--radius", 0.1, "--equations", "paper"), 1, "the nearest has ΔF ="),
-    (("--radius", 2, "--delta-force", 3), 2, "give one of --delta-force and --radius"),
-    (("--speed", 0, "--equations", "paper"), 2, "the paper divides by the forward speed"),
-    (("--speed", "nan"), 2, "--speed nan m/s"),
-    (("--set", "speed.u=2"), 2, "here --speed decides that"),
-    (("--set", "tyre.C_lamda=2"), 2, "did you mean 'tyre.C_lambda'"),
-    (("--set", "chair.m=-2"), 2, "outside its bounds"),
-    (("--effects", "relaxation"), 2, "did you mean 'relaxation_length'"),
-    (("--equations", "papr"), 2, "did you mean 'paper'"),
-    (("--variant", "none.toml"), 1, "no such file"),
-    (("--speed", "fast"), 2, "valid number"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (("--delta-force", 1900), 1, "no steady turn at 1 m/s with ΔF = 1900 N"),
+        (("--radius", 0.1, "--equations", "paper"), 1, "the nearest has ΔF ="),
+        (("--radius", 2, "--delta-force", 3), 2, "give one of --delta-force and --radius"),
+        (("--speed", 0, "--equations", "paper"), 2, "the paper divides by the forward speed"),
+        (("--speed", "nan"), 2, "--speed nan m/s"),
+        (("--set", "speed.u=2"), 2, "here --speed decides that"),
+        (("--set", "tyre.C_lamda=2"), 2, "did you mean 'tyre.C_lambda'"),
+        (("--set", "chair.m=-2"), 2, "outside its bounds"),
+        (("--effects", "relaxation"), 2, "did you mean 'relaxation_length'"),
+        (("--equations", "papr"), 2, "did you mean 'paper'"),
+        (("--variant", "none.toml"), 1, "no such file"),
+        (("--speed", "fast"), 2, "valid number"),
+    ],
+)
 def test_linearize_refuses_in_one_sentence(words, code, sentence):
     done = wheelchair("linearize", *words)
     assert done.exit_code == code and sentence in done.stderr and "Traceback" not in done.output
@@ -111,12 +124,15 @@ def test_steady_says_how_the_chair_turns(tmp_path):
     assert len(told["root_locus"]) == 200 and "lift" not in told["limits"]
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (("--delta-force", 0), 2, "no turn to judge"),
-    (("--speed", 0, "--delta-force", 5), 2, "no turn to judge"),
-    (("--slip-limit", 0), 2, "0.001"),
-    (("--delta-force", 900, "--set", "tyre.law=dugoff"), 1, "the nearest has ΔF ="),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (("--delta-force", 0), 2, "no turn to judge"),
+        (("--speed", 0, "--delta-force", 5), 2, "no turn to judge"),
+        (("--slip-limit", 0), 2, "0.001"),
+        (("--delta-force", 900, "--set", "tyre.law=dugoff"), 1, "the nearest has ΔF ="),
+    ],
+)
 def test_steady_refuses_in_one_sentence(tmp_path, words, code, sentence):
     done = wheelchair("steady", "-o", tmp_path / "new", *words)
     assert done.exit_code == code and sentence in done.stderr and not (tmp_path / "new").exists()

@@ -83,9 +83,10 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
     assert "no push force" in done.output, "what the campaign still lacks is said"
 
 
-@pytest.mark.parametrize(("words", "said"), [
-    (["--radius", "-1"], "no size of a wheelchair"), (["--axes", "ISO"], "no axes"), (["--holdout", "run9"], "no run 'run9'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--radius", "-1"], "no size of a wheelchair"), (["--axes", "ISO"], "no axes"), (["--holdout", "run9"], "no run 'run9'")],
+)
 def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
     done = imported(raw, "-o", tmp_path / "c", *words)
     assert done.exit_code == 2 and said in done.output and not (tmp_path / "c").exists()
@@ -122,8 +123,11 @@ def test_devices_that_share_nothing_are_said(tmp_path):
     assert "is not sure: give it in clocks" in (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")
 
 
-GIVEN = {"lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43), "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
-         "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45)}  # fmt: skip
+GIVEN = {
+    "lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43),
+    "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
+    "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
+}
 
 
 @pytest.mark.nightly

@@ -45,8 +45,13 @@ def test_compare_weighs_what_the_fmu_simulates(tmp_path, values):
 
 
 def test_compare_with_what_was_hidden_comes_near_the_floor():
-    values = {"tyre.C_lambda": 4790.8, "resistance.f_r": 0.018145, "resistance.f_f": 0.017922, "chair.I_z": 3.0931,
-              "effect.rolling_resistance_asymmetry.D": 1.6066}  # fmt: skip
+    values = {
+        "tyre.C_lambda": 4790.8,
+        "resistance.f_r": 0.018145,
+        "resistance.f_f": 0.017922,
+        "chair.I_z": 3.0931,
+        "effect.rolling_resistance_asymmetry.D": 1.6066,
+    }
     settings = [word for n, v in values.items() for word in ("--set", f"{n}={v}")]
     told = json.loads(run("compare", SAMPLE, "--json", *settings).stdout)
     # chair.I_z and the like go before what the campaign file says
@@ -76,15 +81,18 @@ def test_add_says_what_it_estimated_with_units(tmp_path):
     assert written["effect.rolling_resistance_asymmetry.D"] == pytest.approx(float(size[2]), abs=0.0005)
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (("add", "relaxation", SAMPLE, "-o", "x.toml"), 2, "no effect 'relaxation'; did you mean 'relaxation_length'?"),
-    (("compare", SAMPLE, "--calibrate", "tyre.law"), 2, "tyre.law cannot be calibrated"),
-    (("compare", SAMPLE, "--set", "chair.m=-1"), 2, "chair.m = -1 is outside its bounds 1 to 1000 kg"),
-    (("compare", "nowhere"), 1, "nowhere"),
-    (("diagnose", SAMPLE, "--effects", "nowhere"), 1, "nowhere: no such folder"),
-    (("effects", "new", "MyDrag"), 2, "'MyDrag' is no name for an effect"),
-    (("effects", "new", "toe_misalignment"), 2, "there is an effect 'toe_misalignment' already"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (("add", "relaxation", SAMPLE, "-o", "x.toml"), 2, "no effect 'relaxation'; did you mean 'relaxation_length'?"),
+        (("compare", SAMPLE, "--calibrate", "tyre.law"), 2, "tyre.law cannot be calibrated"),
+        (("compare", SAMPLE, "--set", "chair.m=-1"), 2, "chair.m = -1 is outside its bounds 1 to 1000 kg"),
+        (("compare", "nowhere"), 1, "nowhere"),
+        (("diagnose", SAMPLE, "--effects", "nowhere"), 1, "nowhere: no such folder"),
+        (("effects", "new", "MyDrag"), 2, "'MyDrag' is no name for an effect"),
+        (("effects", "new", "toe_misalignment"), 2, "there is an effect 'toe_misalignment' already"),
+    ],
+)
 def test_bad_words_get_one_sentence(words, code, sentence, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(*words)

@@ -32,11 +32,10 @@ def test_a_diagnosis_becomes_one_page(tmp_path):
     assert len(content["models"]) == 3
 
 
-@pytest.mark.parametrize(("content", "sentence"), [
-    ("no json", "not JSON"),
-    ("{}", "no diagnosis; give what `wheelchair diagnose --json` wrote"),
-    (None, "of 'another'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [("no json", "not JSON"), ("{}", "no diagnosis; give what `wheelchair diagnose --json` wrote"), (None, "of 'another'")],
+)
 def test_any_other_file_is_refused(tmp_path, content, sentence):
     file, page = tmp_path / "diagnosis.json", tmp_path / "report.html"
     file.write_text(content if content is not None else json.dumps({**json.loads(TOLD.read_text()), "campaign": "another"}))
@@ -46,10 +45,9 @@ def test_any_other_file_is_refused(tmp_path, content, sentence):
     assert not page.exists()
 
 
-@pytest.mark.parametrize(("words", "sentence"), [
-    (("nowhere",), "nowhere: no such folder"),
-    (("--port", "99999999"), "port 99999999 cannot be used"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "sentence"), [(("nowhere",), "nowhere: no such folder"), (("--port", "99999999"), "port 99999999 cannot be used")]
+)
 def test_the_workbench_says_why_it_does_not_start(tmp_path, words, sentence):
     done = run("workbench", *words, "--no-open", "--folder", str(tmp_path / "work"))
     assert done.exit_code == 2

@@ -89,30 +89,39 @@ def test_build_replays_a_recording(tmp_path, monkeypatch):
     assert done.exit_code == 0, done.output
 
 
-@pytest.mark.parametrize(("words", "code", "told"), [
-    (("build", "slolam"), 2, "no system 'slolam'; did you mean 'slalom'?"),
-    (("build", "slalom", "--ssp", 3), 2, "there is no SSP 3; choose 1 or 2"),
-    (("build", "--parameters", "deflated"), 2, "did you mean 'deflated-tyres'?"),
-    (("build", "--replay", "nothing.csv"), 1, "nothing.csv: no such file; give a CSV with the columns time, F_rl, F_rr"),
-    (("build", "--variant", "nothing.toml"), 1, "nothing.toml: no such file"),
-    (("run", "nothing.ssp"), 1, "nothing.ssp: no such file; build one with `wheelchair ssp build`"),
-    (("check", "README.md"), 1, "README.md: not a zip archive that can be read"),
-    (("parameters", "nothing.toml", "-o", "x.ssv"), 1, "nothing.toml: no such file"),
-    (("parameters", "low-cost", "-o", "x.ssv"), 2, "no parameter set 'low-cost'; did you mean 'low-cost-tyre'?"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (("build", "slolam"), 2, "no system 'slolam'; did you mean 'slalom'?"),
+        (("build", "slalom", "--ssp", 3), 2, "there is no SSP 3; choose 1 or 2"),
+        (("build", "--parameters", "deflated"), 2, "did you mean 'deflated-tyres'?"),
+        (("build", "--replay", "nothing.csv"), 1, "nothing.csv: no such file; give a CSV with the columns time, F_rl, F_rr"),
+        (("build", "--variant", "nothing.toml"), 1, "nothing.toml: no such file"),
+        (("run", "nothing.ssp"), 1, "nothing.ssp: no such file; build one with `wheelchair ssp build`"),
+        (("check", "README.md"), 1, "README.md: not a zip archive that can be read"),
+        (("parameters", "nothing.toml", "-o", "x.ssv"), 1, "nothing.toml: no such file"),
+        (("parameters", "low-cost", "-o", "x.ssv"), 2, "no parameter set 'low-cost'; did you mean 'low-cost-tyre'?"),
+    ],
+)
 def test_what_is_wrong_is_said_in_one_sentence(words, code, told, monkeypatch):
     monkeypatch.chdir(ROOT)
     done = wheelchair(*words)
     assert done.exit_code == code and told in done.output, done.output
 
 
-@pytest.mark.parametrize(("text", "told"), [
-    ("time [s],F_rl [N]\n0,1\n1,2\n", "there is no column F_rr"),
-    ("time [s],F_rl [N],F_rr [kg]\n0,1,1\n1,2,2\n", "line 1 column 'F_rr [kg]': unit 'kg' measures a mass, but 'N' is needed"),
-    ("time [s],F_rl [N],F_rr [N]\n0,1,1\n1,,2\n", "line 3 column 'F_rl [N]': a gap, which hands cannot replay"),
-    ("time [s],F_rl [N],F_rr [N]\n0,1,1\n1,two,2\n", "line 3 column 'F_rl [N]': 'two' is not a number"),
-    ("time [s],F_rl [N],F_rr [N]\n1,1,1\n0,2,2\n", "time that rises from sample to sample"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("time [s],F_rl [N]\n0,1\n1,2\n", "there is no column F_rr"),
+        (
+            "time [s],F_rl [N],F_rr [kg]\n0,1,1\n1,2,2\n",
+            "line 1 column 'F_rr [kg]': unit 'kg' measures a mass, but 'N' is needed",
+        ),
+        ("time [s],F_rl [N],F_rr [N]\n0,1,1\n1,,2\n", "line 3 column 'F_rl [N]': a gap, which hands cannot replay"),
+        ("time [s],F_rl [N],F_rr [N]\n0,1,1\n1,two,2\n", "line 3 column 'F_rl [N]': 'two' is not a number"),
+        ("time [s],F_rl [N],F_rr [N]\n1,1,1\n0,2,2\n", "time that rises from sample to sample"),
+    ],
+)
 def test_a_bad_recording_is_told_by_line_and_column(text, told, tmp_path):
     (tmp_path / "r.csv").write_text(text)
     done = wheelchair("build", "strokes", "--replay", tmp_path / "r.csv", "-o", tmp_path / "r.ssp")

@@ -83,14 +83,21 @@ def test_the_examples_indices_say_what_the_paper_says(tmp_path):
     assert turn["radius"]["tyre.C_lambda"] < 0.05 and turn["radius"].idxmax() == "chair.b"
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (("plan.toml", "-o", "out.csv"), 2, "the table is Parquet; give a name that ends in .parquet"),
-    (("plan.toml", "-o", "o.parquet", "--engine", "fmi"), 2, "no engine 'fmi'; did you mean 'fmu'?"),
-    (("plan.toml", "-o", "o.parquet", "--dask", "x", "--workers", 2), 2, "give one of them"),
-    (("none.toml", "-o", "o.parquet"), 1, "none.toml: no such file"),
-    (("plan.toml", "-o", "o.parquet", "--effects", "none"), 1, "none: no such folder; `wheelchair effects new ID` starts one"),
-    (("plan.toml",), 2, "--output"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (("plan.toml", "-o", "out.csv"), 2, "the table is Parquet; give a name that ends in .parquet"),
+        (("plan.toml", "-o", "o.parquet", "--engine", "fmi"), 2, "no engine 'fmi'; did you mean 'fmu'?"),
+        (("plan.toml", "-o", "o.parquet", "--dask", "x", "--workers", 2), 2, "give one of them"),
+        (("none.toml", "-o", "o.parquet"), 1, "none.toml: no such file"),
+        (
+            ("plan.toml", "-o", "o.parquet", "--effects", "none"),
+            1,
+            "none: no such folder; `wheelchair effects new ID` starts one",
+        ),
+        (("plan.toml",), 2, "--output"),
+    ],
+)
 def test_sweep_refuses_in_one_sentence(tmp_path, monkeypatch, words, code, sentence):
     monkeypatch.chdir(tmp_path)
     Path("plan.toml").write_text(PLAN)

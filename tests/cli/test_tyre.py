@@ -97,16 +97,19 @@ def test_an_exported_tyre_drives_the_chair(tmp_path):
     assert done.exit_code == 0, done.output
 
 
-@pytest.mark.parametrize(("words", "code", "message"), [
-    (("fit", "none.csv"), 1, "none.csv: no such file"),
-    (("fit", DISC, "--tolerance", 2), 2, "--tolerance 2 is no fraction"),
-    (("fit", DISC, "--axes", "left"), 2, "no axes 'left'"),
-    (("export", DISC, "--tyre", "A", "-o", "a.doc"), 2, "write a .toml, .ssv or .tir"),
-    (("export", DISC, "-o", "a.toml"), 2, "choose one by --tyre"),
-    (("export", DISC, "--tyre", "C", "-o", "a.toml"), 2, "no tyre 'C'"),
-    (("export", DISC, "--tyre", "A", "--law", "magic", "-o", "a.toml"), 2, "did you mean 'magic_formula'"),
-    (("export", DISC, "--tyre", "A", "--load", 500, "-o", "a.toml"), 2, "there are 400 N, 600 N"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        (("fit", "none.csv"), 1, "none.csv: no such file"),
+        (("fit", DISC, "--tolerance", 2), 2, "--tolerance 2 is no fraction"),
+        (("fit", DISC, "--axes", "left"), 2, "no axes 'left'"),
+        (("export", DISC, "--tyre", "A", "-o", "a.doc"), 2, "write a .toml, .ssv or .tir"),
+        (("export", DISC, "-o", "a.toml"), 2, "choose one by --tyre"),
+        (("export", DISC, "--tyre", "C", "-o", "a.toml"), 2, "no tyre 'C'"),
+        (("export", DISC, "--tyre", "A", "--law", "magic", "-o", "a.toml"), 2, "did you mean 'magic_formula'"),
+        (("export", DISC, "--tyre", "A", "--load", 500, "-o", "a.toml"), 2, "there are 400 N, 600 N"),
+    ],
+)
 def test_bad_usage_says_what_is_wrong_and_writes_nothing(words, code, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = wheelchair("tyre", *words)

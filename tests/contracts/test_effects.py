@@ -48,43 +48,67 @@ def an(law, *, to="F_x", unit=N_S_M, kind=adds, mirror="", **more) -> Effect:
 LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
 
 
-@pytest.mark.parametrize(("effect", "contract", "fact", "cure"), [
-    (an(lambda q, u: -q * u, unit=N), "units", "its term in F_x comes out in W where N belongs",
-     "give q the unit N.s/m instead of N"),
-    (an(law("-q * u"), unit=N), "units", "comes out in W where N belongs", "give q the unit N.s/m"),
-    (an(lambda q, u: -q * magnitude(u, 0.01)), "units", "adds unlike quantities, or a plain number", "constants=("),
-    (an(law("-q * magnitude(u, 0.01)")), "units", "adds unlike quantities", "0.1 [m/s]"),
-    (an(lambda q, u: 1 + q * u, to="F_t", kind=scales), "units", "its factor of F_t has no unit, but 1 belongs", ""),
-    (replace(an(lambda lagged: -lagged), rows=(Row(LAGGED, lambda q: q, lambda u: u),)), "units",
-     "rate / mass of lagged comes out in m/kg where kg.m/s3 belongs", "change the law, or the units of q"),
-    (an(lambda q, u: q * u, kind=scales), "neutral when off", "should be", "each factor 1"),
-    (an(lambda q, u: 0 * q * u), "does something", "with q = 0.5 N.s/m nothing changes", "let a law read"),
-    (an(lambda q, u: -q * cs.sqrt(u) * cs.sqrt(u)), "finite at standstill", "the slope of the equation of u by u is nan",
-     "magnitude(u, v_eps)"),
-    (an(lambda q, u, v_eps: q * v_eps * v_eps / u), "finite at standstill", "is nan", "away from zero"),
-    (an(lambda q, u: -q * cs.sign(u), unit=N), "exact derivative",
-     "at rest its term in F_x changes by -5e+07 N per m/s of u, but its derivative says 0", "nothing that jumps"),
-    (an(adds("F_x", lambda q, u: q * u, opposes="u")), "passive", "opposes u, but adds", "turn the sign"),
-    (an(adds("F_x", lambda q, u: -q * u, opposes="u"), lower=-1.0), "passive", "with its parameters negative", "set lower=0.0"),
-    (an(adds("F_x", lambda q, u: -q * u, opposes="w")), "passive", "opposes='w' is no quantity", ""),
-    (an(lambda q: q, to="F_y", unit=N, mirror="+"), "mirror", "along the chair, with mirror= of q \"+\"", 'mirror="-"'),
-    (an(lambda q: q, to="F_y", unit=N, mirror="-p"), "mirror", "no partner p", "symbol behind the sign"),
-    (an(lambda q, u: -q * u, off=1.0), "record", "q is off at 1.0", "write off=0.0"),
-    (an(lambda q, u: -q * u, smallest_interesting=None), "record", "smallest_interesting of q is None", "N.s/m"),
-    (an(lambda q, u: -q * u, upper=float("inf")), "record", "0 to inf", "finite"),
-    (an(lambda q, u: -q * u, upper=0.2), "record", "0.5 N.s/m is of interest", "lower ≤ 0"),
-    (an(lambda q, u: -q * u, source=""), "record", "q has no source", "in quotes"),
-    (an(lambda q, u: -q * u, unit="N"), "record", "the unit of q is 'N'", "wheelchair_fmu.quantities"),
-    (an(lambda q, u: -q * u, unit=Unit("N", kg="1")), "record", "the unit of q is Unit(name='N', kg='1'", "import a Unit"),
-    (an(lambda q, v_xr: -q * v_xr), "equations", "gives F_x a term of shape (2, 1)", "give one number"),
-    (an("-q * u"), "record", "the law of its term in F_x is a str", "function"),
-    (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
-    (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
-    (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
-    (an(lambda q, nonsense: q * nonsense), "equations", "reads 'nonsense', which is no quantity", "effects quantities"),
-    (an(lambda q, u: -q * u, to="F_z"), "equations", "'F_z'", "did you mean"),
-    (an(lambda q, u: -q * u if u > 0 else 0), "equations", "RuntimeError: Cannot compute the truth value", "without if"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("effect", "contract", "fact", "cure"),
+    [
+        (
+            an(lambda q, u: -q * u, unit=N),
+            "units",
+            "its term in F_x comes out in W where N belongs",
+            "give q the unit N.s/m instead of N",
+        ),
+        (an(law("-q * u"), unit=N), "units", "comes out in W where N belongs", "give q the unit N.s/m"),
+        (an(lambda q, u: -q * magnitude(u, 0.01)), "units", "adds unlike quantities, or a plain number", "constants=("),
+        (an(law("-q * magnitude(u, 0.01)")), "units", "adds unlike quantities", "0.1 [m/s]"),
+        (an(lambda q, u: 1 + q * u, to="F_t", kind=scales), "units", "its factor of F_t has no unit, but 1 belongs", ""),
+        (
+            replace(an(lambda lagged: -lagged), rows=(Row(LAGGED, lambda q: q, lambda u: u),)),
+            "units",
+            "rate / mass of lagged comes out in m/kg where kg.m/s3 belongs",
+            "change the law, or the units of q",
+        ),
+        (an(lambda q, u: q * u, kind=scales), "neutral when off", "should be", "each factor 1"),
+        (an(lambda q, u: 0 * q * u), "does something", "with q = 0.5 N.s/m nothing changes", "let a law read"),
+        (
+            an(lambda q, u: -q * cs.sqrt(u) * cs.sqrt(u)),
+            "finite at standstill",
+            "the slope of the equation of u by u is nan",
+            "magnitude(u, v_eps)",
+        ),
+        (an(lambda q, u, v_eps: q * v_eps * v_eps / u), "finite at standstill", "is nan", "away from zero"),
+        (
+            an(lambda q, u: -q * cs.sign(u), unit=N),
+            "exact derivative",
+            "at rest its term in F_x changes by -5e+07 N per m/s of u, but its derivative says 0",
+            "nothing that jumps",
+        ),
+        (an(adds("F_x", lambda q, u: q * u, opposes="u")), "passive", "opposes u, but adds", "turn the sign"),
+        (
+            an(adds("F_x", lambda q, u: -q * u, opposes="u"), lower=-1.0),
+            "passive",
+            "with its parameters negative",
+            "set lower=0.0",
+        ),
+        (an(adds("F_x", lambda q, u: -q * u, opposes="w")), "passive", "opposes='w' is no quantity", ""),
+        (an(lambda q: q, to="F_y", unit=N, mirror="+"), "mirror", 'along the chair, with mirror= of q "+"', 'mirror="-"'),
+        (an(lambda q: q, to="F_y", unit=N, mirror="-p"), "mirror", "no partner p", "symbol behind the sign"),
+        (an(lambda q, u: -q * u, off=1.0), "record", "q is off at 1.0", "write off=0.0"),
+        (an(lambda q, u: -q * u, smallest_interesting=None), "record", "smallest_interesting of q is None", "N.s/m"),
+        (an(lambda q, u: -q * u, upper=float("inf")), "record", "0 to inf", "finite"),
+        (an(lambda q, u: -q * u, upper=0.2), "record", "0.5 N.s/m is of interest", "lower ≤ 0"),
+        (an(lambda q, u: -q * u, source=""), "record", "q has no source", "in quotes"),
+        (an(lambda q, u: -q * u, unit="N"), "record", "the unit of q is 'N'", "wheelchair_fmu.quantities"),
+        (an(lambda q, u: -q * u, unit=Unit("N", kg="1")), "record", "the unit of q is Unit(name='N', kg='1'", "import a Unit"),
+        (an(lambda q, v_xr: -q * v_xr), "equations", "gives F_x a term of shape (2, 1)", "give one number"),
+        (an("-q * u"), "record", "the law of its term in F_x is a str", "function"),
+        (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
+        (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
+        (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
+        (an(lambda q, nonsense: q * nonsense), "equations", "reads 'nonsense', which is no quantity", "effects quantities"),
+        (an(lambda q, u: -q * u, to="F_z"), "equations", "'F_z'", "did you mean"),
+        (an(lambda q, u: -q * u if u > 0 else 0), "equations", "RuntimeError: Cannot compute the truth value", "without if"),
+    ],
+)
 def test_what_breaks_a_contract_is_named_with_its_cure(effect, contract, fact, cure):
     found = breaches(effect)
     told = [str(b) for b in found if b.contract == contract]
@@ -108,8 +132,7 @@ def test_order_does_not_matter():
     one, two = variant_with(*ids), variant_with(*ids[::-1])
     place = anywhere(one, np.random.default_rng(14))
     models = one.model(), two.model()
-    np.testing.assert_array_equal(evaluate(models[0], place, models[0].f)[0],
-                                  evaluate(models[1], place, models[1].f)[0])  # fmt: skip
+    np.testing.assert_array_equal(evaluate(models[0], place, models[0].f)[0], evaluate(models[1], place, models[1].f)[0])
 
 
 def test_misfits_are_refused():

@@ -82,8 +82,9 @@ def _consistent(model, place, direction, places):
     """The direction with algebraic states following, by dense linear algebra."""
     dx, dw, dp = (d.copy() for d in direction)
     if len(places):
-        fx, fw, fp = (m[places] for m in evaluate(model, place, *(cs.jacobian(model.f, v)
-                                                  for v in (model.x, model.w, model.p))))  # fmt: skip
+        fx, fw, fp = (
+            m[places] for m in evaluate(model, place, *(cs.jacobian(model.f, v) for v in (model.x, model.w, model.p)))
+        )
         dx[places] = 0
         dx[places] = np.linalg.solve(fx[:, places], -(fx @ dx + fw @ dw + fp @ dp))
     return dx, dw, dp

@@ -23,14 +23,16 @@ BAD = {  # file -> (text, how its line begins)
     "binary.py": (b"\x00\xff\xfe", f"binary.py: {UNREAD}"),
     "none.py": ("", 'none.py: there is no record EFFECT in it; write EFFECT = Effect("none", ...)'),
     "number.py": ("EFFECT = 1\n", 'number.py: EFFECT is of type int; write EFFECT = Effect("number", ...)'),
-    "arguments.py": ("from wheelchair_fmu.model.stage import Effect\nEFFECT = Effect('arguments')\n",
-                     f"arguments.py line 2: {UNREAD} TypeError: Effect.__init__() missing 2 required"),
+    "arguments.py": (
+        "from wheelchair_fmu.model.stage import Effect\nEFFECT = Effect('arguments')\n",
+        f"arguments.py line 2: {UNREAD} TypeError: Effect.__init__() missing 2 required",
+    ),
     "twin.py": (GOOD, "twin.py: its effect is called 'mine', which is that of mine.py; call it 'twin' like its file"),
     "other.py": (template("force", "else"), "other.py: its effect is called 'else'; call it 'other' like its file"),
     "gyro_bias.py": (template("force", "gyro_bias"), "gyro_bias.py: there is a bundled effect 'gyro_bias' already; give"),
     "My Drag.py": (template("force", "My Drag"), "My Drag.py: 'My Drag' is no name for an effect; use small letters"),
     "unit.py": (template("force", "unit").replace("N_S_M", "N"), "effect unit, units: its term in F_x comes out in W where N"),
-}  # fmt: skip
+}
 
 
 def test_every_fault_of_every_file_is_named_at_once(tmp_path):

@@ -39,12 +39,15 @@ def script(folder: Path, text: str) -> str:
     return str(file)
 
 
-@pytest.mark.parametrize(("words", "says"), [
-    ("false", "the C compiler failed; set CC to another"),
-    ("no-such-compiler", "set CC to one that runs"),
-    ('gcc "-O2', "CC = .* is no command: no closing quotation; set it as a shell would read it"),
-    ("sh -c :", "sh -c : --version says nothing, so it is no C compiler; set CC to one, or unset it"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("false", "the C compiler failed; set CC to another"),
+        ("no-such-compiler", "set CC to one that runs"),
+        ('gcc "-O2', "CC = .* is no command: no closing quotation; set it as a shell would read it"),
+        ("sh -c :", "sh -c : --version says nothing, so it is no C compiler; set CC to one, or unset it"),
+    ],
+)
 def test_a_compiler_that_does_not_work_is_an_error_with_a_cure(cc, words, says):
     cc(words)
     with pytest.raises(BuildError, match=says):
@@ -57,13 +60,16 @@ def test_a_variable_that_is_blank_asks_for_nothing(cc):
 
 
 @posix
-@pytest.mark.parametrize(("does", "says"), [
-    ("true", "has written nothing, so it is no C compiler"),
-    ("sleep 60", "was ended after 0.3 s without a result; set CC to one"),
-    ("kill -s KILL $$", "was ended by SIGKILL, perhaps for want of memory"),
-    ("echo 'x.s: No space left on device' >&2; exit 1", "no room for what the C compiler writes; make room"),
-    ("printf '\\377\\376' >&2; exit 1", "the C compiler failed"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("does", "says"),
+    [
+        ("true", "has written nothing, so it is no C compiler"),
+        ("sleep 60", "was ended after 0.3 s without a result; set CC to one"),
+        ("kill -s KILL $$", "was ended by SIGKILL, perhaps for want of memory"),
+        ("echo 'x.s: No space left on device' >&2; exit 1", "no room for what the C compiler writes; make room"),
+        ("printf '\\377\\376' >&2; exit 1", "the C compiler failed"),
+    ],
+)
 def test_a_compiler_that_makes_nothing_is_said_in_a_sentence(cc, does, says, tmp_path, monkeypatch):
     cc(script(tmp_path, does))
     monkeypatch.setattr(compiler, "LONGEST", 0.3)

@@ -14,9 +14,13 @@ from wheelchair_fmu.engine.innovations import Noise, Whitener
 def drawn(rng, n, nx, ns, keeps):
     """A run of n samples with nx states, four pushes and ns sensors, whose derivatives are drawn at random."""
     return SimpleNamespace(
-        time=0.01 * np.arange(n), transition=keeps * rng.normal(size=(n - 1, nx, nx)),
-        push_before=rng.normal(size=(n - 1, nx, 4)), push_after=rng.normal(size=(n - 1, nx, 4)),
-        by_state=rng.normal(size=(n, ns, nx)), by_push=rng.normal(size=(n, ns, 4)))  # fmt: skip
+        time=0.01 * np.arange(n),
+        transition=keeps * rng.normal(size=(n - 1, nx, nx)),
+        push_before=rng.normal(size=(n - 1, nx, 4)),
+        push_after=rng.normal(size=(n - 1, nx, 4)),
+        by_state=rng.normal(size=(n, ns, nx)),
+        by_push=rng.normal(size=(n, ns, 4)),
+    )
 
 
 @pytest.mark.parametrize("colour", [0.0, 0.8])
@@ -24,8 +28,9 @@ def test_innovations_are_generalised_least_squares(colour):
     rng = np.random.default_rng(0)
     n, nx, nq, nz = 12, 3, 2, 2
     run = drawn(rng, n, nx, 3, 0.3)
-    noise = Noise(np.array([0.3, 0.5]), np.full(nq, colour), np.array([0.2, 0.4]), np.full(nz, colour),
-                  np.diag([0.1, 0.0, 0.2]) ** 2)  # fmt: skip
+    noise = Noise(
+        np.array([0.3, 0.5]), np.full(nq, colour), np.array([0.2, 0.4]), np.full(nz, colour), np.diag([0.1, 0.0, 0.2]) ** 2
+    )
     which = [0, 2]
     signals = rng.normal(size=(n, nz, 4))
     signals[4, 1, 0] = np.nan
@@ -131,8 +136,14 @@ def test_noise_of_a_push_moves_the_chair_alike_however_many_rows_lie_between_its
         n, gaps = len(time), np.diff(time)
         half = np.zeros((n - 1, 1, 4))
         half[:, 0, 0] = gaps / 2  # a straight line between two samples
-        run = SimpleNamespace(time=time, transition=np.ones((n - 1, 1, 1)), push_before=half, push_after=half,
-                              by_state=np.ones((n, 1, 1)), by_push=np.zeros((n, 1, 4)))  # fmt: skip
+        run = SimpleNamespace(
+            time=time,
+            transition=np.ones((n - 1, 1, 1)),
+            push_before=half,
+            push_after=half,
+            by_state=np.ones((n, 1, 1)),
+            by_push=np.zeros((n, 1, 4)),
+        )
         noise = Noise(np.ones(1), np.full(1, phi), np.full(1, 1e-9), np.zeros(1), np.zeros((1, 1)), np.full(1, 0.01))
         return float(Whitener(run, [0], noise, np.ones((n, 1), bool)).spread[-1, 0] ** -2)
 

@@ -10,8 +10,20 @@ from wheelchair_fmu.engine.sensitivities import Sensitivities
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.model.effects import bundled
 
-CALIBRATED = ("tyre.C_lambda", "tyre.C_m_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", "chair.m", "chair.a",
-              "chair.b", "chair.t_r", "start.u", "start.v", "start.psi_dot")  # fmt: skip
+CALIBRATED = (
+    "tyre.C_lambda",
+    "tyre.C_m_lambda",
+    "resistance.f_r",
+    "resistance.f_f",
+    "chair.I_z",
+    "chair.m",
+    "chair.a",
+    "chair.b",
+    "chair.t_r",
+    "start.u",
+    "start.v",
+    "start.psi_dot",
+)
 SLALOM = (1.0, lambda t: 8 + 6 * np.sin(3 * t), lambda t: 8 - 6 * np.sin(3 * t))
 SPIN = (0.05, lambda t: 15 * np.sin(t), lambda t: -14 * np.sin(t))
 

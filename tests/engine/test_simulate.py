@@ -28,11 +28,19 @@ def radau(variant: Variant, t, w, x0):
     slopes = cs.Function("slopes", [model.x, model.w, model.p], [cs.jacobian(model.f / model.mass, model.x)])
     rows = [x0]
     for i in range(len(t) - 1):
+
         def at(s, i=i):
             return w[i] + (w[i + 1] - w[i]) * (s - t[i]) / (t[i + 1] - t[i])
 
-        run = solve_ivp(lambda s, x, at=at: rates(x, at(s), p).full().ravel(), (t[i], t[i + 1]), rows[-1], method="Radau",
-                        rtol=1e-10, atol=1e-12, jac=lambda s, x, at=at: slopes(x, at(s), p).full())  # fmt: skip
+        run = solve_ivp(
+            lambda s, x, at=at: rates(x, at(s), p).full().ravel(),
+            (t[i], t[i + 1]),
+            rows[-1],
+            method="Radau",
+            rtol=1e-10,
+            atol=1e-12,
+            jac=lambda s, x, at=at: slopes(x, at(s), p).full(),
+        )
         rows.append(run.y[:, -1])
     return np.array(rows)
 
@@ -92,8 +100,15 @@ def turned_back(variant: Variant, period: float, tolerance: float = 1e-7) -> Tra
     t = np.append(np.arange(0, 2 - period / 2, period), 2.0)
     push = np.where(np.floor(t / 0.3 + 1e-9) % 2 == 0, 15.0, -15.0)
     start = np.zeros(simulator.model.x.numel())
-    return simulator.run(t, simulator.inputs(len(t), {"push.F_rl": push, "push.F_rr": -0.9 * push}), variant.vector(),
-                         start=start, tolerance=tolerance, grid=1e-3, hold=True)  # fmt: skip
+    return simulator.run(
+        t,
+        simulator.inputs(len(t), {"push.F_rl": push, "push.F_rr": -0.9 * push}),
+        variant.vector(),
+        start=start,
+        tolerance=tolerance,
+        grid=1e-3,
+        hold=True,
+    )
 
 
 def test_a_wheel_that_turns_back_takes_few_steps():

@@ -47,8 +47,11 @@ def test_made_once_and_found_again():
     assert kept(made).read_bytes() == CONTENT and len(made) == 1
 
 
-@pytest.mark.parametrize("damage", [flipped, lambda c: b"", lambda c: c[: len(c) // 2], lambda c: c + b"\0"],
-                         ids=["a bit flipped", "emptied", "halved", "grown"])  # fmt: skip
+@pytest.mark.parametrize(
+    "damage",
+    [flipped, lambda c: b"", lambda c: c[: len(c) // 2], lambda c: c + b"\0"],
+    ids=["a bit flipped", "emptied", "halved", "grown"],
+)
 def test_what_was_damaged_is_made_again(damage, place, caplog):
     made: list[Path] = []
     path = kept(made)
@@ -100,9 +103,12 @@ print(store.kept("thing", ".so", make).read_bytes()[:1].decode())
 
 def test_two_processes_make_the_same_file_at_once(place, tmp_path):
     ends = tmp_path / "a", tmp_path / "b"
-    both = [subprocess.Popen([sys.executable, "-c", WRITE, letter, str(mine), str(other)], stdout=subprocess.PIPE, text=True,
-                             cwd=ROOT)
-            for letter, mine, other in (("x", *ends), ("y", *ends[::-1]))]  # fmt: skip
+    both = [
+        subprocess.Popen(
+            [sys.executable, "-c", WRITE, letter, str(mine), str(other)], stdout=subprocess.PIPE, text=True, cwd=ROOT
+        )
+        for letter, mine, other in (("x", *ends), ("y", *ends[::-1]))
+    ]
     assert [p.communicate(timeout=60)[0].strip() for p in both] == ["x", "y"]
     assert kept([]).read_bytes() in (b"x" * 100_000, b"y" * 100_000) and len(list(place.iterdir())) == 2
 

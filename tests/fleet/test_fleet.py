@@ -54,8 +54,12 @@ def test_each_chair_has_a_row_and_the_faulty_one_its_fault(garage, diagnosed):
 
 def test_effects_and_summary_stand_beside_it(diagnosed):
     done, out = diagnosed
-    assert sorted(f.name for f in out.parent.iterdir()) == ["fleet-effects.csv", "fleet-summary.csv", "fleet.csv",
-                                                            "fleet.parquet"]  # fmt: skip
+    assert sorted(f.name for f in out.parent.iterdir()) == [
+        "fleet-effects.csv",
+        "fleet-summary.csv",
+        "fleet.csv",
+        "fleet.parquet",
+    ]
     effects, together = (pd.read_csv(out.with_name(f"fleet-{kind}.csv")) for kind in ("effects", "summary"))
     assert set(effects.campaign) == {"a", "c"} and RIVALS & set(effects.effect)
     air = together.set_index("parameter").loc["k"] if together.parameter.is_unique else together.iloc[0]
@@ -120,13 +124,16 @@ def test_a_worker_that_does_not_see_the_folder_says_so():
         Fleet((Path("/not/there"),)).table(0)
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (("-o", "out.xlsx"), 2, "give a name that ends in .parquet or .csv"),
-    (("-o", "o.csv", "--set", "chair.mm=3"), 2, "no parameter 'chair.mm'"),
-    (("-o", "o.csv", "--dask", "x", "--workers", 2), 2, "give one of them"),
-    (("-o", "o.csv", "--variant", "none.toml"), 1, "none.toml: no such file"),
-    ((), 2, "--output"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (("-o", "out.xlsx"), 2, "give a name that ends in .parquet or .csv"),
+        (("-o", "o.csv", "--set", "chair.mm=3"), 2, "no parameter 'chair.mm'"),
+        (("-o", "o.csv", "--dask", "x", "--workers", 2), 2, "give one of them"),
+        (("-o", "o.csv", "--variant", "none.toml"), 1, "none.toml: no such file"),
+        ((), 2, "--output"),
+    ],
+)
 def test_fleet_refuses_in_one_sentence(garage, tmp_path, monkeypatch, words, code, sentence):
     monkeypatch.chdir(tmp_path)
     done = wheelchair("fleet", garage, *words)

@@ -40,8 +40,12 @@ def test_the_share_has_wilsons_interval():
 
 
 def test_what_is_tied_counts_apart_and_what_is_small_has_no_part_in_the_size():
-    found = lines(("1", "missing", "drag", "D", 1.0, 0.1), ("2", "tie", "drag", "D", 1.2, 0.1),
-                  ("2", "tie", "air", "k", 0.4, 0.1), ("3", "small", "drag", "D", 0.1, 0.01))  # fmt: skip
+    found = lines(
+        ("1", "missing", "drag", "D", 1.0, 0.1),
+        ("2", "tie", "drag", "D", 1.2, 0.1),
+        ("2", "tie", "air", "k", 0.4, 0.1),
+        ("3", "small", "drag", "D", 0.1, 0.01),
+    )
     drag, air = summary(found, chairs=5).to_dict("records")
     assert (drag["missing"], drag["tied"], drag["small"], drag["n"]) == (1, 1, 1, 2)
     assert drag["mean"] == pytest.approx(1.1) and drag["share"] == pytest.approx(0.4)

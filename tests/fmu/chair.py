@@ -58,8 +58,9 @@ class Chair:
         d = unpacked.description
         self.unpacked, self.said, self.time = unpacked, [], 0.0
         self.types = {v.name: v for v in d.modelVariables}
-        self.fmu = FMU2Slave(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name,
-                             modelIdentifier=d.coSimulation.modelIdentifier)  # fmt: skip
+        self.fmu = FMU2Slave(
+            guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name, modelIdentifier=d.coSimulation.modelIdentifier
+        )
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
@@ -137,11 +138,16 @@ class Chair3(Chair):
         d = unpacked.description
         self.unpacked, self.said, self.time = unpacked, [], 0.0
         self.types = {v.name: v for v in d.modelVariables}
-        self.fmu = FMU3Slave(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name,
-                             modelIdentifier=d.coSimulation.modelIdentifier)  # fmt: skip
+        self.fmu = FMU3Slave(
+            guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName=name, modelIdentifier=d.coSimulation.modelIdentifier
+        )
         self.failed: list[BaseException] = []
-        self.fmu.instantiate(loggingOn=logging, earlyReturnAllowed=early, logMessage=self._log3,
-                             intermediateUpdate=update and self._guarded(update))  # fmt: skip
+        self.fmu.instantiate(
+            loggingOn=logging,
+            earlyReturnAllowed=early,
+            logMessage=self._log3,
+            intermediateUpdate=update and self._guarded(update),
+        )
 
     def _log3(self, environment, status, category, text) -> None:
         self._log(environment, b"", status, category, text)

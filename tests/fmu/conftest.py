@@ -53,14 +53,35 @@ def host(workshop):
     """Runs the C host on an FMU: `host(unpacked, mode, steps, length)` gives the numbers it prints."""
     program = workshop / "host"
     source = Path(__file__).with_name("host.c")
-    done = subprocess.run([*compiler.command(), "-O2", "-Wall", "-Wextra", "-Werror", f"-I{headers()}", str(source),
-                           "-o", str(program), "-ldl", "-lm"], capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [
+            *compiler.command(),
+            "-O2",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            f"-I{headers()}",
+            str(source),
+            "-o",
+            str(program),
+            "-ldl",
+            "-lm",
+        ],
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
 
     def run(unpacked: Unpacked, mode: str, steps: int, length: float) -> list[float]:
         names = ("push.F_rl", "push.F_rr", "chair.x", "chair.u", "chair.psi")
-        words = [str(unpacked.library), unpacked.description.guid, mode, str(steps), str(length),
-                 *(str(unpacked.reference(n)) for n in names)]  # fmt: skip
+        words = [
+            str(unpacked.library),
+            unpacked.description.guid,
+            mode,
+            str(steps),
+            str(length),
+            *(str(unpacked.reference(n)) for n in names),
+        ]
         done = subprocess.run([str(program), *words], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         return [float(word) for word in done.stdout.split()]

@@ -72,8 +72,12 @@ class Exchange2(_Exchange, Chair):
         d = unpacked.description
         self.unpacked, self.said, self.time = unpacked, [], 0.0
         self.types = {v.name: v for v in d.modelVariables}
-        self.fmu = FMU2Model(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName="chair",
-                             modelIdentifier=d.modelExchange.modelIdentifier)  # fmt: skip
+        self.fmu = FMU2Model(
+            guid=d.guid,
+            unzipDirectory=str(unpacked.folder),
+            instanceName="chair",
+            modelIdentifier=d.modelExchange.modelIdentifier,
+        )
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(self._log)
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
@@ -88,8 +92,12 @@ class Exchange3(_Exchange, Chair3):
         d = unpacked.description
         self.unpacked, self.said, self.time, self.failed = unpacked, [], 0.0, []
         self.types = {v.name: v for v in d.modelVariables}
-        self.fmu = FMU3Model(guid=d.guid, unzipDirectory=str(unpacked.folder), instanceName="chair",
-                             modelIdentifier=d.modelExchange.modelIdentifier)  # fmt: skip
+        self.fmu = FMU3Model(
+            guid=d.guid,
+            unzipDirectory=str(unpacked.folder),
+            instanceName="chair",
+            modelIdentifier=d.modelExchange.modelIdentifier,
+        )
         self.fmu.instantiate(loggingOn=logging, logMessage=self._log3)
 
 

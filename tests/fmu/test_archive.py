@@ -35,8 +35,9 @@ def test_fmpy_finds_no_fault(flavour, request):
     assert problems(request.getfixturevalue(flavour).path) == []
 
 
-@pytest.mark.parametrize(("flavour", "options"), [("native", {}), ("native3", {"fmi": "3"}),
-                                                  ("in_python", {"flavour": "python"})])  # fmt: skip
+@pytest.mark.parametrize(
+    ("flavour", "options"), [("native", {}), ("native3", {"fmi": "3"}), ("in_python", {"flavour": "python"})]
+)
 def test_two_builds_are_the_same_bytes(flavour, options, request, tmp_path):
     first = request.getfixturevalue(flavour).path
     again = build(target=tmp_path / "again.fmu", **options)
@@ -72,8 +73,19 @@ def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
 @pytest.mark.parametrize("version", ["2", "3"])
 def test_compiles_without_a_warning_and_shows_fmi_only(version, native, native3, tmp_path):
     unit = {"2": native, "3": native3}[version].folder / "sources" / "all.c"
-    _compile("-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fPIC", "-c", str(unit), "-o",
-             str(tmp_path / "object.o"))  # fmt: skip
+    _compile(
+        "-std=c11",
+        "-O1",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "-fPIC",
+        "-c",
+        str(unit),
+        "-o",
+        str(tmp_path / "object.o"),
+    )
     exported = _lines("nm", "--extern-only", "--defined-only", str(tmp_path / "object.o"))
     assert len(exported) > 40 and all(re.fullmatch(rf"\S+ T fmi{version}\w+", line) for line in exported)
 
@@ -121,8 +133,12 @@ def test_a_host_without_casadi_is_told_so(in_python, tmp_path):
     assert "casadi" in (in_python.folder / "documentation" / "externalDependencies.txt").read_text(encoding="utf-8")
     (tmp_path / "casadi.py").write_text("raise ModuleNotFoundError(\"No module named 'casadi'\", name='casadi')")
     code = "import sys, fmpy; fmpy.simulate_fmu(sys.argv[1], stop_time=0.01, debug_logging=True)"
-    done = subprocess.run([sys.executable, "-c", code, str(in_python.path)], capture_output=True, text=True,
-                          env=_environment(PYTHONPATH=str(tmp_path)))  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(in_python.path)],
+        capture_output=True,
+        text=True,
+        env=_environment(PYTHONPATH=str(tmp_path)),
+    )
     sentence = "this FMU needs the package casadi, which the Python of this host cannot import"
     assert done.returncode and sentence in done.stderr and "pip install casadi numpy" in done.stderr
     assert sentence in done.stdout  # FMPy's log, as the FMU gave it
@@ -253,10 +269,14 @@ def test_nothing_half_written_where_it_cannot_be(tmp_path):
 
 @pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not installed: `pip install ziglang`")
 def test_builds_with_zig_instead_of_a_system_compiler(tmp_path, native):
-    code = ("from pathlib import Path; from wheelchair_fmu.fmu.build import build; import sys; "
-            "build(target=Path(sys.argv[1]))")  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "zig.fmu")], capture_output=True, text=True, cwd=ROOT,
-                          env=_environment(CC=f"{sys.executable} -m ziglang cc"))  # fmt: skip
+    code = "from pathlib import Path; from wheelchair_fmu.fmu.build import build; import sys; build(target=Path(sys.argv[1]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "zig.fmu")],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env=_environment(CC=f"{sys.executable} -m ziglang cc"),
+    )
     assert done.returncode == 0, done.stderr
     with chair(Unpacked.of(tmp_path / "zig.fmu", tmp_path / "zig")) as by_zig, chair(native) as by_cc:
         results = [c.start({"push.F_rl": 20.0}).step(0.01, 100).outputs() for c in (by_zig, by_cc)]
@@ -279,5 +299,6 @@ def _environment(**more: str) -> dict[str, str]:
 
 
 def _build(words: list[str]) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, str(ROOT / "build_fmu.py"), *words], capture_output=True, text=True,
-                          env=_environment())  # fmt: skip
+    return subprocess.run(
+        [sys.executable, str(ROOT / "build_fmu.py"), *words], capture_output=True, text=True, env=_environment()
+    )

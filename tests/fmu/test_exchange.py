@@ -21,8 +21,9 @@ STATES = ["chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_do
 SET = {"effect.lateral_load_transfer.h": 0.5, "start.psi_dot": 0.2}
 # Held, with jumps: fmpy's CVode holds inputs within its steps anyway.
 JUMPS = [(0.0, 20, 16), (1.0, 20, 16), (1.0, -5, 8), (2.0, -5, 8), (2.0, 0, 0), (3.0, 0, 0)]
-PUSHES = np.array([tuple(map(float, row)) for row in JUMPS],
-                  dtype=[("time", float), ("push.F_rl", float), ("push.F_rr", float)])  # fmt: skip
+PUSHES = np.array(
+    [tuple(map(float, row)) for row in JUMPS], dtype=[("time", float), ("push.F_rl", float), ("push.F_rr", float)]
+)
 
 
 @pytest.fixture(scope="session")
@@ -39,9 +40,17 @@ def test_cvode_gets_the_trajectory_of_co_simulation(archive, request):
     values = {k: v for k, v in SET.items() if any(k == x.name for x in unpacked.description.modelVariables)}
 
     def run(kind: str, tolerance: float) -> np.ndarray:
-        return fmpy.simulate_fmu(str(unpacked.path), fmi_type=kind, stop_time=3, output_interval=0.01, input=PUSHES,
-                                 output=outputs, start_values=values, relative_tolerance=tolerance,
-                                 record_events=False)  # fmt: skip
+        return fmpy.simulate_fmu(
+            str(unpacked.path),
+            fmi_type=kind,
+            stop_time=3,
+            output_interval=0.01,
+            input=PUSHES,
+            output=outputs,
+            start_values=values,
+            relative_tolerance=tolerance,
+            record_events=False,
+        )
 
     expected, found = run("CoSimulation", 1e-9), run("ModelExchange", 1e-9)
     for name in outputs:
@@ -101,8 +110,14 @@ def test_rates_are_those_of_the_states(archive, request):
         rates = e.rates()
         assert rates[:3] == pytest.approx([np.cos(0.4), np.sin(0.4), 0.2], rel=1e-12)
         assert list(rates) == e.get(*unpacked.derivatives)
-        jacobian = np.array([e.fmu.getDirectionalDerivative([unpacked.reference(n) for n in unpacked.derivatives],
-                                                            [unpacked.reference(n)], [1.0]) for n in STATES]).T  # fmt: skip
+        jacobian = np.array(
+            [
+                e.fmu.getDirectionalDerivative(
+                    [unpacked.reference(n) for n in unpacked.derivatives], [unpacked.reference(n)], [1.0]
+                )
+                for n in STATES
+            ]
+        ).T
         x, h = e.states(), 1e-6
         for i in range(6):
             ends = [e.f(0.0, x + s * h * np.eye(6)[i]) for s in (1, -1)]
@@ -161,9 +176,15 @@ def test_euler_at_the_default_step_integrates_a_turn(archive, request):
 def test_cvode_stops_at_the_event(native):
     """A growing turn: the wheel lifts between two outputs, and the output says so from then on only."""
     pushes = np.array([(0.0, 0.0, 0.0), (2.0, 400.0, -400.0)], dtype=PUSHES.dtype)
-    result = fmpy.simulate_fmu(str(native.path), fmi_type="ModelExchange", stop_time=2, output_interval=0.05, input=pushes,
-                               start_values={"effect.lateral_load_transfer.h": 1.0, "start.u": 2.0, "chair.t_r": 0.3},
-                               output=["load.lifted", "load.rl", "load.rr", "load.fl", "load.fr"])  # fmt: skip
+    result = fmpy.simulate_fmu(
+        str(native.path),
+        fmi_type="ModelExchange",
+        stop_time=2,
+        output_interval=0.05,
+        input=pushes,
+        start_values={"effect.lateral_load_transfer.h": 1.0, "start.u": 2.0, "chair.t_r": 0.3},
+        output=["load.lifted", "load.rl", "load.rr", "load.fl", "load.fr"],
+    )
     lifted = result["load.lifted"].astype(bool)
     least = np.min([result[f"load.{w}"] for w in ("rl", "rr", "fl", "fr")], axis=0)
     assert lifted.any() and not lifted[0]

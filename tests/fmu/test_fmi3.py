@@ -60,10 +60,26 @@ def test_both_versions_step_alike(native, native3):
 def test_both_versions_describe_the_same_variables(native, native3):
     def known(unpacked: Unpacked) -> list:
         same = {"Real": "Float64"}
-        return [(v.name, v.valueReference, same.get(v.type, v.type), v.causality, v.variability, v.start, v.min, v.max,
-                 v.nominal, v.unit, v.displayUnit, v.quantity, v.declaredType and v.declaredType.name, v.reinit,
-                 v.derivative and v.derivative.name)
-                for v in unpacked.description.modelVariables]  # fmt: skip
+        return [
+            (
+                v.name,
+                v.valueReference,
+                same.get(v.type, v.type),
+                v.causality,
+                v.variability,
+                v.start,
+                v.min,
+                v.max,
+                v.nominal,
+                v.unit,
+                v.displayUnit,
+                v.quantity,
+                v.declaredType and v.declaredType.name,
+                v.reinit,
+                v.derivative and v.derivative.name,
+            )
+            for v in unpacked.description.modelVariables
+        ]
 
     def depends(unknowns) -> list:
         return [(u.variable.name, [d.name for d in u.dependencies], u.dependenciesKind) for u in unknowns]
@@ -141,8 +157,9 @@ def test_its_sources_compile_as_the_build_description_says(archive, request, tmp
     units = [str(unpacked.folder / "sources" / f.get("name")) for f in files.iter("SourceFile")]
     other = tmp_path / unpacked.library.relative_to(unpacked.folder)
     other.parent.mkdir(parents=True)
-    done = subprocess.run([*compiler.command(), "-fPIC", "-shared", *words, *units, "-o", str(other), "-lm"],
-                          capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [*compiler.command(), "-fPIC", "-shared", *words, *units, "-o", str(other), "-lm"], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     with chair(unpacked) as c, chair(Unpacked(unpacked.path, tmp_path, unpacked.description)) as o:
         assert c.start(pushed(0)).step(0.01, 50).outputs() == o.start(pushed(0)).step(0.01, 50).outputs()
@@ -156,8 +173,20 @@ def test_its_sources_keep_a_compiler_from_fusing_multiplications(native3, tmp_pa
         source = unit.with_name(name)
         if name == "fused.c":
             source.write_text(re.sub("#pragma (GCC opt|STDC).*", "", unit.read_text(encoding="utf-8")), encoding="utf-8")
-        done = subprocess.run([*compiler.command(), "-O2", "-mfma", "-S", f"-I{native_flavour.headers()}", str(source), "-o",
-                               str(tmp_path / "text.s")], capture_output=True, text=True)  # fmt: skip
+        done = subprocess.run(
+            [
+                *compiler.command(),
+                "-O2",
+                "-mfma",
+                "-S",
+                f"-I{native_flavour.headers()}",
+                str(source),
+                "-o",
+                str(tmp_path / "text.s"),
+            ],
+            capture_output=True,
+            text=True,
+        )
         assert done.returncode == 0, done.stderr
         text[name] = (tmp_path / "text.s").read_text(encoding="utf-8")
     assert text["fused.c"].count("vfmadd") > 100 > 10 * text["all.c"].count("vfmadd")
@@ -291,19 +320,29 @@ def test_every_function_without_a_use_says_so(native3):
         f, i = c.fmu, c.fmu.component
         sizes = (ctypes.c_size_t * 1)(1)
         calls = [
-            *((getattr(f, f"fmi3{verb}{t}"), one, 1, getattr(fmi3, f"fmi3{t}")(), 1)
-              for verb in ("Get", "Set") for t in ("Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "UInt64")),
-            (f.fmi3GetString, one, 1, text, 1), (f.fmi3SetString, one, 1, text, 1),
+            *(
+                (getattr(f, f"fmi3{verb}{t}"), one, 1, getattr(fmi3, f"fmi3{t}")(), 1)
+                for verb in ("Get", "Set")
+                for t in ("Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "UInt64")
+            ),
+            (f.fmi3GetString, one, 1, text, 1),
+            (f.fmi3SetString, one, 1, text, 1),
             (f.fmi3GetBinary, one, 1, sizes, (ctypes.POINTER(ctypes.c_uint8) * 1)(), 1),
-            (f.fmi3GetClock, one, 1, (ctypes.c_bool * 1)()), (f.fmi3SetClock, one, 1, (ctypes.c_bool * 1)()),
+            (f.fmi3GetClock, one, 1, (ctypes.c_bool * 1)()),
+            (f.fmi3SetClock, one, 1, (ctypes.c_bool * 1)()),
             (f.fmi3GetShiftDecimal, one, 1, (ctypes.c_double * 1)()),
             (f.fmi3SetIntervalDecimal, one, 1, (ctypes.c_double * 1)()),
-            (f.fmi3EnterConfigurationMode,), (f.fmi3ExitConfigurationMode,), (f.fmi3EnterStepMode,),
-            (f.fmi3EvaluateDiscreteStates,), (f.fmi3ActivateModelPartition, 1, 0.0),
+            (f.fmi3EnterConfigurationMode,),
+            (f.fmi3ExitConfigurationMode,),
+            (f.fmi3EnterStepMode,),
+            (f.fmi3EvaluateDiscreteStates,),
+            (f.fmi3ActivateModelPartition, 1, 0.0),
             (f.fmi3GetNumberOfVariableDependencies, 1, ctypes.byref(number)),
-            (f.fmi3EnterEventMode,), (f.fmi3EnterContinuousTimeMode,), (f.fmi3SetTime, 1.0),
+            (f.fmi3EnterEventMode,),
+            (f.fmi3EnterContinuousTimeMode,),
+            (f.fmi3SetTime, 1.0),
             (f.fmi3GetNumberOfContinuousStates, ctypes.byref(number)),
-        ]  # fmt: skip
+        ]
         for call, *words in calls:
             refused(ERROR, call, i, *words)
         assert len(c.sentences) == len(calls)
@@ -329,14 +368,14 @@ def test_wrong_sizes_are_refused(native3):
 def test_instances_that_cannot_be_are_refused_with_a_reason(native3):
     said = []
     d = native3.description
-    fmu = fmi3.FMU3Slave(guid=d.guid, unzipDirectory=str(native3.folder), instanceName="x",
-                         modelIdentifier="Wheelchair")  # fmt: skip
+    fmu = fmi3.FMU3Slave(guid=d.guid, unzipDirectory=str(native3.folder), instanceName="x", modelIdentifier="Wheelchair")
     log = fmi3.fmi3LogMessageCallback(lambda environment, status, category, text: said.append(text.decode()))
     token, none = d.guid.encode(), fmi3.fmi3IntermediateUpdateCallback()
 
     def cosimulation(name: bytes, token: bytes, event_mode: bool):
-        return fmu.fmi3InstantiateCoSimulation(name, token, None, False, False, event_mode, False,
-                                               (ctypes.c_uint32 * 0)(), 0, None, log, none)  # fmt: skip
+        return fmu.fmi3InstantiateCoSimulation(
+            name, token, None, False, False, event_mode, False, (ctypes.c_uint32 * 0)(), 0, None, log, none
+        )
 
     assert not cosimulation(b"", token, False)
     assert not cosimulation(b"x", b"{other}", False)
@@ -344,7 +383,8 @@ def test_instances_that_cannot_be_are_refused_with_a_reason(native3):
     callbacks = (fmi3.fmi3ClockUpdateCallback(), fmi3.fmi3LockPreemptionCallback(), fmi3.fmi3UnlockPreemptionCallback())
     assert not fmu.fmi3InstantiateScheduledExecution(b"x", token, None, False, False, None, log, *callbacks)
     assert [s.split(": ")[1].split(";")[0] for s in said] == [
-        "the instance has no name", "the token (guid) is not this library's",
+        "the instance has no name",
+        "the token (guid) is not this library's",
         "Co-Simulation has no event mode here (hasEventMode is false)",
         "this FMU is for Co-Simulation and Model Exchange",
-    ]  # fmt: skip
+    ]

@@ -29,10 +29,12 @@ needs_zig = pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not 
 MARKERS = {"_mh_dylib_header", "__dso_handle"}  # zig's linker exports these two addresses of every macOS library
 RUNNERS = {
     "x86_64-linux": ([] if HOST == "x86_64-linux" else None, "this is no x86-64 Linux"),
-    "aarch64-linux": (["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"] if shutil.which("qemu-aarch64") else None,
-                      "no qemu-user: `apt-get install qemu-user libc6-arm64-cross`"),
+    "aarch64-linux": (
+        ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"] if shutil.which("qemu-aarch64") else None,
+        "no qemu-user: `apt-get install qemu-user libc6-arm64-cross`",
+    ),
     "x86_64-windows": ([WINE] if WINE else None, "no wine: `apt-get install wine64`"),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
@@ -101,8 +103,9 @@ def test_libraries_export_fmi_and_need_the_system_only(everywhere):
         exported, needed = (_windows if "windows" in name else _mach if "darwin" in name else _elf)(library)
         ours = set(exported) - (MARKERS if "darwin" in name else set())
         assert len(ours) > 100 and all(re.fullmatch(r"fmi[23]\w+", symbol) for symbol in ours), name
-        assert all(re.match(r"lib[cm]\.so|ld-linux|KERNEL32|api-ms-win-crt|ucrtbase|msvcrt|/usr/lib/libSystem", n)
-                   for n in needed), (name, needed)  # fmt: skip
+        assert all(
+            re.match(r"lib[cm]\.so|ld-linux|KERNEL32|api-ms-win-crt|ucrtbase|msvcrt|/usr/lib/libSystem", n) for n in needed
+        ), (name, needed)
         if "linux" in name:
             assert _newest_glibc(library) <= (2, 17), name
 

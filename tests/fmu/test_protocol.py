@@ -34,10 +34,12 @@ def refused(status: int, call, *words, **options) -> None:
         ({"push.F_rl": inf}, "push.F_rl = inf is not a finite number; the old value 12 N stays"),
         ({"push.F_rr": 3.0, "push.F_rl": -inf}, "push.F_rl = -inf is not a finite number; the old value 12 N stays"),
         ({"chair.m": -1.0}, "chair.m = -1 kg is below its minimum of 1 kg; the old value 80 kg stays"),
-        ({"tyre.law": 7}, "tyre.law = 7 is none of its choices 1 (linear), 2 (dugoff), 3 (magic_formula); the old value "
-                          "1 (linear) stays"),
+        (
+            {"tyre.law": 7},
+            "tyre.law = 7 is none of its choices 1 (linear), 2 (dugoff), 3 (magic_formula); the old value 1 (linear) stays",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_bad_value_is_refused_in_one_sentence(values, sentence, native, in_python):
     with chair(native) as c, chair(in_python, logging=True) as p:
         c.set({"push.F_rl": 12.0})
@@ -108,8 +110,10 @@ def test_an_input_whose_derivative_leads_beyond_a_bound_stops_there(native):
         brake, push = (c.types[n].valueReference for n in ("brake.rl", "push.F_rl"))
         c.fmu.setRealInputDerivatives([brake, push], [1, 1], [-100.0, 100.0])
         assert c.step(0.01).get("brake.rl", "push.F_rl") == [0.0, 11.0]
-        assert c.sentences == ["t = 0 s: brake.rl = -0.5 is below its minimum of 0; the minimum is used instead, now and "
-                               "whenever this input is out of bounds"]  # fmt: skip
+        assert c.sentences == [
+            "t = 0 s: brake.rl = -0.5 is below its minimum of 0; the minimum is used instead, now and "
+            "whenever this input is out of bounds"
+        ]
 
 
 @pytest.mark.parametrize("archive", ["native", "native3"])
@@ -172,8 +176,9 @@ def test_calls_in_the_wrong_order_name_the_legal_ones(native):
         refused(ERROR, c.set, {"tyre.law": 2})
         c.fmu.terminate()
         refused(ERROR, c.fmu.doStep, 0.0, 0.01)
-        assert c.sentences[0] == ("fmi2DoStep is not allowed while the FMU is \"instantiated\"; call it after "
-                                  "fmi2ExitInitializationMode")  # fmt: skip
+        assert c.sentences[0] == (
+            'fmi2DoStep is not allowed while the FMU is "instantiated"; call it after fmi2ExitInitializationMode'
+        )
         assert "tyre.law is fixed and the simulation has started; the old value 1 (linear) stays" in c.sentences[3]
         assert '"terminated"' in c.sentences[4]
         assert c.get("chair.u")[0] == 1.0  # still readable
@@ -268,8 +273,12 @@ def test_a_saved_state_goes_on_in_another_process_bit_for_bit(archive, request, 
             c.time = now
         c.drop(state)
     assert ends[0] == ends[1]
-    done = subprocess.run([sys.executable, "-c", CONTINUE, str(unpacked.path), str(unpacked.folder), str(tmp_path / "state"),
-                           repr(now)], capture_output=True, text=True, cwd=ROOT)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", CONTINUE, str(unpacked.path), str(unpacked.folder), str(tmp_path / "state"), repr(now)],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == ends[0]
 
@@ -332,9 +341,12 @@ def test_a_state_forged_with_a_right_checksum_is_refused(archive, request):
         phase = len(good) - 20  # the fifth word from the end
         assert struct.unpack_from("<d", good, law) == (1.0,) and struct.unpack_from("<i", good, phase) == (4,)
         give = c.fmu.deSerializeFMUstate if archive == "native" else c.fmu.deserializeFMUState
-        for at, form, value in (*((law, "<d", v) for v in (0.0, 2.5, 4.0, 1e6, -1e300, nan)),
-                                *((push, "<d", v) for v in (nan, inf, 2000.1)), *((phase, "<i", v) for v in (0, 3, 16, 2**30)),
-                                (64, "<d", 0.0)):  # fmt: skip
+        for at, form, value in (
+            *((law, "<d", v) for v in (0.0, 2.5, 4.0, 1e6, -1e300, nan)),
+            *((push, "<d", v) for v in (nan, inf, 2000.1)),
+            *((phase, "<i", v) for v in (0, 3, 16, 2**30)),
+            (64, "<d", 0.0),
+        ):
             refused(ERROR, give, _forged(good, at, form, value))
             assert "the state holds values that this FMU never has" in c.sentences[-1]
         c.revive(_forged(good, law, "<d", 3.0))
@@ -344,8 +356,15 @@ def test_a_state_forged_with_a_right_checksum_is_refused(archive, request):
 def test_a_forged_state_is_refused_in_python_too(in_python):
     with chair(in_python, logging=True) as c:
         good = json.loads(c.start().step(0.01).serialized())
-        for change in ({"values": {**good["values"], "tyre.law": 9}}, {"values": {**good["values"], "chair.m": nan}},
-                       {"values": {}}, {"phase": "flying"}, {"x": "none"}, {"x": [nan]}, {"elapsed": "late"}):  # fmt: skip
+        for change in (
+            {"values": {**good["values"], "tyre.law": 9}},
+            {"values": {**good["values"], "chair.m": nan}},
+            {"values": {}},
+            {"phase": "flying"},
+            {"x": "none"},
+            {"x": [nan]},
+            {"elapsed": "late"},
+        ):
             c.revive(json.dumps({**good, **change}).encode())
             assert "the state holds values that this FMU never has; the present one stays" in c.sentences[-1], change
         assert len(c.sentences) == 7

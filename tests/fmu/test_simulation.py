@@ -80,8 +80,12 @@ def test_a_derivative_carries_the_input_and_is_then_spent(native):
 def _derivative(c, name: str, value: float) -> None:
     f = c.fmu
     f.fmi2SetRealInputDerivatives(
-        f.component, (fmpy.fmi2.fmi2ValueReference * 1)(c.types[name].valueReference), 1,
-        (fmpy.fmi2.fmi2Integer * 1)(1), (fmpy.fmi2.fmi2Real * 1)(value))  # fmt: skip
+        f.component,
+        (fmpy.fmi2.fmi2ValueReference * 1)(c.types[name].valueReference),
+        1,
+        (fmpy.fmi2.fmi2Integer * 1)(1),
+        (fmpy.fmi2.fmi2Real * 1)(value),
+    )
 
 
 @pytest.mark.parametrize("archive", ["native", "everything"])
@@ -127,10 +131,14 @@ def test_effects_at_zero_change_nothing(native, everything):
 
 @pytest.mark.parametrize("law", [1, 2, 3])
 def test_python_gives_the_same_as_native(law, native, in_python):
-    assert [(v.name, v.valueReference, v.unit, v.start, v.min, v.max, v.nominal, v.causality, v.variability, v.initial)
-            for v in native.description.modelVariables if v.causality != "local"] == \
-           [(v.name, v.valueReference, v.unit, v.start, v.min, v.max, v.nominal, v.causality, v.variability, v.initial)
-            for v in in_python.description.modelVariables]  # fmt: skip
+    assert [
+        (v.name, v.valueReference, v.unit, v.start, v.min, v.max, v.nominal, v.causality, v.variability, v.initial)
+        for v in native.description.modelVariables
+        if v.causality != "local"
+    ] == [
+        (v.name, v.valueReference, v.unit, v.start, v.min, v.max, v.nominal, v.causality, v.variability, v.initial)
+        for v in in_python.description.modelVariables
+    ]
     runs = []
     for unpacked in (native, in_python):
         with chair(unpacked) as c:

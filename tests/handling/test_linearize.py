@@ -27,8 +27,10 @@ M, I_Z, A, B, T_R, C_L, C_M, F_F, G = 80.0, 3.08, 0.25, 0.20, 0.55, 5038.0, 45.0
 def test_straight_on_it_is_the_closed_form(u):
     """Both tyres' slip is −(v − b ψ')/u, both casters' drag D_f leans by (v + a ψ')/u."""
     k, s, D = 2 * C_L, 2 * C_M, F_F * B * G * M / (A + B)
-    expected = [[-(k + D) / (M * u), (k * B - D * A) / (M * u) - u],
-                [(k * B - D * A + s) / (I_Z * u), -(k * B**2 + D * A**2 + s * B) / (I_Z * u)]]  # fmt: skip
+    expected = [
+        [-(k + D) / (M * u), (k * B - D * A) / (M * u) - u],
+        [(k * B - D * A + s) / (I_Z * u), -(k * B**2 + D * A**2 + s * B) / (I_Z * u)],
+    ]
     found = linearize(trim(Chair(Variant(Choice(equations="paper"))), u, 0.0))
     assert found.states == ("v", "psi_dot")
     np.testing.assert_allclose(found.A, expected, rtol=1e-12)
@@ -85,12 +87,23 @@ def directional(folder, s, linear, more=None):
     path = str(fmu_of(s.chair.variant))
     description = fmpy.read_model_description(path)
     refer = {v.name: v.valueReference for v in description.modelVariables}
-    fmu = FMU2Slave(guid=description.guid, unzipDirectory=fmpy.extract(path, str(folder)), instanceName="x",
-                    modelIdentifier=description.coSimulation.modelIdentifier)  # fmt: skip
+    fmu = FMU2Slave(
+        guid=description.guid,
+        unzipDirectory=fmpy.extract(path, str(folder)),
+        instanceName="x",
+        modelIdentifier=description.coSimulation.modelIdentifier,
+    )
     fmu.instantiate()
     fmu.setupExperiment()
-    values = {**s.chair.variant.values, "speed.u": s.speed, "start.u": s.speed, "start.v": s.v, "start.psi_dot": s.psi_dot,
-              **dict(zip(linear.inputs, s.w.tolist(), strict=True)), **(more or {})}  # fmt: skip
+    values = {
+        **s.chair.variant.values,
+        "speed.u": s.speed,
+        "start.u": s.speed,
+        "start.v": s.v,
+        "start.psi_dot": s.psi_dot,
+        **dict(zip(linear.inputs, s.w.tolist(), strict=True)),
+        **(more or {}),
+    }
     values.pop("speed.mode")
     fmu.setInteger([refer["speed.mode"], refer["tyre.law"]], [1 if "u" in linear.states else 2, 3])
     fmu.setReal([refer[n] for n in values], list(values.values()))

@@ -43,26 +43,29 @@ def test_spin_turns_right_then_left_without_a_net_push():
     assert m.inputs["push.F_rl"].max() == 9.0 and m.inputs["push.F_rl"].min() == -9.0 and m.inputs["push.F_rl"][-1] == 0
 
 
-@pytest.mark.parametrize(("name", "options", "sentence"), [
-    ("stedy-turn", {}, "no manoeuvre 'stedy-turn'; did you mean 'steady-turn'?"),
-    ("steady-turn", {"speed": float("nan")}, "--speed nan m/s is impossible here; give a number above 0, at most 20 m/s"),
-    ("slalom", {"speed": 0.0}, "--speed 0 m/s is impossible here"),
-    ("slalom", {"speed": -1.0}, "--speed -1 m/s is impossible here"),
-    ("slalom", {"speed": 21.0}, "at most 20 m/s"),
-    ("slalom", {"period": 0.0}, "--period 0 s is impossible here; give a number above 0"),
-    ("slalom", {"period": -4.0}, "--period -4 s"),
-    ("slalom", {"period": 0.02}, "--period 0.02 s is shorter than ten samples"),
-    ("slalom", {"period": float("inf")}, "--period inf s"),
-    ("slalom", {"delta_force": float("nan")}, "--delta-force nan N is outside ±2000 N"),
-    ("spin", {"delta_force": 1e4}, "--delta-force 10000 N is outside ±2000 N"),
-    ("coast-down", {"speed": 0.0}, "a coast-down starts in motion"),
-    ("coast-down", {"speed": float("inf")}, "--speed inf m/s"),
-    ("coast-down", {"period": 4.0}, "coast-down has no --period; it takes --speed, --time"),
-    ("start-stop", {"speed": 1.0}, "start-stop has no --speed; it takes --time"),
-    ("spin", {"time": 0.0}, "--time 0 s is impossible here"),
-    ("spin", {"time": 0.015}, "--time 0.015 s is shorter than two samples"),
-    ("spin", {"time": 1e9}, "--time 1e+09 s is impossible here"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "options", "sentence"),
+    [
+        ("stedy-turn", {}, "no manoeuvre 'stedy-turn'; did you mean 'steady-turn'?"),
+        ("steady-turn", {"speed": float("nan")}, "--speed nan m/s is impossible here; give a number above 0, at most 20 m/s"),
+        ("slalom", {"speed": 0.0}, "--speed 0 m/s is impossible here"),
+        ("slalom", {"speed": -1.0}, "--speed -1 m/s is impossible here"),
+        ("slalom", {"speed": 21.0}, "at most 20 m/s"),
+        ("slalom", {"period": 0.0}, "--period 0 s is impossible here; give a number above 0"),
+        ("slalom", {"period": -4.0}, "--period -4 s"),
+        ("slalom", {"period": 0.02}, "--period 0.02 s is shorter than ten samples"),
+        ("slalom", {"period": float("inf")}, "--period inf s"),
+        ("slalom", {"delta_force": float("nan")}, "--delta-force nan N is outside ±2000 N"),
+        ("spin", {"delta_force": 1e4}, "--delta-force 10000 N is outside ±2000 N"),
+        ("coast-down", {"speed": 0.0}, "a coast-down starts in motion"),
+        ("coast-down", {"speed": float("inf")}, "--speed inf m/s"),
+        ("coast-down", {"period": 4.0}, "coast-down has no --period; it takes --speed, --time"),
+        ("start-stop", {"speed": 1.0}, "start-stop has no --speed; it takes --time"),
+        ("spin", {"time": 0.0}, "--time 0 s is impossible here"),
+        ("spin", {"time": 0.015}, "--time 0.015 s is shorter than two samples"),
+        ("spin", {"time": 1e9}, "--time 1e+09 s is impossible here"),
+    ],
+)
 def test_what_cannot_be_is_refused_in_one_sentence(name, options, sentence):
     with pytest.raises(UsageError) as refused:
         manoeuvre(name, **options)
@@ -71,9 +74,16 @@ def test_what_cannot_be_is_refused_in_one_sentence(name, options, sentence):
 
 def test_key_numbers_of_a_circle():
     n = 11
-    columns = {"chair.u": np.full(n, 2.0), "chair.psi_dot": np.full(n, 0.5), "slip.rl": np.full(n, 0.01),
-               "slip.rr": np.full(n, 0.02), "chair.x": np.arange(n) * 1.0, "chair.y": np.zeros(n),
-               "chair.curvature": np.full(n, 0.25), "push.total_needed": np.full(n, 11.0)}  # fmt: skip
+    columns = {
+        "chair.u": np.full(n, 2.0),
+        "chair.psi_dot": np.full(n, 0.5),
+        "slip.rl": np.full(n, 0.01),
+        "slip.rr": np.full(n, 0.02),
+        "chair.x": np.arange(n) * 1.0,
+        "chair.y": np.zeros(n),
+        "chair.curvature": np.full(n, 0.25),
+        "push.total_needed": np.full(n, 11.0),
+    }
     numbers = {k.meaning: k for k in key_numbers(columns, held=True)}
     assert numbers["radius of curvature R_c"].end == 4.0
     assert numbers["slip angle, right"].end == pytest.approx(np.degrees(0.02))

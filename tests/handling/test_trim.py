@@ -68,8 +68,10 @@ def test_in_reverse_and_on_the_spot():
     assert 0 < on_the_spot.psi_dot < 1e-3  # held by rolling resistance, it creeps
 
 
-@pytest.mark.parametrize("choice", [Choice(tyre="dugoff"), Choice(tyre="magic_formula"), Choice("dugoff", equations="paper"),
-                                    Choice(equations="paper")])  # fmt: skip
+@pytest.mark.parametrize(
+    "choice",
+    [Choice(tyre="dugoff"), Choice(tyre="magic_formula"), Choice("dugoff", equations="paper"), Choice(equations="paper")],
+)
 def test_beyond_the_last_steady_turn_the_nearest_is_named_and_exists(choice):
     c = Chair(Variant(choice))
     with pytest.raises(Failure) as refused:
@@ -96,15 +98,18 @@ def test_on_a_slope_nothing_but_straight_on_is_steady():
     assert down.results["push.total_needed"] == pytest.approx(trim(chair(), 1.0, 0.0).results["push.total_needed"] - gravity)
 
 
-@pytest.mark.parametrize(("options", "sentence"), [
-    ({"speed": 1.0}, "give one of --delta-force and --radius"),
-    ({"speed": 1.0, "delta_force": 1.0, "radius": 2.0}, "give one of --delta-force and --radius"),
-    ({"speed": float("nan"), "delta_force": 1.0}, "--speed nan m/s is outside ±20 m/s"),
-    ({"speed": 1.0, "delta_force": float("nan")}, "--delta-force nan N is outside ±2000 N"),
-    ({"speed": 1.0, "radius": 0.0}, "--radius 0 m is no turn"),
-    ({"speed": 1.0, "radius": float("nan")}, "--radius nan m is no turn"),
-    ({"speed": 0.0, "radius": 1.0}, "a spin on the spot has no radius to choose"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"speed": 1.0}, "give one of --delta-force and --radius"),
+        ({"speed": 1.0, "delta_force": 1.0, "radius": 2.0}, "give one of --delta-force and --radius"),
+        ({"speed": float("nan"), "delta_force": 1.0}, "--speed nan m/s is outside ±20 m/s"),
+        ({"speed": 1.0, "delta_force": float("nan")}, "--delta-force nan N is outside ±2000 N"),
+        ({"speed": 1.0, "radius": 0.0}, "--radius 0 m is no turn"),
+        ({"speed": 1.0, "radius": float("nan")}, "--radius nan m is no turn"),
+        ({"speed": 0.0, "radius": 1.0}, "a spin on the spot has no radius to choose"),
+    ],
+)
 def test_what_cannot_be_asked_is_refused(options, sentence):
     with pytest.raises(UsageError) as refused:
         trim(chair(), **options)

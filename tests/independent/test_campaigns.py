@@ -28,13 +28,38 @@ from benchmarks.independent.manoeuvres import SETS, Run, pick
 
 SHORT = ["steady-right", "coast-down"]
 IDS = {
-    "tyre_saturation", "load_sensitivity", "inflation_pressure", "relaxation_length", "pneumatic_trail_decay",
-    "camber_misalignment", "toe_misalignment", "scrub_torque", "scrub_torque_viscous", "longitudinal_slip",
-    "lateral_load_transfer", "longitudinal_load_transfer", "cm_lateral_offset", "trunk_motion", "caster_inertia",
-    "caster_friction", "caster_trail", "rolling_resistance_speed", "rolling_resistance_asymmetry", "aerodynamic_drag",
-    "floor_slope", "floor_cross_slope", "wheel_inertia", "push_force_gain", "push_force_delay", "gyro_bias", "gyro_scale",
-    "accelerometer_bias", "accelerometer_offset", "accelerometer_tilt", "wheel_radius_error",
-}  # fmt: skip
+    "tyre_saturation",
+    "load_sensitivity",
+    "inflation_pressure",
+    "relaxation_length",
+    "pneumatic_trail_decay",
+    "camber_misalignment",
+    "toe_misalignment",
+    "scrub_torque",
+    "scrub_torque_viscous",
+    "longitudinal_slip",
+    "lateral_load_transfer",
+    "longitudinal_load_transfer",
+    "cm_lateral_offset",
+    "trunk_motion",
+    "caster_inertia",
+    "caster_friction",
+    "caster_trail",
+    "rolling_resistance_speed",
+    "rolling_resistance_asymmetry",
+    "aerodynamic_drag",
+    "floor_slope",
+    "floor_cross_slope",
+    "wheel_inertia",
+    "push_force_gain",
+    "push_force_delay",
+    "gyro_bias",
+    "gyro_scale",
+    "accelerometer_bias",
+    "accelerometer_offset",
+    "accelerometer_tilt",
+    "wheel_radius_error",
+}
 
 
 @cache

@@ -68,25 +68,33 @@ def test_lasting_structure_is_no_noise(sampled):
     assert _structured(calibrated) and not _structured(sampled.final.evidence)
 
 
-@pytest.mark.parametrize(("calibrated", "top", "expected"), [
-    ((1.281, 1.219), (1.238, 1.184), True),  # a delay of the record, called caster inertia where the catalogue lacks it
-    ((1.1, 1.127), (1.082, 1.112), True),  # slip of the driven wheels, called a gyro's scale
-    ((1.565, 1.565), (1.064, 1.116), False),  # a trail that was hidden: another simulator's casters swing a little otherwise
-    ((1.08, 1.05), (1.05, 1.04), False),  # little was left to begin with
-    ((1.05, 1.09), (1.051, 1.088), True),  # an accelerometer off the middle, called load transfer: nothing fell
-    ((1.857, 2.252), (1.132, 1.391), True),  # drag beyond a speed, called drag by its square: held-out runs know better
-    ((1.02, 1.02), (1.019, 1.019), False),  # about all that was left is noise
-    ((9.0, 8.0), (1.4, 1.35), True),
-    ((9.0, float("nan")), (1.2, float("nan")), False),  # nothing held out
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("calibrated", "top", "expected"),
+    [
+        ((1.281, 1.219), (1.238, 1.184), True),  # a delay of the record, called caster inertia where the catalogue lacks it
+        ((1.1, 1.127), (1.082, 1.112), True),  # slip of the driven wheels, called a gyro's scale
+        (
+            (1.565, 1.565),
+            (1.064, 1.116),
+            False,
+        ),  # a trail that was hidden: another simulator's casters swing a little otherwise
+        ((1.08, 1.05), (1.05, 1.04), False),  # little was left to begin with
+        ((1.05, 1.09), (1.051, 1.088), True),  # an accelerometer off the middle, called load transfer: nothing fell
+        ((1.857, 2.252), (1.132, 1.391), True),  # drag beyond a speed, called drag by its square: held-out runs know better
+        ((1.02, 1.02), (1.019, 1.019), False),  # about all that was left is noise
+        ((9.0, 8.0), (1.4, 1.35), True),
+        ((9.0, float("nan")), (1.2, float("nan")), False),  # nothing held out
+    ],
+)
 def test_effects_that_leave_much_of_what_they_were_to_explain_do_not_suffice(calibrated, top, expected):
     ladder = [Step("nominal", 10.0, 10.0), Step("calibrated", *calibrated), Step("+effect", *top)]
     assert insufficient(ladder) == expected
 
 
-@pytest.mark.parametrize(("size", "left", "large"), [
-    (0.7, 1.3, False), (0.85, 1.3, True), (-0.85, 1.3, True), (0.85, 1.01, False), (1.0, 1.01, True),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("size", "left", "large"),
+    [(0.7, 1.3, False), (0.85, 1.3, True), (-0.85, 1.3, True), (0.85, 1.01, False), (1.0, 1.01, True)],
+)
 def test_an_effect_is_named_by_its_size_and_by_what_there_is_to_explain(sampled, monkeypatch, size, left, large):
     """Sizes in δ, and the whitened error of the model without it, fitted and held out."""
     search, found = sampled.search, sampled.final

@@ -67,8 +67,13 @@ def test_position_is_judged_by_what_each_reading_adds(short):
 def test_where_a_chair_comes_to_rest_slopes_foretell_nothing(short):
     """By slopes, a speed that is off by a little there makes a deceleration of many m/s²; friction does a tenth of one."""
     time = np.arange(0, 9, 0.01)
-    run = replace(short.fit[0], time=time, inputs={n: 0 * time for n in short.fit[0].inputs}, set={"start.u": 0.6},
-                  channels={c: 0 * time for c in ("wheel_speed_l", "wheel_speed_r", "a_x", "a_y")})  # fmt: skip
+    run = replace(
+        short.fit[0],
+        time=time,
+        inputs={n: 0 * time for n in short.fit[0].inputs},
+        set={"start.u": 0.6},
+        channels={c: 0 * time for c in ("wheel_speed_l", "wheel_speed_r", "a_x", "a_y")},
+    )
     bench = Bench(replace(short, runs=(run,)), Variant())
     true = bench.evidence([run], {}).runs[0].predicted
     moving = true[:, 0] > 0.001
@@ -92,7 +97,8 @@ def test_a_start_that_a_run_sets_stands(short):
     (e,) = bench.evidence([run], {}, tune_start=2).runs
     assert e.start == said
     assert dict(zip(("x", "y", "psi", "u", "v", "psi_dot"), e.results[0], strict=False)) == pytest.approx(
-        {name.partition(".")[2]: value for name, value in said.items()})
+        {name.partition(".")[2]: value for name, value in said.items()}
+    )
     assert not e.start_S.any() and not e.offset.any()
 
 

@@ -20,8 +20,7 @@ def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
     return noise
 
 
-def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000, times: float = 1.0,
-             hertz: float = 0.3):  # fmt: skip
+def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000, times: float = 1.0, hertz: float = 0.3):
     """`colour_of` one run whose only channel has AR(1) noise on a smooth error so many times as large as the noise, by a filter
     for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)

@@ -30,13 +30,16 @@ def one(effect, misfit):
     return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=None)
 
 
-@pytest.mark.parametrize(("ahead", "again", "expected"), [
-    (one("inertia", -20.0), True, True),
-    (one("inertia", -9.0), True, False),  # not by far
-    (one("gain", -20.0), True, False),  # the effect itself, from another start
-    (one("inertia", -20.0), False, False),  # the round that found it: others were judged beside the same
-    (None, True, False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("ahead", "again", "expected"),
+    [
+        (one("inertia", -20.0), True, True),
+        (one("inertia", -9.0), True, False),  # not by far
+        (one("gain", -20.0), True, False),  # the effect itself, from another start
+        (one("inertia", -20.0), False, False),  # the round that found it: others were judged beside the same
+        (None, True, False),
+    ],
+)
 def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again, expected):
     assert overtaker(Some(winner=ahead, again=again), "gain", fit(0.0)) is (ahead if expected else None)
 
@@ -86,13 +89,16 @@ def search(monkeypatch):
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 
 
-@pytest.mark.parametrize("found_in", [
-    before(("inertia", 400.0)),  # somebody came near
-    before(alone=-1500.0),  # what it did alone others do now
-    before(small=True),  # it only helped others on
-    before(("inertia", 992.0), alone=983.0),  # somebody was as good, of little
-    None,  # nobody knew the noise
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "found_in",
+    [
+        before(("inertia", 400.0)),  # somebody came near
+        before(alone=-1500.0),  # what it did alone others do now
+        before(small=True),  # it only helped others on
+        before(("inertia", 992.0), alone=983.0),  # somebody was as good, of little
+        None,  # nobody knew the noise
+    ],
+)
 def test_an_effect_is_searched_for_again_beside_all_others(search, found_in):
     r = beside(search, "gain", ("gain", "later"), fit(0.0), None, found_in)
     assert r.again and r.effects == ("later",)
@@ -109,19 +115,24 @@ def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(search):
 
 def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_found():
     """Without held-out runs, say, nobody is found who is not plain: then the best found may be far behind."""
-    lawful = [Some(**vars(one(e, m)), lawful=True, found=e == "slope") for e, m in
-              (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))]  # fmt: skip
+    lawful = [
+        Some(**vars(one(e, m)), lawful=True, found=e == "slope")
+        for e, m in (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))
+    ]
     assert tied(Some(candidates=lawful, again=True), "gain") == ("gain", "inertia")
 
 
-@pytest.mark.parametrize(("behind", "ahead", "se", "is_tied"), [
-    (9.0, -300.0, 60.0, True),  # as likely on fitted runs
-    (12.0, 5.0, 2.0, True),  # and on all runs together
-    (20.0, 5.0, 2.0, False),
-    (40.0, 5.0, 60.0, True),  # nobody can tell on held-out runs
-    (60.0, 5.0, 60.0, False),  # but it explains too little
-    (40.0, -300.0, 60.0, False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("behind", "ahead", "se", "is_tied"),
+    [
+        (9.0, -300.0, 60.0, True),  # as likely on fitted runs
+        (12.0, 5.0, 2.0, True),  # and on all runs together
+        (20.0, 5.0, 2.0, False),
+        (40.0, 5.0, 60.0, True),  # nobody can tell on held-out runs
+        (60.0, 5.0, 60.0, False),  # but it explains too little
+        (40.0, -300.0, 60.0, False),
+    ],
+)
 def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, behind, ahead, se, is_tied):
     monkeypatch.setattr(ties, "_ahead_on_heldout", lambda one, other: (ahead, se) if one is not other else (0.0, 0.0))
     candidates = [Some(**vars(one(e, m)), lawful=True, found=True) for e, m in (("drag", 0.0), ("speed", behind))]
@@ -136,10 +147,15 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
 
     workshop = Some(starts={"spin": {"start.u": 0.0}})
     climb = object.__new__(Climb)
-    climb.__dict__ |= {"search": Some(workshop=workshop, settled=settled), "effects": ("drag",),
-                       "base": Some(evidence=Some(rms=1.15)),
-                       "rounds": [Some(effects=("drag",))], "held": "held", "helping": {"toe"},
-                       "ladder": ["nominal", "calibrated", "+drag"]}  # fmt: skip
+    climb.__dict__ |= {
+        "search": Some(workshop=workshop, settled=settled),
+        "effects": ("drag",),
+        "base": Some(evidence=Some(rms=1.15)),
+        "rounds": [Some(effects=("drag",))],
+        "held": "held",
+        "helping": {"toe"},
+        "ladder": ["nominal", "calibrated", "+drag"],
+    }
     monkeypatch.setattr(Climb, "_step", lambda self: self.ladder.append("+toe"))
     monkeypatch.setattr(Climb, "_prune", lambda self: None)
     assert climb._put_in(Some(effect="toe", fit=None)) == stays

@@ -17,8 +17,13 @@ from wheelchair_fmu.model.variant import Variant
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
 HEADER, NOISE = "yaw_rate [rad/s]", 0.006
-FITTED = {"tyre.C_lambda": 4821.0, "resistance.f_r": 0.0179, "resistance.f_f": 0.0182, "chair.I_z": 3.091,
-          "effect.rolling_resistance_asymmetry.D": 1.605}  # fmt: skip
+FITTED = {
+    "tyre.C_lambda": 4821.0,
+    "resistance.f_r": 0.0179,
+    "resistance.f_f": 0.0182,
+    "chair.I_z": 3.091,
+    "effect.rolling_resistance_asymmetry.D": 1.605,
+}
 HOW = ["every second", "repeated", "joined"]
 
 

@@ -25,8 +25,9 @@ def with_shift(sample, name, seconds):
     return replace(sample, runs=tuple(shifted(r, seconds) if r.name == name else r for r in sample.runs))
 
 
-@pytest.mark.parametrize(("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1),
-                                               ("holdout-random", 0.3)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1), ("holdout-random", 0.3)]
+)
 def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     search = Search(Workshop(with_shift(sample, name, seconds), Variant()))
     base, held, _ = begin(search, lambda words: None)
@@ -55,8 +56,9 @@ RUNS = ["coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom
 
 
 LOST = pytest.mark.xfail(strict=True, reason="the push that turns the chair lies before this record of it begins")
-SHIFTS = [pytest.param(n, s, marks=LOST if (n, s) == ("steady-right", 1.3) else ()) for n in RUNS
-          for s in (0.02, 0.05, 0.1, 0.3, 1.3)]  # fmt: skip
+SHIFTS = [
+    pytest.param(n, s, marks=LOST if (n, s) == ("steady-right", 1.3) else ()) for n in RUNS for s in (0.02, 0.05, 0.1, 0.3, 1.3)
+]
 
 
 def same_verdict(sample, name, seconds):

@@ -48,10 +48,13 @@ def test_axes_are_named_where_all_that_they_turn_is_turned(sample):
     assert len(r.notes) == 1 and "check `axes`" in r.notes[0]
 
 
-@pytest.mark.parametrize(("factor", "words"), [
-    (180 / np.pi, "times what the model reads, and is left out; see whether it is in deg/s"),
-    (np.pi / 180, "see whether its header says deg/s of what is not"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (180 / np.pi, "times what the model reads, and is left out; see whether it is in deg/s"),
+        (np.pi / 180, "see whether its header says deg/s of what is not"),
+    ],
+)
 def test_another_unit_is_named(sample, factor, words):
     r = found(wired(sample, yaw_rate=factor))
     assert r.wrong == ("yaw_rate",)
@@ -79,8 +82,9 @@ def test_nothing_is_left_out_where_nothing_would_be_left(sample):
 
 def test_a_run_in_which_nothing_else_was_measured_is_left_out(sample):
     first, *others = wired(sample, yaw_rate=-1.0).runs
-    search = Search(Workshop(replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)),
-                             Variant()))  # fmt: skip
+    search = Search(
+        Workshop(replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)), Variant())
+    )
     begin(search, lambda words: None)
     assert search.notes[0].startswith("yaw_rate has the other sign")
     assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in others]

@@ -27,8 +27,9 @@ def test_a_bench_carries_what_was_asked_for_and_light_effects_where_that_costs_n
 
 def test_benches_of_one_model_agree(shop):
     values, runs = {SIGMA: 0.1}, shop.campaign.fit[:2]
-    narrow, wide = (bench.evidence(runs, values, [SIGMA]) for bench in (shop.bench(["relaxation_length"]),
-                                                                         shop.wide(["relaxation_length"])))  # fmt: skip
+    narrow, wide = (
+        bench.evidence(runs, values, [SIGMA]) for bench in (shop.bench(["relaxation_length"]), shop.wide(["relaxation_length"]))
+    )
     assert np.abs(narrow.r - wide.r).max() < 1e-9
     assert np.abs(narrow.S - wide.S).max() < 1e-9 * np.abs(wide.S).max()
     again = shop.rerun(["relaxation_length"]).again(wide, {SIGMA: 0.12})

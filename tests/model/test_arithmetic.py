@@ -22,49 +22,52 @@ from wheelchair_fmu.quantities import M_S, N
 ESCAPE = '-q * u # " + str(__import__("pathlib").Path("escaped").write_text("")) + " end'
 
 
-@pytest.mark.parametrize(("text", "why"), [
-    (ESCAPE, "'#' at place 8 is not allowed"),
-    ("-q * u + len('a')", '"\'" at place 14'),
-    ("q * u \\", r"'\\\\' at place 7"),
-    ("q *\nu", r"'\\n' at place 4"),
-    ("q * u\0", r"'\\x00' at place 6"),
-    ("ｑ * u", "'ｑ' at place 1"),
-    ("q.real", "Attribute is not allowed"),
-    ("q * __import__", "'__import__' is no name of a quantity"),
-    ("(lambda q)", "is no expression"),
-    ("q if u else v", "IfExp is not allowed"),
-    ("[q]", "List is not allowed"),
-    ("q, u", "Tuple is not allowed"),
-    ("sin(*u)", "Starred is not allowed"),
-    ("sin(x=u)", "'=' at place 6"),
-    ("open(u)", "no function 'open'"),
-    ("(q * u)(3)", "no function 'q \\* u'"),
-    ("sin * q", "sin is a function; write sin"),
-    ("sin(u, v)", "sin takes 1 value, not 2"),
-    ("grip(u, v)", "grip takes 3 values, not 2"),
-    ("vertcat()", "vertcat takes 1 to 16 values, not 0"),
-    ("q * True", "'True' is no number"),
-    ("q * 1e999", "'inf' is no number"),
-    ("q * 3 [Ym^9.km^9.km]", "not made of|unknown|no number"),
-    ("q * " + "9" * 1000, "is no number to count with"),
-    ("q * 9**9**9", "an exponent is one number between"),
-    ("q ** 1000", "an exponent is one number between"),
-    ("q * u ** vertcat(1, 2)", "an exponent is one number between"),
-    ("q * (1e200 * 1e200)", "is no finite number"),
-    ("q * (-8) ** 0.5", "is no finite number"),
-    ("q * (1 / 0)", "is no finite number"),
-    ("F_t[99] * q", "a component is asked for by its number"),
-    ("F_t[q] * q", "a component is asked for by its number"),
-    ("(1 + 2)[0] * q", "a plain number has no components"),
-    ("q * 007", "leading zeros"),
-    ("q * 1j", "'1' at place 5"),
-    ("-" * (LONGEST - 1) + "q", "goes on more than"),
-    ("(" * 500 + "q" + ")" * 500, "too many nested parentheses|goes on more than"),
-    ("+".join(["q"] * (DEEPEST + 1)), "goes on more than"),
-    ("sum1(vertcat(" + ",".join(["vertcat(" + ",".join(["q*u"] * 16) + ")"] * 16) + "))", f"more than {MOST_NODES}"),
-    ("q" + "+q" * 20_000, "is too long"),
-    ("", "is no expression"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (ESCAPE, "'#' at place 8 is not allowed"),
+        ("-q * u + len('a')", '"\'" at place 14'),
+        ("q * u \\", r"'\\\\' at place 7"),
+        ("q *\nu", r"'\\n' at place 4"),
+        ("q * u\0", r"'\\x00' at place 6"),
+        ("ｑ * u", "'ｑ' at place 1"),
+        ("q.real", "Attribute is not allowed"),
+        ("q * __import__", "'__import__' is no name of a quantity"),
+        ("(lambda q)", "is no expression"),
+        ("q if u else v", "IfExp is not allowed"),
+        ("[q]", "List is not allowed"),
+        ("q, u", "Tuple is not allowed"),
+        ("sin(*u)", "Starred is not allowed"),
+        ("sin(x=u)", "'=' at place 6"),
+        ("open(u)", "no function 'open'"),
+        ("(q * u)(3)", "no function 'q \\* u'"),
+        ("sin * q", "sin is a function; write sin"),
+        ("sin(u, v)", "sin takes 1 value, not 2"),
+        ("grip(u, v)", "grip takes 3 values, not 2"),
+        ("vertcat()", "vertcat takes 1 to 16 values, not 0"),
+        ("q * True", "'True' is no number"),
+        ("q * 1e999", "'inf' is no number"),
+        ("q * 3 [Ym^9.km^9.km]", "not made of|unknown|no number"),
+        ("q * " + "9" * 1000, "is no number to count with"),
+        ("q * 9**9**9", "an exponent is one number between"),
+        ("q ** 1000", "an exponent is one number between"),
+        ("q * u ** vertcat(1, 2)", "an exponent is one number between"),
+        ("q * (1e200 * 1e200)", "is no finite number"),
+        ("q * (-8) ** 0.5", "is no finite number"),
+        ("q * (1 / 0)", "is no finite number"),
+        ("F_t[99] * q", "a component is asked for by its number"),
+        ("F_t[q] * q", "a component is asked for by its number"),
+        ("(1 + 2)[0] * q", "a plain number has no components"),
+        ("q * 007", "leading zeros"),
+        ("q * 1j", "'1' at place 5"),
+        ("-" * (LONGEST - 1) + "q", "goes on more than"),
+        ("(" * 500 + "q" + ")" * 500, "too many nested parentheses|goes on more than"),
+        ("+".join(["q"] * (DEEPEST + 1)), "goes on more than"),
+        ("sum1(vertcat(" + ",".join(["vertcat(" + ",".join(["q*u"] * 16) + ")"] * 16) + "))", f"more than {MOST_NODES}"),
+        ("q" + "+q" * 20_000, "is too long"),
+        ("", "is no expression"),
+    ],
+)
 def test_what_is_no_arithmetic_is_refused_in_one_sentence(text, why):
     with pytest.raises(UsageError, match=why) as refused:
         law(text)
@@ -77,18 +80,21 @@ def test_what_has_no_finite_value_has_no_unit(text):
         unit_of_q(text, "F_x")
 
 
-@pytest.mark.parametrize(("text", "values", "expected"), [
-    ("-q * u", {"q": 2, "u": 3}, -6.0),
-    ("q * u ** 2 / 4", {"q": 2.0, "u": 3.0}, 4.5),
-    ("-q ** 2", {"q": 3.0}, -9.0),
-    ("2 ** 3 ** 2 * q", {"q": 1.0}, 512.0),
-    ("q / u", {"q": 1.0, "u": 0.0}, math.inf),
-    ("q ** u", {"q": 4.0, "u": 0.5}, 2.0),
-    ("fmax(0, fmin(u, 1.5)) * q", {"q": 2.0, "u": 9.0}, 3.0),
-    ("F_t[1] * q", {"q": 2.0, "F_t": (5.0, 7.0)}, 14.0),
-    ("  q * .5e1", {"q": 2.0}, 10.0),
-    ("q * 36 [km/h] + 10 [m/s]", {"q": 2.0}, 30.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "values", "expected"),
+    [
+        ("-q * u", {"q": 2, "u": 3}, -6.0),
+        ("q * u ** 2 / 4", {"q": 2.0, "u": 3.0}, 4.5),
+        ("-q ** 2", {"q": 3.0}, -9.0),
+        ("2 ** 3 ** 2 * q", {"q": 1.0}, 512.0),
+        ("q / u", {"q": 1.0, "u": 0.0}, math.inf),
+        ("q ** u", {"q": 4.0, "u": 0.5}, 2.0),
+        ("fmax(0, fmin(u, 1.5)) * q", {"q": 2.0, "u": 9.0}, 3.0),
+        ("F_t[1] * q", {"q": 2.0, "F_t": (5.0, 7.0)}, 14.0),
+        ("  q * .5e1", {"q": 2.0}, 10.0),
+        ("q * 36 [km/h] + 10 [m/s]", {"q": 2.0}, 30.0),
+    ],
+)
 def test_the_value_is_that_of_the_arithmetic(text, values, expected):
     assert law(text)(**values) == pytest.approx(expected)
 
@@ -154,6 +160,7 @@ OPERATORS = {"+": operator.add, "-": operator.sub, "*": operator.mul}
 
 def term(inner: st.SearchStrategy[tuple[str, float]]) -> st.SearchStrategy[tuple[str, float]]:
     """An expression with its value, both made side by side."""
+
     def paired(op: str, a: tuple[str, float], b: tuple[str, float]) -> tuple[str, float]:
         return f"({a[0]}) {op} ({b[0]})", OPERATORS[op](a[1], b[1])
 
@@ -166,8 +173,11 @@ def term(inner: st.SearchStrategy[tuple[str, float]]) -> st.SearchStrategy[tuple
     )
 
 
-LEAVES = st.one_of(st.sampled_from([(n, v) for n, v in NAMES.items()]),
-                   st.floats(0, 10).map(lambda x: (repr(x), x)), st.integers(0, 10).map(lambda i: (str(i), float(i))))
+LEAVES = st.one_of(
+    st.sampled_from([(n, v) for n, v in NAMES.items()]),
+    st.floats(0, 10).map(lambda x: (repr(x), x)),
+    st.integers(0, 10).map(lambda i: (str(i), float(i))),
+)
 
 
 @given(st.recursive(LEAVES, term, max_leaves=12))
@@ -181,8 +191,40 @@ def test_any_arithmetic_has_the_value_that_it_has_elsewhere(pair):
     assert law(canonical(text))(**values) == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-PIECES = ["q", "u", "sin", "(", ")", "[", "]", "**", "*", "/", "-", "+", "9", "1e9", ".", ",", "#", '"', "'", "\\", "\n",
-          "lambda ", ":", "=", "__class__", " if ", "km/h", "{", "}", "@", "\0", "é"]
+PIECES = [
+    "q",
+    "u",
+    "sin",
+    "(",
+    ")",
+    "[",
+    "]",
+    "**",
+    "*",
+    "/",
+    "-",
+    "+",
+    "9",
+    "1e9",
+    ".",
+    ",",
+    "#",
+    '"',
+    "'",
+    "\\",
+    "\n",
+    "lambda ",
+    ":",
+    "=",
+    "__class__",
+    " if ",
+    "km/h",
+    "{",
+    "}",
+    "@",
+    "\0",
+    "é",
+]
 
 
 @given(st.one_of(st.text(max_size=80), st.lists(st.sampled_from(PIECES), max_size=25).map("".join)))

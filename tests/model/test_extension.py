@@ -71,8 +71,7 @@ def test_torque_changes_sides_in_reverse():
     model, variant = Variant().model(), Variant()
     for u, expected in ((1.0, -1), (-1.0, 1)):
         x = np.array([0, 0, 0, u, 0.01, 0])
-        M_t, lam = evaluate(model, Place(x, np.zeros(9), variant.vector()), model.quantities["M_t"],
-                            model.quantities["lam"])  # fmt: skip
+        M_t, lam = evaluate(model, Place(x, np.zeros(9), variant.vector()), model.quantities["M_t"], model.quantities["lam"])
         np.testing.assert_allclose(M_t, expected * 45.0 * lam, rtol=1e-3)
 
 
@@ -125,8 +124,9 @@ def test_prescribed_speed_needs_the_push_that_free_speed_keeps():
     held = run({"speed.mode": "prescribed", "speed.u": 1.0}, turn, tolerance=1e-9)
     np.testing.assert_array_equal(held["chair.u"], 1.0)
     needed = held["push.total_needed"]
-    free = run({"start.u": 1.0}, {"push.F_rl": lambda t: 10 + needed / 2, "push.F_rr": lambda t: -10 + needed / 2},
-               tolerance=1e-9)  # fmt: skip
+    free = run(
+        {"start.u": 1.0}, {"push.F_rl": lambda t: 10 + needed / 2, "push.F_rr": lambda t: -10 + needed / 2}, tolerance=1e-9
+    )
     np.testing.assert_allclose(free["chair.u"], 1.0, atol=2e-5)
     np.testing.assert_allclose(free["chair.psi_dot"][-1], held["chair.psi_dot"][-1], rtol=1e-4)
 

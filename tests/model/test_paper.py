@@ -13,8 +13,28 @@ from wheelchair_fmu.model.wheelchair import Choice
 PAPER = Variant(Choice(equations="paper"))
 
 
-def right_hand_sides(u, v, r, F_rl, F_rr, phi_r, phi_l, a=0.25, b=0.20, tr=0.55, tf=0.45, m=80.0, I_z=3.08,
-                     C=5038.0, C_m=45.0, C_phi=464.0, C_m_phi=3.0, f_r=0.012, f_f=0.020, g=9.81):  # fmt: skip
+def right_hand_sides(
+    u,
+    v,
+    r,
+    F_rl,
+    F_rr,
+    phi_r,
+    phi_l,
+    a=0.25,
+    b=0.20,
+    tr=0.55,
+    tf=0.45,
+    m=80.0,
+    I_z=3.08,
+    C=5038.0,
+    C_m=45.0,
+    C_phi=464.0,
+    C_m_phi=3.0,
+    f_r=0.012,
+    f_f=0.020,
+    g=9.81,
+):
     """u', v', ψ'', slips and loads, typed from the paper and sharing nothing with the model."""
     delta_fr = (a * r + v) / (-0.5 * tf * r + u)  # (9)
     delta_fl = (a * r + v) / (0.5 * tf * r + u)  # (10)
@@ -29,8 +49,15 @@ def right_hand_sides(u, v, r, F_rl, F_rr, phi_r, phi_l, a=0.25, b=0.20, tr=0.55,
     D_fr = D_fl = f_f * N_f
     u_dot = v * r + (F_rl + F_rr - D_fl - D_fr - D_rl - D_rr) / m  # (20)
     v_dot = -u * r + (F_srl + F_srr - D_fl * delta_fl - D_fr * delta_fr) / m  # (21)
-    r_dot = (0.5 * tr * (F_rl - F_rr) - b * (F_srl + F_srr) - a * (D_fl * delta_fl + D_fr * delta_fr) + M_rr
-             - 0.5 * tf * (D_fl - D_fr) - 0.5 * tr * (D_rl - D_rr) + M_rl) / I_z  # (22)  # fmt: skip
+    r_dot = (
+        0.5 * tr * (F_rl - F_rr)
+        - b * (F_srl + F_srr)
+        - a * (D_fl * delta_fl + D_fr * delta_fr)
+        + M_rr
+        - 0.5 * tf * (D_fl - D_fr)
+        - 0.5 * tr * (D_rl - D_rr)
+        + M_rl
+    ) / I_z  # (22)
     return [u_dot, v_dot, r_dot], [lam_rl, lam_rr], [F_srl, F_srr], [delta_fl, delta_fr], r / np.hypot(u, v)
 
 
@@ -58,16 +85,28 @@ def test_equations_9_to_23_to_the_letter():
 
 def manoeuvre(equations: str, kind: str, u: float, dF: float, **values):
     """The paper's steady turn or slalom (T = 4 s) at prescribed speed, from straight, 20 s."""
-    simulator = Simulator(Variant(Choice(equations=equations)).with_values(
-        {"speed.mode": "prescribed", "speed.u": u, **values}))  # fmt: skip
+    simulator = Simulator(
+        Variant(Choice(equations=equations)).with_values({"speed.mode": "prescribed", "speed.u": u, **values})
+    )
     t = np.linspace(0, 20, 2001)
     wave = dF * (np.cos(2 * np.pi * t / 4) if kind == "slalom" else np.ones_like(t))
     return simulator.run(t, simulator.inputs(len(t), {"push.F_rl": wave, "push.F_rr": -wave}), tolerance=1e-9)
 
 
-CASES = [("steady turn", 0.3, 1), ("steady turn", 0.3, 2), ("steady turn", 0.5, 2), ("steady turn", 0.5, 5),
-         ("steady turn", 1.0, 5), ("steady turn", 1.0, 10), ("steady turn", 1.5, 20), ("slalom", 0.3, 1),
-         ("slalom", 0.3, 2), ("slalom", 0.5, 3), ("slalom", 1.0, 5), ("slalom", 1.0, 10)]  # fmt: skip
+CASES = [
+    ("steady turn", 0.3, 1),
+    ("steady turn", 0.3, 2),
+    ("steady turn", 0.5, 2),
+    ("steady turn", 0.5, 5),
+    ("steady turn", 1.0, 5),
+    ("steady turn", 1.0, 10),
+    ("steady turn", 1.5, 20),
+    ("slalom", 0.3, 1),
+    ("slalom", 0.3, 2),
+    ("slalom", 0.5, 3),
+    ("slalom", 1.0, 5),
+    ("slalom", 1.0, 10),
+]
 
 
 @pytest.mark.parametrize(("kind", "u", "dF"), CASES)

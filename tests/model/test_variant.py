@@ -20,14 +20,14 @@ def test_what_is_written_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[value]\n\"chair.m\" = 91.0", "no table 'value'; did you mean 'values'?"),
+        ('[value]\n"chair.m" = 91.0', "no table 'value'; did you mean 'values'?"),
         ("values = 91.0", "values = 91.0 is no table; write [values]"),
-        (f"[laws]\neffects = \"{EFFECT}\"", "is no list of ids; write effects ="),
-        ("[laws]\neffects = [\"asymmetry\"]", f"no effect 'asymmetry'; did you mean '{EFFECT}'?"),
-        ("[laws]\ntire = \"linear\"", "no law in [laws] 'tire'; did you mean 'tyre'?"),
-        ("[laws]\ntyre = [\"linear\"]", "no tyre law"),
-        ("[values]\n\"chair.mass\" = 91.0", "no parameter 'chair.mass'"),
-        ("[values]\n\"chair.m\" = -1.0", "chair.m = -1.0 is outside its bounds"),
+        (f'[laws]\neffects = "{EFFECT}"', "is no list of ids; write effects ="),
+        ('[laws]\neffects = ["asymmetry"]', f"no effect 'asymmetry'; did you mean '{EFFECT}'?"),
+        ('[laws]\ntire = "linear"', "no law in [laws] 'tire'; did you mean 'tyre'?"),
+        ('[laws]\ntyre = ["linear"]', "no tyre law"),
+        ('[values]\n"chair.mass" = 91.0', "no parameter 'chair.mass'"),
+        ('[values]\n"chair.m" = -1.0', "chair.m = -1.0 is outside its bounds"),
     ],
 )
 def test_a_fault_is_told_with_the_file(tmp_path, text, says):

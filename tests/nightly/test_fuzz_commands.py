@@ -66,11 +66,61 @@ def wheelchair(words: Sequence[str]) -> None:
 
 # ---- options ----
 
-OPTIONS = ["--set", "--variant", "--effects", "--json", "-o", "--speed", "--time", "--delta-force", "--calibrate", "--help",
-           "--version", "--bootstrap", "--equations", "--axes", "--law", "--workers", "--step", "--parameters"]  # fmt: skip
-WORDS = ["chair.m=90", "chair.m=", "=", "effect.nothing.x=1", "effect.floor_slope.x=nan", "nowhere", "0", "-1", "1e308", "nan",
-         "inf", "", "[red]", ":car:", "\x1b[31m", "list", "show", "fit", "plot", "export", "build", "check", "run",
-         "steady-turn", "coast-down", "slalom", "/dev/null", "/dev/zero", ".", "..", "/", "a" * 300, "\udcff"]  # fmt: skip
+OPTIONS = [
+    "--set",
+    "--variant",
+    "--effects",
+    "--json",
+    "-o",
+    "--speed",
+    "--time",
+    "--delta-force",
+    "--calibrate",
+    "--help",
+    "--version",
+    "--bootstrap",
+    "--equations",
+    "--axes",
+    "--law",
+    "--workers",
+    "--step",
+    "--parameters",
+]
+WORDS = [
+    "chair.m=90",
+    "chair.m=",
+    "=",
+    "effect.nothing.x=1",
+    "effect.floor_slope.x=nan",
+    "nowhere",
+    "0",
+    "-1",
+    "1e308",
+    "nan",
+    "inf",
+    "",
+    "[red]",
+    ":car:",
+    "\x1b[31m",
+    "list",
+    "show",
+    "fit",
+    "plot",
+    "export",
+    "build",
+    "check",
+    "run",
+    "steady-turn",
+    "coast-down",
+    "slalom",
+    "/dev/null",
+    "/dev/zero",
+    ".",
+    "..",
+    "/",
+    "a" * 300,
+    "\udcff",
+]
 SAFE = [name for name in COMMANDS if name not in ("workbench", "fleet", "sweep", "paper", "improve")]  # the others start work
 words = st.one_of(st.sampled_from(OPTIONS), st.sampled_from(WORDS), st.text(max_size=12).filter(lambda w: "\0" not in w))
 
@@ -138,8 +188,10 @@ seeds = st.integers(0, 2**32 - 1)
 @pytest.fixture(scope="module")
 def sound() -> dict[str, bytes]:
     """A small campaign's files."""
-    return {"campaign.toml": (HEAD + "[columns]\nyaw_rate = { column = \"yaw_rate [rad/s]\" }\n" + NOISE + RUNS).encode(),
-            **{f"{name}.csv": csv_text(SI, rows(motion(seed=i))).encode() for i, name in enumerate("ab")}}  # fmt: skip
+    return {
+        "campaign.toml": (HEAD + '[columns]\nyaw_rate = { column = "yaw_rate [rad/s]" }\n' + NOISE + RUNS).encode(),
+        **{f"{name}.csv": csv_text(SI, rows(motion(seed=i))).encode() for i, name in enumerate("ab")},
+    }
 
 
 @QUIET

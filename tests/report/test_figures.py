@@ -12,8 +12,14 @@ TIME = np.linspace(0, 4, 401)
 
 
 def columns(curvature: np.ndarray) -> dict[str, np.ndarray]:
-    return {"chair.x": TIME, "chair.y": np.sin(TIME), "slip.rl": 0.01 * np.sin(TIME), "slip.rr": 0.02 * np.sin(TIME),
-            "chair.curvature": curvature, **{name: 1 + 0 * TIME for name in WATCHED}}  # fmt: skip
+    return {
+        "chair.x": TIME,
+        "chair.y": np.sin(TIME),
+        "slip.rl": 0.01 * np.sin(TIME),
+        "slip.rr": 0.02 * np.sin(TIME),
+        "chair.curvature": curvature,
+        **{name: 1 + 0 * TIME for name in WATCHED},
+    }
 
 
 def axis(figure, label: str):

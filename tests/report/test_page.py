@@ -14,39 +14,66 @@ from wheelchair_fmu.report.page import MODULES, asset, page
 from wheelchair_fmu.report.words import particulars, sentence, value_text
 
 TITLES = {"drag": "air that resists", "slope": "a floor that slopes"}
-LADDER = [{"step": "nominal", "fit": 9.0, "heldout": 8.0}, {"step": "calibrated", "fit": 2.0, "heldout": 1.9},
-          {"step": "+drag", "fit": 1.01, "heldout": 1.02}]  # fmt: skip
+LADDER = [
+    {"step": "nominal", "fit": 9.0, "heldout": 8.0},
+    {"step": "calibrated", "fit": 2.0, "heldout": 1.9},
+    {"step": "+drag", "fit": 1.01, "heldout": 1.02},
+]
 
 
 def told(verdict, effects=(), ties=(), **more):
-    ranking = [{"effect": e, "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}},
-                "verdict": "tie" if any(e in group for group in ties) else "missing"} for e in effects]  # fmt: skip
+    ranking = [
+        {
+            "effect": e,
+            "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}},
+            "verdict": "tie" if any(e in group for group in ties) else "missing",
+        }
+        for e in effects
+    ]
     return {"verdict": verdict, "effects": list(effects), "ties": ties, "ranking": ranking, "ladder": LADDER, **more}
 
 
-@pytest.mark.parametrize(("verdict", "effects", "expected"), [
-    ("missing", ["drag"], "Missing from the model: air that resists."),
-    ("missing", ["drag", "slope"], "Missing from the model: air that resists and a floor that slopes."),
-    ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
-    ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
-    ("outside", [], "Something is left that no effect in the catalogue explains."),
-    ("outside", ["slope"], "Something is left that no effect in the catalogue explains; "
-                           "what helps but does not suffice: a floor that slopes."),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("verdict", "effects", "expected"),
+    [
+        ("missing", ["drag"], "Missing from the model: air that resists."),
+        ("missing", ["drag", "slope"], "Missing from the model: air that resists and a floor that slopes."),
+        ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
+        ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
+        ("outside", [], "Something is left that no effect in the catalogue explains."),
+        (
+            "outside",
+            ["slope"],
+            "Something is left that no effect in the catalogue explains; what helps but does not suffice: a floor that slopes.",
+        ),
+    ],
+)
 def test_a_verdict_is_one_sentence(verdict, effects, expected):
     assert sentence(told(verdict, effects), TITLES) == expected
 
 
-@pytest.mark.parametrize(("effects", "ties", "expected"), [
-    (["drag", "slope"], [["drag", "slope"]],
-     "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes."),
-    (["drag", "slope", "toe"], [["drag", "slope"]],
-     "Missing: toe; and one of these is missing, and this campaign cannot tell which: air that resists or a floor that "
-     "slopes."),
-    (["drag", "slope", "toe", "trail"], [["drag", "slope"], ["toe", "trail"]],
-     "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes; and one of these "
-     "is missing, and this campaign cannot tell which: toe or trail."),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("effects", "ties", "expected"),
+    [
+        (
+            ["drag", "slope"],
+            [["drag", "slope"]],
+            "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes.",
+        ),
+        (
+            ["drag", "slope", "toe"],
+            [["drag", "slope"]],
+            "Missing: toe; and one of these is missing, and this campaign cannot tell which: air that resists or a floor that "
+            "slopes.",
+        ),
+        (
+            ["drag", "slope", "toe", "trail"],
+            [["drag", "slope"], ["toe", "trail"]],
+            "One of these is missing, and this campaign cannot tell which: air that resists or a floor that slopes; and one of "
+            "these is missing, and this campaign cannot tell which: toe or trail.",
+        ),
+    ],
+)
 def test_a_tie_names_what_is_sure_first(effects, ties, expected):
     assert sentence(told("tie", effects, ties), TITLES) == expected
 
@@ -57,21 +84,31 @@ def test_what_helps_is_named_with_its_ties():
 
 
 def test_the_sizes_and_the_fall_come_next():
-    records = {"effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),
-               "effect.odd.q": Parameter("effect.odd.q", RAD, "a lean")}  # fmt: skip
+    records = {
+        "effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),
+        "effect.odd.q": Parameter("effect.odd.q", RAD, "a lean"),
+    }
     lines = particulars(told("missing", ["drag"]), records)
     left = {"proposal": {"term": "odd", "estimate": -0.01, "se": 0.001}}
     assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06 deg."
     assert particulars(told("tie", ["drag"], [["slope", "toe"]]), records) == lines
     assert particulars(told("tie", ["drag", "slope"], [["drag", "slope"]]), records) == lines[1:]  # no size of what may not be
-    assert lines == ["Drag: size of the drag = 1.234 ± 0.021 N s/m.",
-                     "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone."]  # fmt: skip
+    assert lines == [
+        "Drag: size of the drag = 1.234 ± 0.021 N s/m.",
+        "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone.",
+    ]
 
 
-@pytest.mark.parametrize(("value", "se", "text"), [
-    (1.60688, 0.0083, "1.607 ± 0.008 N"), (1.60688, 0.0123, "1.607 ± 0.012 N"), (1234.5, 34.0, "1234 ± 34 N"),
-    (0.5, None, "0.5 N"), (0.018, 0.00998, "0.018 ± 0.010 N"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("value", "se", "text"),
+    [
+        (1.60688, 0.0083, "1.607 ± 0.008 N"),
+        (1.60688, 0.0123, "1.607 ± 0.012 N"),
+        (1234.5, 34.0, "1234 ± 34 N"),
+        (0.5, None, "0.5 N"),
+        (0.018, 0.00998, "0.018 ± 0.010 N"),
+    ],
+)
 def test_no_more_digits_than_are_known(value, se, text):
     assert value_text(value, se, N) == text
 
@@ -85,14 +122,17 @@ def test_nothing_in_the_data_becomes_markup():
     assert stored and json.loads(stored[1])["name"] == name
 
 
-@pytest.mark.parametrize(("given", "found", "expected"), [
-    ("", "", ["ab", "abc", "abcd"]),
-    ("", "c", ["ab", "abc", "abcd"]),
-    ("", "d", ["ab", "abd", "abc", "abcd"]),
-    ("a", "", ["ab", "abc", "abcd"]),
-    ("d", "", ["abd", "abcd"]),
-    ("c", "d", ["abc", "abcd"]),
-])
+@pytest.mark.parametrize(
+    ("given", "found", "expected"),
+    [
+        ("", "", ["ab", "abc", "abcd"]),
+        ("", "c", ["ab", "abc", "abcd"]),
+        ("", "d", ["ab", "abd", "abc", "abcd"]),
+        ("a", "", ["ab", "abc", "abcd"]),
+        ("d", "", ["abd", "abcd"]),
+        ("c", "d", ["abc", "abcd"]),
+    ],
+)
 def test_the_page_carries_no_heavier_model_than_it_needs(given, found, expected):
     workshop = SimpleNamespace(light="ab", heavy="c", demanding="d")
     assert layers(workshop, given, found) == [tuple(ids) for ids in expected]

@@ -57,9 +57,25 @@ def test_an_fmu_exports_nothing_but_fmi_and_needs_nothing_but_libc(name, request
 @pytest.mark.parametrize("name", ["replaying", "floor"])
 def test_an_fmu_compiles_without_a_warning(name, request, tmp_path):
     source = request.getfixturevalue(name).folder / "sources" / native.UNIT
-    done = subprocess.run([*compiler.command(), "-std=c11", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fPIC", "-c",
-                           f"-I{native.headers()}", str(source), "-o", str(tmp_path / "object.o")],
-                          capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [
+            *compiler.command(),
+            "-std=c11",
+            "-O1",
+            "-Wall",
+            "-Wextra",
+            "-Wpedantic",
+            "-Werror",
+            "-fPIC",
+            "-c",
+            f"-I{native.headers()}",
+            str(source),
+            "-o",
+            str(tmp_path / "object.o"),
+        ],
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -136,8 +152,11 @@ def test_the_interface_has_connectors_of_its_own(slalom):
         outer, plain = (archive.system(name) for name in reversed(DESCRIPTIONS))
     assert plain.connectors == () and all(c.start_element and c.end_element for c in plain.connections)
     assert {k.kind for k in outer.connectors} == {"input", "output", "parameter"}
-    led = {c.end_connector if not c.end_element else c.start_connector for c in outer.connections
-           if not (c.start_element and c.end_element)}  # fmt: skip
+    led = {
+        c.end_connector if not c.end_element else c.start_connector
+        for c in outer.connections
+        if not (c.start_element and c.end_element)
+    }
     assert led == {k.name for k in outer.connectors}
 
 
@@ -157,8 +176,17 @@ def test_a_set_written_is_the_set_read(tmp_path, slalom):
 
 def test_the_reference_set_is_table_1():
     settings = parameter_set.reference().settings
-    table = {"chair.a": 0.25, "chair.b": 0.20, "chair.t_r": 0.55, "chair.t_f": 0.45, "chair.m": 80.0, "chair.I_z": 3.08,
-             "tyre.C_lambda": 5038.0, "tyre.C_m_lambda": 45.0, "tyre.C_phi": 464.0}  # fmt: skip
+    table = {
+        "chair.a": 0.25,
+        "chair.b": 0.20,
+        "chair.t_r": 0.55,
+        "chair.t_f": 0.45,
+        "chair.m": 80.0,
+        "chair.I_z": 3.08,
+        "tyre.C_lambda": 5038.0,
+        "tyre.C_m_lambda": 45.0,
+        "tyre.C_phi": 464.0,
+    }
     assert {name: settings[name].value for name in table} == table
 
 
@@ -173,14 +201,20 @@ def test_every_system_is_well_formed(name):
     assert sources.system(name).title
 
 
-@pytest.mark.parametrize(("text", "told"), [
-    ("stop = 1.0\nstep = 0.1", "no title"),
-    ('title = "t"\nstop = -1.0\nstep = 0.1', "stop = -1.0 is no time"),
-    ('title = "t"\nstop = 1.0\nstep = 0.1\n[Pushr]', "did you mean 'Pusher'"),
-    ('title = "t"\nstop = 1.0\nstep = 0.1\n[Pusher]\n"stroke.cadens" = 1.0', "[Pusher]: no parameter 'stroke.cadens'; did you"),
-    ('title = "t"\nstop = 1.0\nstep = 0.1\n[Floor]\n"ramp.slope" = 2.0', "[Floor]: ramp.slope = 2.0 is outside its bounds"),
-    ("title = ", "not a TOML file"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("stop = 1.0\nstep = 0.1", "no title"),
+        ('title = "t"\nstop = -1.0\nstep = 0.1', "stop = -1.0 is no time"),
+        ('title = "t"\nstop = 1.0\nstep = 0.1\n[Pushr]', "did you mean 'Pusher'"),
+        (
+            'title = "t"\nstop = 1.0\nstep = 0.1\n[Pusher]\n"stroke.cadens" = 1.0',
+            "[Pusher]: no parameter 'stroke.cadens'; did you",
+        ),
+        ('title = "t"\nstop = 1.0\nstep = 0.1\n[Floor]\n"ramp.slope" = 2.0', "[Floor]: ramp.slope = 2.0 is outside its bounds"),
+        ("title = ", "not a TOML file"),
+    ],
+)
 def test_a_bad_source_is_refused_by_name(text, told, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(text)

@@ -19,27 +19,56 @@ FAULTS = [
     (MAIN, "SSP1/SystemStructureDesc", "SSP9/SystemStructureDesc", "the root is .*; write ssd:SystemStructureDescription"),
     (MAIN, 'version="1.0"', 'version="3.0"', "version '3.0' is unknown; give 1.0 or 2.0"),
     (MAIN, 'kind="input"', 'kind="entrance"', r"line \d+: not as the schema of SSP 1.0 wants it: .*kind.*; put elements in"),
-    (MAIN, "resources/Floor.fmu", "resources/Flor.fmu", r"line \d+, Component Floor: source 'resources/Flor.fmu' is not in the "
-     "archive; did you mean 'resources/Floor.fmu'"),
+    (
+        MAIN,
+        "resources/Floor.fmu",
+        "resources/Flor.fmu",
+        r"line \d+, Component Floor: source 'resources/Flor.fmu' is not in the "
+        "archive; did you mean 'resources/Floor.fmu'",
+    ),
     (MAIN, "resources/Floor.fmu", "../Floor.fmu", r"Component Floor: source '../Floor.fmu' is not in the archive"),
     (MAIN, "resources/Floor.fmu", "resources/Floor.ssv", r"resources/Floor.ssv: not an FMU: .*; give a file that"),
     (MAIN, 'name="Pusher"', 'name="Chair"', "Component Chair: the name stands here twice; give each its own"),
-    (MAIN, '"push.F_rl" kind="input"', '"push.F_l" kind="input"', "Connector Chair.push.F_l: the FMU has no such variable; "
-     "did you mean 'push.F_rl'"),
+    (
+        MAIN,
+        '"push.F_rl" kind="input"',
+        '"push.F_l" kind="input"',
+        "Connector Chair.push.F_l: the FMU has no such variable; did you mean 'push.F_rl'",
+    ),
     (MAIN, '"push.F_rl" kind="input"', '"push.F_rl" kind="output"', "it is of kind output, but the FMU has it as input;"),
-    (MAIN, '<ssc:Real unit="N"/>', '<ssc:Integer/>', "F_rl: it is of type Integer, but the FMU has it as Real; write"),
+    (MAIN, '<ssc:Real unit="N"/>', "<ssc:Integer/>", "F_rl: it is of type Integer, but the FMU has it as Real; write"),
     (MAIN, '<ssc:Real unit="N"/>', '<ssc:Real unit="m"/>', "Connector Chair.push.F_rl: it is in m, but the FMU has it in N"),
     (MAIN, '<ssc:Real unit="N"/>', '<ssc:Real unit="kN"/>', "Connector push.F_rl: unit 'kN' is not defined in Units"),
-    (MAIN, 'startElement="Pusher" startConnector="push.F_rl"', 'startElement="Pushr" startConnector="push.F_rl"',
-     r"connection Pushr.push.F_rl → Chair.push.F_rl: there is no element 'Pushr'; did you mean 'Pusher'"),
-    (MAIN, 'startElement="Pusher" startConnector="push.F_rl"', 'startElement="Pusher" startConnector="push.F_rk"',
-     "Pusher has no connector 'push.F_rk'; did you mean .*'push.F_rl'"),
-    (MAIN, 'startElement="Pusher" startConnector="push.F_rl"', 'startElement="Pusher" startConnector="chair.x"',
-     "it leads from kind input to kind input; lead from an output to an input"),
-    (MAIN, 'endElement="Chair" endConnector="push.F_rl"', 'endElement="Chair" endConnector="push.F_rr"',
-     "another connection ends there too; leave one of them out"),
-    (MAIN, 'endElement="Chair" endConnector="push.F_rl"', 'endElement="Chair" endConnector="floor.slope_x"',
-     "it leads from N to rad, which is another dimension; connect what measures the same"),
+    (
+        MAIN,
+        'startElement="Pusher" startConnector="push.F_rl"',
+        'startElement="Pushr" startConnector="push.F_rl"',
+        r"connection Pushr.push.F_rl → Chair.push.F_rl: there is no element 'Pushr'; did you mean 'Pusher'",
+    ),
+    (
+        MAIN,
+        'startElement="Pusher" startConnector="push.F_rl"',
+        'startElement="Pusher" startConnector="push.F_rk"',
+        "Pusher has no connector 'push.F_rk'; did you mean .*'push.F_rl'",
+    ),
+    (
+        MAIN,
+        'startElement="Pusher" startConnector="push.F_rl"',
+        'startElement="Pusher" startConnector="chair.x"',
+        "it leads from kind input to kind input; lead from an output to an input",
+    ),
+    (
+        MAIN,
+        'endElement="Chair" endConnector="push.F_rl"',
+        'endElement="Chair" endConnector="push.F_rr"',
+        "another connection ends there too; leave one of them out",
+    ),
+    (
+        MAIN,
+        'endElement="Chair" endConnector="push.F_rl"',
+        'endElement="Chair" endConnector="floor.slope_x"',
+        "it leads from N to rad, which is another dimension; connect what measures the same",
+    ),
     (MAIN, 'stopTime="30"', 'stopTime="-1"', "DefaultExperiment: stopTime -1 s is not after startTime 0 s; give"),
     (MAIN, 'baseStepSize="0.005"', 'baseStepSize="0"', "baseStepSize 0 s is not above 0; give a step such as 0.01"),
     (MAIN, 'implementation="CoSimulation"', 'implementation="ModelExchange"', "Chair: ModelExchange is asked for; ask for"),
@@ -55,14 +84,27 @@ FAULTS = [
     (CHAIR, 'value="80" unit="kg"', 'value="80" unit="stone"', "unit 'stone' is not defined in Units"),
     (CHAIR, '<ssv:Real value="80" unit="kg"/>', '<ssv:Boolean value="true"/>', "a Boolean, but the FMU has a Real; give"),
     (CHAIR, '<ssv:Real value="80" unit="kg"/>', '<ssv:String value="x"/>', "a value of type String is not read here"),
-    (CHAIR, '"chair.m">\n      <ssv:Real value="80" unit="kg"/>', '"tyre.law"><ssv:Enumeration value="magic"/>',
-     "Parameter tyre.law: 'magic' is no choice; choose linear or dugoff or magic_formula"),
-    (HANDLES, 'source="chair.mass"', 'source="chair.mas"', "MappingEntry chair.mas: resources/handles.ssv has no such "
-     "parameter; did you mean 'chair.mass'"),
+    (
+        CHAIR,
+        '"chair.m">\n      <ssv:Real value="80" unit="kg"/>',
+        '"tyre.law"><ssv:Enumeration value="magic"/>',
+        "Parameter tyre.law: 'magic' is no choice; choose linear or dugoff or magic_formula",
+    ),
+    (
+        HANDLES,
+        'source="chair.mass"',
+        'source="chair.mas"',
+        "MappingEntry chair.mas: resources/handles.ssv has no such parameter; did you mean 'chair.mass'",
+    ),
     (HANDLES, 'target="mass"', 'target="weight"', "Parameter weight: Interface.ssd has no such parameter"),
-    (HANDLES, 'target="mass"/>', 'target="mass"><ssc:BooleanMappingTransformation><ssc:MapEntry source="true" target="true"/>'
-     "</ssc:BooleanMappingTransformation></ssm:MappingEntry>", "BooleanMappingTransformation is not read here; use a Linear"),
-]  # fmt: skip
+    (
+        HANDLES,
+        'target="mass"/>',
+        'target="mass"><ssc:BooleanMappingTransformation><ssc:MapEntry source="true" target="true"/>'
+        "</ssc:BooleanMappingTransformation></ssm:MappingEntry>",
+        "BooleanMappingTransformation is not read here; use a Linear",
+    ),
+]
 
 
 @pytest.mark.parametrize(("file", "old", "new", "told"), FAULTS)
@@ -105,7 +147,8 @@ def test_entities_are_refused_in_one_sentence(file, declared, altered):
     begin = "encoding='UTF-8'?>\n"
     faults = check(altered({file: (begin, f"{begin}<!DOCTYPE any [{declared}]>\n")}))
     assert [f"{f.file}: {f.fact}" for f in faults if f.file == file] == [
-        f"{file}: it begins with a document type declaration (DTD), and entities are not read here"]  # fmt: skip
+        f"{file}: it begins with a document type declaration (DTD), and entities are not read here"
+    ]
 
 
 def test_an_entity_in_use_is_refused_not_read(altered):
@@ -115,8 +158,10 @@ def test_an_entity_in_use_is_refused_not_read(altered):
     with zipfile.ZipFile(path) as good, zipfile.ZipFile(changed, "w") as made:
         for name in good.namelist():
             text = good.read(name)
-            made.writestr(name, text.replace(begin.encode(), f'{begin}<!DOCTYPE s [<!ENTITY who "<x/>">]>'.encode())
-                          if name == CHAIR else text)  # fmt: skip
+            made.writestr(
+                name,
+                text.replace(begin.encode(), f'{begin}<!DOCTYPE s [<!ENTITY who "<x/>">]>'.encode()) if name == CHAIR else text,
+            )
     assert ["document type declaration" in f.fact for f in check(changed)] == [True]
 
 

@@ -7,9 +7,19 @@ import pytest
 from tests.fmu.chair import chair
 
 OUTPUTS = ("floor.slope_x", "floor.slope_y", "floor.rolling_factor")
-BUILT = {"ramp.slope": -0.06, "ramp.x_from": 2.0, "ramp.x_to": 5.0, "cross.slope": 0.03, "cross.x_from": 4.0, "cross.x_to": 8.0,
-         "cross.y_from": -1.0, "cross.y_to": 1.0, "carpet.rolling_factor": 2.0, "carpet.x_from": 10.0,
-         "edge.length": 0.4}  # fmt: skip
+BUILT = {
+    "ramp.slope": -0.06,
+    "ramp.x_from": 2.0,
+    "ramp.x_to": 5.0,
+    "cross.slope": 0.03,
+    "cross.x_from": 4.0,
+    "cross.x_to": 8.0,
+    "cross.y_from": -1.0,
+    "cross.y_to": 1.0,
+    "carpet.rolling_factor": 2.0,
+    "carpet.x_from": 10.0,
+    "edge.length": 0.4,
+}
 
 
 def test_it_is_level_and_smooth_until_something_is_given(floor):
@@ -20,18 +30,21 @@ def test_it_is_level_and_smooth_until_something_is_given(floor):
             assert f.get(*OUTPUTS) == [0.0, 0.0, 1.0]
 
 
-@pytest.mark.parametrize(("x", "y", "wanted"), [
-    (0.0, 0.0, (0.0, 0.0, 1.0)),
-    (3.0, 0.0, (-0.06, 0.0, 1.0)),
-    (4.5, 0.0, (-0.06, 0.03, 1.0)),   # patches lie on one another
-    (4.5, 1.5, (-0.06, 0.0, 1.0)),    # beside the corridor
-    (2.0, 0.0, (-0.03, 0.0, 1.0)),    # half over the edge
-    (1.9, 0.0, (-0.06 * 0.25**2 * (3 - 2 * 0.25), 0.0, 1.0)),
-    (5.0, 0.0, (-0.03, 0.03, 1.0)),
-    (1.8, 0.0, (0.0, 0.0, 1.0)),      # the edge begins half its length before
-    (12.0, 0.0, (0.0, 0.0, 2.0)),
-    (10.0, 0.0, (0.0, 0.0, 1.5)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("x", "y", "wanted"),
+    [
+        (0.0, 0.0, (0.0, 0.0, 1.0)),
+        (3.0, 0.0, (-0.06, 0.0, 1.0)),
+        (4.5, 0.0, (-0.06, 0.03, 1.0)),  # patches lie on one another
+        (4.5, 1.5, (-0.06, 0.0, 1.0)),  # beside the corridor
+        (2.0, 0.0, (-0.03, 0.0, 1.0)),  # half over the edge
+        (1.9, 0.0, (-0.06 * 0.25**2 * (3 - 2 * 0.25), 0.0, 1.0)),
+        (5.0, 0.0, (-0.03, 0.03, 1.0)),
+        (1.8, 0.0, (0.0, 0.0, 1.0)),  # the edge begins half its length before
+        (12.0, 0.0, (0.0, 0.0, 2.0)),
+        (10.0, 0.0, (0.0, 0.0, 1.5)),
+    ],
+)
 def test_patches_hold_inside_and_blend_at_their_edges(floor, x, y, wanted):
     with chair(floor) as f:
         f.start(BUILT)

@@ -55,7 +55,8 @@ def test_every_input_that_is_listed_is_fed(description, slalom):
     with opened(slalom) as archive:
         system = archive.system(description)
     fed = {(c.end_element, c.end_connector) for c in system.connections} | {
-        (c.start_element, c.start_connector) for c in system.connections if not c.end_element}  # fmt: skip
+        (c.start_element, c.start_connector) for c in system.connections if not c.end_element
+    }
     listed = {(c.name, k.name) for c in system.components for k in c.connectors if k.kind == "input"}
     assert listed and listed <= fed
     assert ("Chair", "brake.rl") in listed or description == MAIN

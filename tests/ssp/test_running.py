@@ -49,8 +49,10 @@ def libcosim(path, stop: float, step: float | None) -> np.ndarray:
     """The last value of every Real output, in the order of the trace's columns."""
     with opened(path) as archive:
         components = {c.name: archive.fmu(c.source) for c in archive.system("SystemStructure.ssd").components}
-        wanted = {name: [v.valueReference for v in fmu.variables.values() if v.causality == "output" and v.type == "Real"]
-                  for name, fmu in components.items()}  # fmt: skip
+        wanted = {
+            name: [v.valueReference for v in fmu.variables.values() if v.causality == "output" and v.type == "Real"]
+            for name, fmu in components.items()
+        }
     words = [f"{name}:{','.join(map(str, numbers))}" for name, numbers in wanted.items()]
     nanoseconds = [str(round(1e9 * t)) for t in (step or 0, stop)]
     done = subprocess.run([sys.executable, "-c", LIBCOSIM, str(path), *nanoseconds, *words], capture_output=True, text=True)
@@ -59,9 +61,10 @@ def libcosim(path, stop: float, step: float | None) -> np.ndarray:
     return np.array([float.fromhex(word) for line in lines for word in line.split()])
 
 
-@pytest.mark.parametrize(("name", "step", "sets"), [
-    ("slalom", 0.01, ()), ("slalom", None, ("deflated-tyres", "carpet")), ("ramp", 0.02, ("low-cost-tyre",)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "step", "sets"),
+    [("slalom", 0.01, ()), ("slalom", None, ("deflated-tyres", "carpet")), ("ramp", 0.02, ("low-cost-tyre",))],
+)
 def test_libcosim_gives_the_same(name, step, sets, tmp_path):
     pytest.importorskip("libcosimpy", reason="pip install wheelchair-fmu[ssp]")
     path = build(name, tmp_path / "system.ssp", parameters=sets)
@@ -100,17 +103,23 @@ def test_a_handle_turns_its_parameter_in_everyday_units(altered):
 
 
 def test_a_mapping_scales_and_a_prefix_goes_before(altered):
-    scaled = ('source="person.strongest_push" target="strongest_push"/>',
-              'source="person.strongest_push" target="strongest_push"><ssc:LinearTransformation factor="0.5" offset="3"/>'
-              "</ssm:MappingEntry>")  # fmt: skip
+    scaled = (
+        'source="person.strongest_push" target="strongest_push"/>',
+        'source="person.strongest_push" target="strongest_push"><ssc:LinearTransformation factor="0.5" offset="3"/>'
+        "</ssm:MappingEntry>",
+    )
     path = altered({"resources/handles.ssm": scaled})
     assert check(path) == []
     assert run(path, stop=0.1, description="Interface").parameters["Pusher.stroke.force"] == 43.0
-    body = b'''<?xml version="1.0"?><ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues"
+    body = b"""<?xml version="1.0"?><ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues"
         version="1.0" name="p"><ssv:Parameters><ssv:Parameter name="m"><ssv:Real value="95"/></ssv:Parameter></ssv:Parameters>
-        </ssv:ParameterSet>'''
-    path = altered({"SystemStructure.ssd": ('source="resources/Chair.ssv"/>', 'source="resources/p.ssv" prefix="chair."/>'),
-                    "resources/p.ssv": body})  # fmt: skip
+        </ssv:ParameterSet>"""
+    path = altered(
+        {
+            "SystemStructure.ssd": ('source="resources/Chair.ssv"/>', 'source="resources/p.ssv" prefix="chair."/>'),
+            "resources/p.ssv": body,
+        }
+    )
     assert run(path, stop=0.1).parameters["Chair.chair.m"] == 95.0
 
 
@@ -153,9 +162,9 @@ def two_chairs(altered, slalom):
     heavy = replace(first, name="Heavy", bindings=(*first.bindings, Binding("resources/heavy.ssv")))
     pushed = [Connection("Pusher", name, "Heavy", name) for name in ("push.F_rl", "push.F_rr")]
     both = replace(plain, components=(*plain.components, heavy), connections=(*plain.connections, *pushed))
-    weight = b'''<ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0"
+    weight = b"""<ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0"
         name="heavy"><ssv:Parameters><ssv:Parameter name="chair.m"><ssv:Real value="110"/></ssv:Parameter></ssv:Parameters>
-        </ssv:ParameterSet>'''
+        </ssv:ParameterSet>"""
     path = altered({"SystemStructure.ssd": writing.description(both), "resources/heavy.ssv": weight})
     assert check(path) == []
     return path
@@ -174,8 +183,7 @@ def test_over_any_communication_step_the_error_is_of_first_order(two_chairs):
         trace = run(two_chairs, step=step, stop=6.0, parameters=("carpet",))
         assert trace.time[-1] == 6.0
         for name, found in rates.items():
-            off = [np.abs(np.interp(trace.time, fine.time, fine[c]) - trace[c])
-                   for c in (f"{name}.chair.x", f"{name}.chair.y")]  # fmt: skip
+            off = [np.abs(np.interp(trace.time, fine.time, fine[c]) - trace[c]) for c in (f"{name}.chair.x", f"{name}.chair.y")]
             found.append(float(np.max(off)) / (step - finest))
     assert np.max(fine["Floor.floor.rolling_factor"]) > 1.05 and fine["Chair.chair.x"][-1] > 3
     for name, found in rates.items():
@@ -244,11 +252,17 @@ def test_the_floor_acts_on_the_chair(tmp_path):
     assert np.max(carpet["Floor.floor.rolling_factor"]) == pytest.approx(1.98)
 
 
-@pytest.mark.parametrize(("options", "told"), [
-    ({"step": 0.0}, "--step 0 s is impossible"), ({"step": float("nan")}, "--step nan s is impossible"),
-    ({"stop": -1.0}, "--time -1 s is not after the start"), ({"step": 1e-9}, "give a longer one"),
-    ({"description": "Nowhere"}, "no description in"), ({"parameters": ("fited",)}, "did you mean 'fitted'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"step": 0.0}, "--step 0 s is impossible"),
+        ({"step": float("nan")}, "--step nan s is impossible"),
+        ({"stop": -1.0}, "--time -1 s is not after the start"),
+        ({"step": 1e-9}, "give a longer one"),
+        ({"description": "Nowhere"}, "no description in"),
+        ({"parameters": ("fited",)}, "did you mean 'fitted'"),
+    ],
+)
 def test_an_impossible_request_is_refused(options, told, slalom):
     with pytest.raises(UsageError, match=told):
         run(slalom, **options)

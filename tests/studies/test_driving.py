@@ -43,8 +43,13 @@ def test_it_equals_fmpys_own_loop_where_that_is_exact(fmu):
     """With constant inputs the slopes that fmpy sets late are zero anyway."""
     time = np.arange(201) * 0.01
     result = fmu.run(time, {"push.F_rl": np.full(201, 20.0)}, {"start.u": 0.3})
-    theirs = fmpy.simulate_fmu(str(fmu.path), start_values={"push.F_rl": 20.0, "start.u": 0.3}, stop_time=2.0,
-                               output_interval=0.01, output=["chair.x", "chair.psi"])  # fmt: skip
+    theirs = fmpy.simulate_fmu(
+        str(fmu.path),
+        start_values={"push.F_rl": 20.0, "start.u": 0.3},
+        stop_time=2.0,
+        output_interval=0.01,
+        output=["chair.x", "chair.psi"],
+    )
     for name in ("chair.x", "chair.psi"):
         assert result[name] == pytest.approx(theirs[name], abs=1e-9)
 

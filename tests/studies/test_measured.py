@@ -18,9 +18,17 @@ TIME = np.arange(101) * 0.01
 
 
 def run_of(**changes) -> Run:
-    fields = dict(name="r", file=Path("r.csv"), manoeuvre="", role="fit", u0=0.5, set={}, time=TIME,
-                  inputs={"push.F_rl": 0 * TIME + 6, "push.F_rr": 0 * TIME + 6},
-                  channels={"u": 0 * TIME, "yaw_rate": 0 * TIME})  # fmt: skip
+    fields = dict(
+        name="r",
+        file=Path("r.csv"),
+        manoeuvre="",
+        role="fit",
+        u0=0.5,
+        set={},
+        time=TIME,
+        inputs={"push.F_rl": 0 * TIME + 6, "push.F_rr": 0 * TIME + 6},
+        channels={"u": 0 * TIME, "yaw_rate": 0 * TIME},
+    )
     return Run(**{**fields, **changes})
 
 

@@ -38,8 +38,13 @@ class Tyre:
         x = np.radians(np.r_[-sizes[::-1], 0, sizes])
         force, torque = self.curves(kind, x, pressure, load)
         n = self.rng.normal(size=(2, len(x)))
-        return Sweep(Condition(tyre, pressure, load, speed), kind, x, force + self.curvature + self.noise[0] * n[0],
-                     torque - 0.12 + self.noise[1] * n[1])  # fmt: skip
+        return Sweep(
+            Condition(tyre, pressure, load, speed),
+            kind,
+            x,
+            force + self.curvature + self.noise[0] * n[0],
+            torque - 0.12 + self.noise[1] * n[1],
+        )
 
     def curves(self, kind, x, pressure=4.0, load=400.0):
         p, m = pressure / 4, load / 400

@@ -120,10 +120,15 @@ def test_combined_rows_and_strange_columns_are_warned_of(tmp_path):
     assert any("1 rows have slip and camber at once" in w for w in said)
 
 
-@pytest.mark.parametrize(("content", "message"), [
-    (b"", "the file is empty"), (b"a,b\n", "a header but no rows"), (b"\xff\xfe1", "a header but no rows"),
-    (b"a,b\n1,2\n", "no column 'load'"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "the file is empty"),
+        (b"a,b\n", "a header but no rows"),
+        (b"\xff\xfe1", "a header but no rows"),
+        (b"a,b\n1,2\n", "no column 'load'"),
+    ],
+)
 def test_files_that_are_none(content, message, tmp_path):
     (tmp_path / "r.csv").write_bytes(content)
     assert any(message in f for f in faults(tmp_path / "r.csv"))
@@ -171,15 +176,25 @@ MZW       Aligning torque                 Nm        0.1       0         0.2
 
 def tydex_of(sweep):
     """The same measurements as a TYDEX file in ISO's axes."""
+
     def line(name, meaning, unit, *values):
         return f"{name:<10}{meaning:<32}{unit:<10}" + "".join(f"{v:<10}" for v in values)
 
     c = sweep.condition
-    slip, camber = (("SLIPANGL", "INCLANGL") if sweep.kind == SLIP else ("INCLANGL", "SLIPANGL"))
-    out = ["**HEADER", line("RELEASE", "Release", "", "1.3"), "**CONSTANTS", line("IDENTITY", "Tyre", "", c.tyre),
-           line("INFLPRES", "Inflation pressure", "bar", c.pressure), line("FZW", "Load", "N", c.load),
-           line("LONGVEL", "Speed", "m/s", c.speed), line(camber, "held", "deg", 0), "**MEASURCHANNELS",
-           *(line(n, n, u, 1, 0, 0) for n, u in ((slip, "rad"), ("FYW", "N"), ("MZW", "Nm"))), "**MEASURDATA"]
+    slip, camber = ("SLIPANGL", "INCLANGL") if sweep.kind == SLIP else ("INCLANGL", "SLIPANGL")
+    out = [
+        "**HEADER",
+        line("RELEASE", "Release", "", "1.3"),
+        "**CONSTANTS",
+        line("IDENTITY", "Tyre", "", c.tyre),
+        line("INFLPRES", "Inflation pressure", "bar", c.pressure),
+        line("FZW", "Load", "N", c.load),
+        line("LONGVEL", "Speed", "m/s", c.speed),
+        line(camber, "held", "deg", 0),
+        "**MEASURCHANNELS",
+        *(line(n, n, u, 1, 0, 0) for n, u in ((slip, "rad"), ("FYW", "N"), ("MZW", "Nm"))),
+        "**MEASURDATA",
+    ]
     out += [f"{x:.9g} {-F:.9g} {-M:.9g}" for x, F, M in zip(sweep.angle, sweep.force, sweep.torque, strict=True)]
     return "\n".join([*out, "**END"]) + "\n"
 
@@ -207,9 +222,12 @@ def test_all_faults_of_a_tydex_file_come_together(tmp_path):
     text = text.replace("FZW ", "FZX ").replace("km/h      1   ", "km/h      one ")
     found = faults(written(tmp_path / "hand.tdx", text))
     assert [f.partition(": ")[2].partition(";")[0] for f in found] == [
-        "'soft' is not a number", "5 numbers, but 6 channels are defined", "unit 'qqq' is unknown",
-        "no FZW or FZH or FZC among channels and constants", "'one       0         0' is no number",
-    ]  # fmt: skip
+        "'soft' is not a number",
+        "5 numbers, but 6 channels are defined",
+        "unit 'qqq' is unknown",
+        "no FZW or FZH or FZC among channels and constants",
+        "'one       0         0' is no number",
+    ]
     assert "line 17" in found[0] and "line 18" in found[1] and "line 6" in found[2] and "line 10" in found[4]
     assert faults(written(tmp_path / "none.tdx", "hello\n")) == [
         "none.tdx: no block **MEASURCHANNELS; is it a TYDEX 1.3 file with measurements?",
@@ -265,8 +283,20 @@ def test_a_tir_file_written_by_hand(tmp_path):
 
 
 def test_mf52_is_odd_without_shifts_and_its_slope_is_the_stiffness():
-    tyre = Mf52({"FNOMIN": 500, "UNLOADED_RADIUS": 0.3, "PCY1": 1.4, "PDY1": 1, "PKY1": -14, "PKY2": 2, "PKY3": 0.3,
-                 "QBZ1": 12, "QCZ1": 1.1, "QDZ1": 0.05})  # fmt: skip
+    tyre = Mf52(
+        {
+            "FNOMIN": 500,
+            "UNLOADED_RADIUS": 0.3,
+            "PCY1": 1.4,
+            "PDY1": 1,
+            "PKY1": -14,
+            "PKY2": 2,
+            "PKY3": 0.3,
+            "QBZ1": 12,
+            "QCZ1": 1.1,
+            "QDZ1": 0.05,
+        }
+    )
     a, g, N = np.linspace(-0.2, 0.2, 41), np.zeros(41), np.full(41, 450.0)
     F, M = tyre.forces(a, g, N)
     assert np.allclose(F, -F[::-1]) and np.allclose(M, -M[::-1])

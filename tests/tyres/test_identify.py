@@ -197,12 +197,15 @@ def test_one_sign_only_is_refused_because_the_curvature_force_stays_in():
         identify([half])
 
 
-@pytest.mark.parametrize(("force", "said"), [
-    (lambda a: 0 * a, "the force is the same at both signs of every angle"),
-    (lambda a: 3 + a**2, "the force is the same at both signs of every angle"),
-    (lambda a: 50 * a**3, "the slope is not told from zero"),
-    (lambda a: 60 * a, "bends less than the noise"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (lambda a: 0 * a, "the force is the same at both signs of every angle"),
+        (lambda a: 3 + a**2, "the force is the same at both signs of every angle"),
+        (lambda a: 50 * a**3, "the slope is not told from zero"),
+        (lambda a: 60 * a, "bends less than the noise"),
+    ],
+)
 def test_forces_of_odd_shapes_are_told_and_do_not_stop_the_rest(force, said):
     sweep = Tyre().sweep()
     odd = type(sweep)(sweep.condition, sweep.kind, sweep.angle, force(np.degrees(sweep.angle)), sweep.torque)

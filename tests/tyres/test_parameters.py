@@ -57,8 +57,13 @@ def test_the_fmu_gives_the_fitted_force(disc, law, condition, tmp_path):
     fit = at(disc, *condition)
     (tmp_path / "tyre.toml").write_text(variant_text(chair(disc, fit, law)))
     variant = read_variant(tmp_path / "tyre.toml")
-    values = {**variant.values, "tyre.law": variant.choice.tyre, "chair.m": on_load(variant, fit.condition.load),
-              "speed.mode": "prescribed", "speed.u": 1.0}  # fmt: skip
+    values = {
+        **variant.values,
+        "tyre.law": variant.choice.tyre,
+        "chair.m": on_load(variant, fit.condition.load),
+        "speed.mode": "prescribed",
+        "speed.u": 1.0,
+    }
     with Fmu(fmu_of(variant)) as fmu:
         for x in LAMBDA:
             result = fmu.run(np.array([0.0, 1e-3]), {}, {**values, "start.v": -np.tan(x)})
@@ -134,8 +139,10 @@ def test_the_parameter_set_is_valid_and_holds_the_variant(disc):
     schema = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
     root = etree.fromstring(parameter_set.text(parameter_set.from_variant(variant, "tyre", "tyre A & its <laws>")))
     etree.XMLSchema(etree.parse(schema)).assertValid(root)
-    space = {"v": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
-             "c": "http://ssp-standard.org/SSP1/SystemStructureCommon"}  # fmt: skip
+    space = {
+        "v": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+        "c": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    }
     reals = {p.get("name"): p[0] for p in root.iterfind(".//v:Parameter", space)}
     assert {n: float(e.get("value")) for n, e in reals.items() if n != "tyre.law"} == dict(variant.values)
     assert reals["tyre.law"].get("value") == "magic_formula"

@@ -44,11 +44,25 @@ class Server:
 def started(folder: Path, *options: str) -> Iterator[Server]:
     for name in ("httpx", "uvicorn", "starlette", "multipart", "filelock"):
         pytest.importorskip(name, reason="the workbench's libraries are not installed")
-    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "workbench", "--port", "0", "--no-open",
-             "--folder", str(folder / "work"), *options]  # fmt: skip
+    words = [
+        sys.executable,
+        "-m",
+        "wheelchair_fmu.cli.main",
+        "workbench",
+        "--port",
+        "0",
+        "--no-open",
+        "--folder",
+        str(folder / "work"),
+        *options,
+    ]
     said = folder / "said.txt"
-    with said.open("wb") as errors, subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True, cwd=folder,
-                                                     env={**os.environ, "PYTHONPATH": str(ROOT)}) as process:  # fmt: skip
+    with (
+        said.open("wb") as errors,
+        subprocess.Popen(
+            words, stdout=subprocess.PIPE, stderr=errors, text=True, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}
+        ) as process,
+    ):
         assert process.stdout
         try:
             yield Server(process.stdout.readline().split()[0], folder / "work", said)

@@ -59,11 +59,24 @@ def refused(answer: httpx.Response, status: int, why: str) -> None:
 # -- who may ask --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("method", "path"), [
-    ("GET", "/"), ("GET", "/page/workbench.js"), ("POST", "/sessions"), ("GET", "/s/{id}"), ("GET", "/s/{id}/state"),
-    ("GET", "/s/{id}/report"), ("GET", "/s/{id}/export/variant.toml"), ("PUT", "/s/{id}/campaign"), ("POST", "/s/{id}/effects"),
-    ("POST", "/s/{id}/files"), ("DELETE", "/s/{id}/jobs"), ("GET", "/nowhere"), ("OPTIONS", "/s/{id}/state"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("method", "path"),
+    [
+        ("GET", "/"),
+        ("GET", "/page/workbench.js"),
+        ("POST", "/sessions"),
+        ("GET", "/s/{id}"),
+        ("GET", "/s/{id}/state"),
+        ("GET", "/s/{id}/report"),
+        ("GET", "/s/{id}/export/variant.toml"),
+        ("PUT", "/s/{id}/campaign"),
+        ("POST", "/s/{id}/effects"),
+        ("POST", "/s/{id}/files"),
+        ("DELETE", "/s/{id}/jobs"),
+        ("GET", "/nowhere"),
+        ("OPTIONS", "/s/{id}/state"),
+    ],
+)
 @pytest.mark.parametrize("headers", [{}, {"x-workbench-token": "guess"}, {"x-workbench-token": b"\xe9"}])
 def test_nobody_is_answered_without_the_token(server, visit, method, path, headers):
     answer = httpx.request(method, server.address + path.format(id=visit.id), headers={"x-workbench": "1", **headers})
@@ -87,10 +100,18 @@ def test_two_workbenches_have_two_tokens(server, tmp_path):
         refused(httpx.get(other.address, headers={"x-workbench-token": server.token}), 403, "open the workbench by")
 
 
-@pytest.mark.parametrize("headers", [
-    {"origin": "http://evil.example"}, {"origin": "null"}, {"origin": "http://127.0.0.1:1"}, {"origin": "https://{host}"},
-    {"sec-fetch-site": "cross-site"}, {"sec-fetch-site": "same-site"}, {"x-workbench": None},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"origin": "http://evil.example"},
+        {"origin": "null"},
+        {"origin": "http://127.0.0.1:1"},
+        {"origin": "https://{host}"},
+        {"sec-fetch-site": "cross-site"},
+        {"sec-fetch-site": "same-site"},
+        {"x-workbench": None},
+    ],
+)
 def test_another_sites_page_changes_nothing_even_with_the_cookie(client, visit, headers):
     sent = {k: v.format(host=client.base_url.netloc.decode()) for k, v in headers.items() if v}
     request = client.build_request("POST", f"/s/{visit.id}/effects", json=EFFECT, headers=sent)
@@ -124,8 +145,16 @@ def test_opening_an_address_changes_nothing(client, server, visit):
         return {str(p): p.read_bytes() for p in server.folder.rglob("*") if p.is_file()}
 
     before = all_files()
-    for path in ("/", f"/s/{visit.id}", f"/s/{visit.id}/state", f"/s/{visit.id}/job", f"/s/{visit.id}/export/variant.toml",
-                 f"/s/{visit.id}/export/parameters.ssv", "/sessions", f"/s/{visit.id}/jobs"):  # fmt: skip
+    for path in (
+        "/",
+        f"/s/{visit.id}",
+        f"/s/{visit.id}/state",
+        f"/s/{visit.id}/job",
+        f"/s/{visit.id}/export/variant.toml",
+        f"/s/{visit.id}/export/parameters.ssv",
+        "/sessions",
+        f"/s/{visit.id}/jobs",
+    ):
         client.get(path)
         client.head(path)
     assert all_files() == before
@@ -134,14 +163,17 @@ def test_opening_an_address_changes_nothing(client, server, visit):
 # -- what runs ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("expression", [
-    '-q * u # " + str(__import__("pathlib").Path("{marker}").write_text("")) + " end',
-    '-q * u"))); __import__("pathlib").Path("{marker}").write_text(""); (((law("',
-    "-q * u\n__import__('pathlib').Path('{marker}').write_text('')",
-    "-q * u * open('{marker}', 'w')",
-    "(lambda: q)()",
-    "q.__class__.__base__.__subclasses__()",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "expression",
+    [
+        '-q * u # " + str(__import__("pathlib").Path("{marker}").write_text("")) + " end',
+        '-q * u"))); __import__("pathlib").Path("{marker}").write_text(""); (((law("',
+        "-q * u\n__import__('pathlib').Path('{marker}').write_text('')",
+        "-q * u * open('{marker}', 'w')",
+        "(lambda: q)()",
+        "q.__class__.__base__.__subclasses__()",
+    ],
+)
 def test_nothing_typed_is_run(visit, tmp_path, expression):
     typed = expression.replace("{marker}", str(tmp_path / "marker"))
     answer = visit.post("effects", json={**EFFECT, "expression": typed})
@@ -188,38 +220,44 @@ def test_a_session_whose_effect_is_broken_still_opens_and_says_so(visit, server)
 # -- what is too much ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("change", "why"), [
-    ({"expression": "q*0/0"}, "has no finite value"),
-    ({"expression": "q" + "+q" * 20_000}, "is too long"),
-    ({"expression": "(" * 900 + "q" + ")" * 900}, "nested"),
-    ({"expression": "-" * 1900 + "q"}, "nested"),
-    ({"expression": "q * 9**9**9"}, "an exponent"),
-    ({"expression": "q * 3 [9**9**9]"}, "is unknown"),
-    ({"id": "a" * 300}, "is no name for an effect"),
-    ({"id": "../../evil"}, "is no name for an effect"),
-    ({"upper": 1e999}, "is not a number"),
-    ({"upper": 10**400}, "is not a number"),
-    ({"to": "a" * 10_000}, "no quantity to act on"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"expression": "q*0/0"}, "has no finite value"),
+        ({"expression": "q" + "+q" * 20_000}, "is too long"),
+        ({"expression": "(" * 900 + "q" + ")" * 900}, "nested"),
+        ({"expression": "-" * 1900 + "q"}, "nested"),
+        ({"expression": "q * 9**9**9"}, "an exponent"),
+        ({"expression": "q * 3 [9**9**9]"}, "is unknown"),
+        ({"id": "a" * 300}, "is no name for an effect"),
+        ({"id": "../../evil"}, "is no name for an effect"),
+        ({"upper": 1e999}, "is not a number"),
+        ({"upper": 10**400}, "is not a number"),
+        ({"to": "a" * 10_000}, "no quantity to act on"),
+    ],
+)
 def test_an_effect_that_cannot_be_is_refused_at_once(visit, change, why):
     answer = visit.post("effects", content=json.dumps({**EFFECT, **change}), timeout=10)
     assert answer.status_code == 400 and why in answer.json()["error"]
     assert visit.get("state").status_code == 200
 
 
-@pytest.mark.parametrize(("body", "status", "why"), [
-    (b"[" * 100_000, 400, "nested more than 20 deep"),
-    (b'{"a":' * 30 + b"1" + b"}" * 30, 400, "nested more than 20 deep"),
-    (b'{"a": ' + b"9" * 5000 + b"}", 400, "holds no JSON"),
-    (b'{"a": [' + b"1," * 60_000 + b"1]}", 400, "holds more than 50000 values"),
-    (b'{"a": "' + b"x" * 1_100_000 + b'"}', 413, "more than 1 MB is too much"),
-    (b'{"a": "\\ud800"}', 400, "cannot be printed"),
-    (b'{"a\\u0000": 1}', 400, "cannot be printed"),
-    (b"\xff\xfe", 400, "holds no JSON"),
-    (b"[]", 400, "holds no JSON object"),
-    (b"", 400, "holds no JSON"),
-    (b'{"a": null}', 400, "campaign.toml cannot hold this"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("body", "status", "why"),
+    [
+        (b"[" * 100_000, 400, "nested more than 20 deep"),
+        (b'{"a":' * 30 + b"1" + b"}" * 30, 400, "nested more than 20 deep"),
+        (b'{"a": ' + b"9" * 5000 + b"}", 400, "holds no JSON"),
+        (b'{"a": [' + b"1," * 60_000 + b"1]}", 400, "holds more than 50000 values"),
+        (b'{"a": "' + b"x" * 1_100_000 + b'"}', 413, "more than 1 MB is too much"),
+        (b'{"a": "\\ud800"}', 400, "cannot be printed"),
+        (b'{"a\\u0000": 1}', 400, "cannot be printed"),
+        (b"\xff\xfe", 400, "holds no JSON"),
+        (b"[]", 400, "holds no JSON object"),
+        (b"", 400, "holds no JSON"),
+        (b'{"a": null}', 400, "campaign.toml cannot hold this"),
+    ],
+)
 def test_json_that_cannot_be_is_refused(visit, body, status, why):
     before = visit.get("state").json()["campaign"]
     refused(visit.put("campaign", content=body), status, why)
@@ -253,9 +291,21 @@ def test_a_bomb_is_not_unpacked(visit):
     assert visit.upload("broken.csv.gz", b"\x1f\x8b nonsense").json()["faults"]
 
 
-@pytest.mark.parametrize("name", ["x" * 300 + ".csv", "é" * 100 + ".csv", "/".join("abcdefghij") + ".csv", "a/../../b.csv",
-                                  "/etc/x.csv",
-                                  ".git/x.csv", "..\\..\\x.csv", "C:\\x.exe", ".csv", ""])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "x" * 300 + ".csv",
+        "é" * 100 + ".csv",
+        "/".join("abcdefghij") + ".csv",
+        "a/../../b.csv",
+        "/etc/x.csv",
+        ".git/x.csv",
+        "..\\..\\x.csv",
+        "C:\\x.exe",
+        ".csv",
+        "",
+    ],
+)
 def test_names_that_no_recording_has_are_refused(visit, server, name):
     answer = visit.upload(name, recording())
     assert answer.status_code == 400 and answer.json()["error"]
@@ -268,34 +318,62 @@ def test_a_file_in_the_place_of_a_folder_is_said(visit):
     refused(visit.upload("a.csv/b.csv", recording()), 400, "cannot be kept")
 
 
-@pytest.mark.parametrize("path", ["/s/" + "a" * 300 + "/state", "/s/..%2f..%2fetc/state", "/s/%00/state",
-                                  "/page/" + "a" * 5000,
-                                  "/page/%2e%2e/page.py", "/page/%00.js",
-                                  "/s/000000000000/state", "/s/zz/export/x"])  # fmt: skip
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/s/" + "a" * 300 + "/state",
+        "/s/..%2f..%2fetc/state",
+        "/s/%00/state",
+        "/page/" + "a" * 5000,
+        "/page/%2e%2e/page.py",
+        "/page/%00.js",
+        "/s/000000000000/state",
+        "/s/zz/export/x",
+    ],
+)
 def test_addresses_that_lead_nowhere_say_so(client, path):
     answer = client.get(path)
     assert answer.status_code in (400, 404) and answer.json()["error"]
 
 
-@pytest.mark.parametrize(("method", "path", "content"), [
-    ("post", "jobs", {"kind": ["diagnose"]}), ("post", "jobs", {"kind": "add", "effect": ["x"]}),
-    ("post", "history", {"by": 1.0}),
-    ("post", "jobs", {"kind": "calibrate", "names": "--help"}), ("post", "history", {"by": [1]}),
-    ("post", "history", {"by": True}),
-    ("post", "effects", {"id": ["x"]}), ("post", "effects", {**EFFECT, "size": True}), ("post", "files", {}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("method", "path", "content"),
+    [
+        ("post", "jobs", {"kind": ["diagnose"]}),
+        ("post", "jobs", {"kind": "add", "effect": ["x"]}),
+        ("post", "history", {"by": 1.0}),
+        ("post", "jobs", {"kind": "calibrate", "names": "--help"}),
+        ("post", "history", {"by": [1]}),
+        ("post", "history", {"by": True}),
+        ("post", "effects", {"id": ["x"]}),
+        ("post", "effects", {**EFFECT, "size": True}),
+        ("post", "files", {}),
+    ],
+)
 def test_values_of_another_kind_are_refused(visit, method, path, content):
     answer = getattr(visit, method)(path, json=content)
     assert answer.status_code == 400 and answer.json()["error"]
 
 
-@pytest.mark.parametrize("content", [
-    {"campaign": "x"}, {"campaign": ["x"]}, {"campaign": {"name": ["x"]}}, {"run": "x"}, {"run": [1, "x"]},
-    {"run": [{"file": [1]}]},
-    {"columns": 5}, {"columns": {"yaw_rate": 5}}, {"noise": [1]}, {"chair": "x"}, {"prior": {"chair": 1}}, {"nuisance": 3},
-    {"run": [{"file": "a.csv", "role": {"x": 1}, "u0": []}]},
-    {"columns": {"yaw_rate": {"column": "yaw_rate [rad/s]", "unit": "9**9**9"}}},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"campaign": "x"},
+        {"campaign": ["x"]},
+        {"campaign": {"name": ["x"]}},
+        {"run": "x"},
+        {"run": [1, "x"]},
+        {"run": [{"file": [1]}]},
+        {"columns": 5},
+        {"columns": {"yaw_rate": 5}},
+        {"noise": [1]},
+        {"chair": "x"},
+        {"prior": {"chair": 1}},
+        {"nuisance": 3},
+        {"run": [{"file": "a.csv", "role": {"x": 1}, "u0": []}]},
+        {"columns": {"yaw_rate": {"column": "yaw_rate [rad/s]", "unit": "9**9**9"}}},
+    ],
+)
 def test_a_campaign_of_another_shape_has_faults_and_breaks_nothing(visit, content):
     assert visit.upload("a.csv", recording()).status_code == 200
     assert visit.put("campaign", json=content, timeout=20).status_code == 200
@@ -305,10 +383,18 @@ def test_a_campaign_of_another_shape_has_faults_and_breaks_nothing(visit, conten
     assert visit.get("state").json()["files"] == ["b.csv"]
 
 
-@pytest.mark.parametrize("text", [
-    b"a = nan\nb = 1979-05-27T07:32:00Z\nc = 07:32:00\nd = inf\n", b"a = " + b"[" * 400 + b"]" * 400, b"a = " + b"9" * 5000,
-    b"[campaign]\nname = '\x01'", b"\xff\xfe\x00", b'[campaign]\nname = "\\u0001"', b"a." * 500 + b"b = 1",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"a = nan\nb = 1979-05-27T07:32:00Z\nc = 07:32:00\nd = inf\n",
+        b"a = " + b"[" * 400 + b"]" * 400,
+        b"a = " + b"9" * 5000,
+        b"[campaign]\nname = '\x01'",
+        b"\xff\xfe\x00",
+        b'[campaign]\nname = "\\u0001"',
+        b"a." * 500 + b"b = 1",
+    ],
+)
 def test_whatever_a_campaign_file_holds_the_session_opens(visit, text):
     answer = visit.upload("campaign.toml", text)
     assert answer.status_code == 200, answer.text
@@ -317,9 +403,18 @@ def test_whatever_a_campaign_file_holds_the_session_opens(visit, text):
     assert visit.get("export/parameters.ssv").status_code == 200
 
 
-@pytest.mark.parametrize("history", ["", "{", "[]", "[" * 5000, '{"at": 7, "steps": []}',
-                                     '{"at": "x", "steps": [1]}',
-                                     '{"at": 0, "steps": [{"label": "x", "file": "../../x", "ladder": 0}]}'])  # fmt: skip
+@pytest.mark.parametrize(
+    "history",
+    [
+        "",
+        "{",
+        "[]",
+        "[" * 5000,
+        '{"at": 7, "steps": []}',
+        '{"at": "x", "steps": [1]}',
+        '{"at": 0, "steps": [{"label": "x", "file": "../../x", "ladder": 0}]}',
+    ],
+)
 def test_a_session_whose_history_is_broken_opens_with_a_fault(visit, server, history):
     visit.upload("a.csv", recording())
     (server.folder / visit.id / "history.json").write_text(history)

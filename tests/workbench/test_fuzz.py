@@ -17,10 +17,50 @@ from tests.workbench.conftest import started  # noqa: E402
 
 SEED = int(os.environ.get("WHEELCHAIR_SEED") or secrets.randbelow(2**32))
 EXAMPLES = int(os.environ.get("WHEELCHAIR_EXAMPLES") or 1500)
-PLACES = ("", "state", "job", "jobs", "files", "files/a.csv", "campaign", "history", "expression", "effects", "report",
-          "export/variant.toml", "export/parameters.ssv", "export/report.html", "export/x")  # fmt: skip
-KEYS = ["campaign", "run", "columns", "noise", "prior", "chair", "nuisance", "file", "role", "u0", "name", "axes", "unit",
-        "column", "kind", "names", "by", "id", "title", "to", "expression", "size", "lower", "upper", "effect"]  # fmt: skip
+PLACES = (
+    "",
+    "state",
+    "job",
+    "jobs",
+    "files",
+    "files/a.csv",
+    "campaign",
+    "history",
+    "expression",
+    "effects",
+    "report",
+    "export/variant.toml",
+    "export/parameters.ssv",
+    "export/report.html",
+    "export/x",
+)
+KEYS = [
+    "campaign",
+    "run",
+    "columns",
+    "noise",
+    "prior",
+    "chair",
+    "nuisance",
+    "file",
+    "role",
+    "u0",
+    "name",
+    "axes",
+    "unit",
+    "column",
+    "kind",
+    "names",
+    "by",
+    "id",
+    "title",
+    "to",
+    "expression",
+    "size",
+    "lower",
+    "upper",
+    "effect",
+]
 SAID = ["a.csv", "q * u", "F_x", "holdout", "fit", "calibrate", "9**9**9", "0.5 deg/s", "yaw_rate [rad/s]"]
 WORDS = st.one_of(st.sampled_from(SAID), st.text(max_size=30))
 PLAIN = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), WORDS)

@@ -69,10 +69,12 @@ def test_a_loggers_own_columns_are_mapped(client):
     assert any(f["severity"] == "error" for f in state["faults"])
     content = state["campaign"]
     assert content["columns"]["yaw_rate"] == {"column": "Gyro Z [deg/s]"}, "guessed"
-    content["columns"] |= {"time": {"column": "Time", "unit": "s"},
-                           "F_rl": {"column": "left hand", "unit": "N"},
-                           "F_rr": {"column": "right hand", "unit": "lbf"},
-                           "wheel_speed_l": {"column": "left", "unit": "m/s"}}  # fmt: skip
+    content["columns"] |= {
+        "time": {"column": "Time", "unit": "s"},
+        "F_rl": {"column": "left hand", "unit": "N"},
+        "F_rr": {"column": "right hand", "unit": "lbf"},
+        "wheel_speed_l": {"column": "left", "unit": "m/s"},
+    }
     state = client.put(f"{client.base}/campaign", json=content).json()
     assert not [f for f in state["faults"] if f["severity"] == "error" and "holdout" not in f["text"]], state["faults"]
 
@@ -120,22 +122,41 @@ def test_an_expression_is_judged_as_it_is_typed(client):
 
 
 def test_an_effect_of_ones_own_joins_the_catalogue(client):
-    effect = {"id": "rubbing_brake", "title": "a brake that rubs", "to": "F_x", "expression": "-q * u", "size": 0.5,
-              "lower": 0.0, "upper": 50.0}  # fmt: skip
+    effect = {
+        "id": "rubbing_brake",
+        "title": "a brake that rubs",
+        "to": "F_x",
+        "expression": "-q * u",
+        "size": 0.5,
+        "lower": 0.0,
+        "upper": 50.0,
+    }
     state = client.post(f"{client.base}/effects", json=effect).json()
     assert {"id": "rubbing_brake", "title": "a brake that rubs", "own": True} in state["effects"]
-    for change, why in (({"id": "x y"}, "is no name for an effect"), ({"id": "toe_misalignment"}, "already"),
-                        ({"title": 'a"""b'}, "plain words"), ({"size": -1}, "sizes must go"),
-                        ({"size": "much"}, "not a number"), ({"expression": "q * foo"}, "'foo'"),
-                        ({"expression": "-q * u / sqrt(u * u)"}, "effect other, finite at standstill:")):  # fmt: skip
+    for change, why in (
+        ({"id": "x y"}, "is no name for an effect"),
+        ({"id": "toe_misalignment"}, "already"),
+        ({"title": 'a"""b'}, "plain words"),
+        ({"size": -1}, "sizes must go"),
+        ({"size": "much"}, "not a number"),
+        ({"expression": "q * foo"}, "'foo'"),
+        ({"expression": "-q * u / sqrt(u * u)"}, "effect other, finite at standstill:"),
+    ):
         answer = client.post(f"{client.base}/effects", json={**effect, "id": "other", **change})
         assert answer.status_code == 400
         assert why in answer.json()["error"]
 
 
 def test_an_effect_keeps_its_numbers_units(client, bench):
-    effect = {"id": "stiction", "title": "a brake that sticks", "to": "F_x", "expression": "-q * tanh(u / 3 [km/h])",
-              "size": 0.5, "lower": 0.0, "upper": 50.0}  # fmt: skip
+    effect = {
+        "id": "stiction",
+        "title": "a brake that sticks",
+        "to": "F_x",
+        "expression": "-q * tanh(u / 3 [km/h])",
+        "size": 0.5,
+        "lower": 0.0,
+        "upper": 50.0,
+    }
     assert client.post(f"{client.base}/effects", json=effect).status_code == 200
     own = Session(bench.root, client.base.rpartition("/")[2]).own_effects()["stiction"]
     assert own.parameters[0].unit.name == "N"

@@ -16,5 +16,25 @@ from .recorded import Recorded
 from .records import Baseline, Campaign, Clock, Run
 from .windows import covered, pieces, windows
 
-__all__ = ["BY_NAME", "CHANNELS", "INPUTS", "Baseline", "Campaign", "Channel", "Clock", "Fault", "Judged", "Recorded", "Run",
-           "check", "covered", "fingerprint", "judged", "pieces", "read", "read_smartwheel", "to_sae", "windows"]  # fmt: skip
+__all__ = [
+    "BY_NAME",
+    "CHANNELS",
+    "INPUTS",
+    "Baseline",
+    "Campaign",
+    "Channel",
+    "Clock",
+    "Fault",
+    "Judged",
+    "Recorded",
+    "Run",
+    "check",
+    "covered",
+    "fingerprint",
+    "judged",
+    "pieces",
+    "read",
+    "read_smartwheel",
+    "to_sae",
+    "windows",
+]

@@ -40,27 +40,56 @@ class Channel:
 
 
 # by SI unit
-_CONFUSED = {"rad": (180 / pi, "degrees"), "rad/s": (180 / pi, "deg/s"), "m/s": (3.6, "km/h"), "m": (1000.0, "mm"),
-             "m/s2": (9.81, "g")}  # fmt: skip
+_CONFUSED = {
+    "rad": (180 / pi, "degrees"),
+    "rad/s": (180 / pi, "deg/s"),
+    "m/s": (3.6, "km/h"),
+    "m": (1000.0, "mm"),
+    "m/s2": (9.81, "g"),
+}
 
 
 def _wheel_speed(side: str, word: str) -> Channel:
     return Channel(
-        f"wheel_speed_{side}", M_S, f"sensor.wheel_speed_{side}",
-        f"speed of the {word} rear wheel at its rim of contact, positive forward", -15.0, 15.0,
-        rotary=RAD_S, rotary_power=1, wrong_unit="km/h", side=side,
-    )  # fmt: skip
+        f"wheel_speed_{side}",
+        M_S,
+        f"sensor.wheel_speed_{side}",
+        f"speed of the {word} rear wheel at its rim of contact, positive forward",
+        -15.0,
+        15.0,
+        rotary=RAD_S,
+        rotary_power=1,
+        wrong_unit="km/h",
+        side=side,
+    )
 
 
 def _pushes(side: str, word: str) -> tuple[Channel, ...]:
     return (
-        Channel(f"F_{side}", N, f"push.F_{side}", f"push force on the {word} rear wheel, positive forward",
-                -2000.0, 2000.0, rotary=N_M, rotary_power=-1, wrong_unit="lbf or N.m"),
-        Channel(f"M_{side}", N_M, f"push.M_{side}", f"torque on the {word} rear axle, positive forward",
-                -600.0, 600.0, wrong_unit="lbf.ft"),
-        Channel(f"brake_{side}", ONE, f"brake.{side}", f"brake on the {word} rear wheel, 0 free, 1 full",
-                0.0, 1.0, wrong_unit="%"),
-    )  # fmt: skip
+        Channel(
+            f"F_{side}",
+            N,
+            f"push.F_{side}",
+            f"push force on the {word} rear wheel, positive forward",
+            -2000.0,
+            2000.0,
+            rotary=N_M,
+            rotary_power=-1,
+            wrong_unit="lbf or N.m",
+        ),
+        Channel(
+            f"M_{side}",
+            N_M,
+            f"push.M_{side}",
+            f"torque on the {word} rear axle, positive forward",
+            -600.0,
+            600.0,
+            wrong_unit="lbf.ft",
+        ),
+        Channel(
+            f"brake_{side}", ONE, f"brake.{side}", f"brake on the {word} rear wheel, 0 free, 1 full", 0.0, 1.0, wrong_unit="%"
+        ),
+    )
 
 
 TIME = Channel("time", S, "time", "time of the sample", -1e12, 1e12)
@@ -68,20 +97,47 @@ TIME = Channel("time", S, "time", "time of the sample", -1e12, 1e12)
 CHANNELS: tuple[Channel, ...] = (
     _wheel_speed("l", "left"),
     _wheel_speed("r", "right"),
-    Channel("yaw_rate", RAD_S, "sensor.yaw_rate", "yaw rate, positive clockwise from above",
-            -20.0, 20.0, -1, wrong_unit="deg/s", starts="start.psi_dot"),
+    Channel(
+        "yaw_rate",
+        RAD_S,
+        "sensor.yaw_rate",
+        "yaw rate, positive clockwise from above",
+        -20.0,
+        20.0,
+        -1,
+        wrong_unit="deg/s",
+        starts="start.psi_dot",
+    ),
     Channel("a_x", M_S2, "sensor.a_x", "specific force forward", -100.0, 100.0, wrong_unit="g"),
     Channel("a_y", M_S2, "sensor.a_y", "specific force to the right", -100.0, 100.0, -1, wrong_unit="g"),
-    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm", drifts=True,
-            starts="start.x"),
-    Channel("y", M, "sensor.y", "position along the room's y, to the right of x", -1e4, 1e4, -1, wrong_unit="mm",
-            drifts=True, starts="start.y"),
-    Channel("yaw", RAD, "sensor.yaw", "heading, positive clockwise from above", -200.0, 200.0, -1, wrong_unit="deg",
-            drifts=True, starts="start.psi"),
-    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h",
-            starts="start.u"),
+    Channel("x", M, "sensor.x", "position along the room's x", -1e4, 1e4, wrong_unit="mm", drifts=True, starts="start.x"),
+    Channel(
+        "y",
+        M,
+        "sensor.y",
+        "position along the room's y, to the right of x",
+        -1e4,
+        1e4,
+        -1,
+        wrong_unit="mm",
+        drifts=True,
+        starts="start.y",
+    ),
+    Channel(
+        "yaw",
+        RAD,
+        "sensor.yaw",
+        "heading, positive clockwise from above",
+        -200.0,
+        200.0,
+        -1,
+        wrong_unit="deg",
+        drifts=True,
+        starts="start.psi",
+    ),
+    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h", starts="start.u"),
     Channel("v", M_S, "chair.v", "speed of the centre of mass, to the right", -15.0, 15.0, -1, wrong_unit="km/h"),
-)  # fmt: skip
+)
 
 INPUTS: tuple[Channel, ...] = tuple(
     channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair
@@ -89,10 +145,17 @@ INPUTS: tuple[Channel, ...] = tuple(
 
 # What a file may hold that channels are made from: the turn of a wheel, by which its ripple goes too.
 SOURCES: tuple[Channel, ...] = tuple(
-    Channel(f"wheel_angle_{side}", RAD, "", f"angle of the {word} rear wheel, rising forward; its speed is made from it",
-            -1e6, 1e6, wrong_unit="deg")
+    Channel(
+        f"wheel_angle_{side}",
+        RAD,
+        "",
+        f"angle of the {word} rear wheel, rising forward; its speed is made from it",
+        -1e6,
+        1e6,
+        wrong_unit="deg",
+    )
     for side, word in (("l", "left"), ("r", "right"))
-)  # fmt: skip
+)
 
 BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + INPUTS}
 BY_FMU_NAME: dict[str, Channel] = {channel.fmu: channel for channel in CHANNELS + INPUTS}

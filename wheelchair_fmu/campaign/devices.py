@@ -87,8 +87,11 @@ def parts(doc: Document, entry: Entry) -> list[Part]:
     if not named:
         return [Part(entry, _nameless(doc, entry), entry.file)] if entry.file else []
     known = devices(doc)
-    return [Part(entry, known.get(name, Device(name)), file, clock(entry, name))
-            for name, file in named.items() if isinstance(file, str) and file]  # fmt: skip
+    return [
+        Part(entry, known.get(name, Device(name)), file, clock(entry, name))
+        for name, file in named.items()
+        if isinstance(file, str) and file
+    ]
 
 
 def clock(entry: Entry, device: str) -> Clock:
@@ -104,7 +107,9 @@ def _device(doc: Document, name: str, place: int, table: Mapping[str, Any]) -> D
     columns, markers = table.get("columns"), table.get("markers")
     axes = table.get("axes")
     return Device(
-        name, "recording.columns", place,
+        name,
+        "recording.columns",
+        place,
         columns if isinstance(columns, Mapping) else {},
         {k: v for k, v in table.items() if k not in OWN_KEYS},
         axes if isinstance(axes, str) else doc.axes,
@@ -112,7 +117,7 @@ def _device(doc: Document, name: str, place: int, table: Mapping[str, Any]) -> D
         point(table.get("at")),
         {k: v for k, v in markers.items() if isinstance(v, str)} if isinstance(markers, Mapping) else {},
         axes if isinstance(axes, Mapping) else {},
-    )  # fmt: skip
+    )
 
 
 def _nameless(doc: Document, entry: Entry) -> Device:

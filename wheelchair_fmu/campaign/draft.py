@@ -59,8 +59,14 @@ class Draft:
 
     def slim(self) -> Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
-        return replace(self, table=FrameTable(self.file, self.table.headers, pd.DataFrame()), rows=Rows({}, None),
-                       whole_time=None, kept=np.empty(0, int), resampled={})  # fmt: skip
+        return replace(
+            self,
+            table=FrameTable(self.file, self.table.headers, pd.DataFrame()),
+            rows=Rows({}, None),
+            whole_time=None,
+            kept=np.empty(0, int),
+            resampled={},
+        )
 
     @property
     def entry(self) -> Entry:
@@ -135,8 +141,9 @@ def prepare(doc: Document, part: Part, path: Path, known: dict[Any, Any]) -> tup
     return _converted(doc, part, table, bindings, rows, markers), faults
 
 
-def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows: Rows,
-               markers: Mapping[str, tuple[int, float]]) -> Draft:  # fmt: skip
+def _converted(
+    doc: Document, part: Part, table: Table, bindings: Bindings, rows: Rows, markers: Mapping[str, tuple[int, float]]
+) -> Draft:
     series = {name: rows.values[b.index] * b.scale for name, b in bindings.found.items()}
     whole_time = series.pop("time", None)
     length = len(next(iter(rows.values.values()))) if rows.values else 0
@@ -165,8 +172,9 @@ def _converted(doc: Document, part: Part, table: Table, bindings: Bindings, rows
     for name in INPUT_NAMES:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
-    return Draft(doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower,
-                 spiked)  # fmt: skip
+    return Draft(
+        doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked
+    )
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

@@ -140,8 +140,11 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
         runs=tuple(_run(run, name, assembly.rims.get(run.entry.place, {})) for run, name in zip(runs, names, strict=True)),
         fingerprint=_fingerprint(doc),
         warnings=warnings,
-        rims={name: {push: rim.as_json() for push, rim in of.items()} for run, name in zip(runs, names, strict=True)
-              if (of := assembly.rims.get(run.entry.place))},
+        rims={
+            name: {push: rim.as_json() for push, rim in of.items()}
+            for run, name in zip(runs, names, strict=True)
+            if (of := assembly.rims.get(run.entry.place))
+        },
     )
 
 

@@ -139,9 +139,16 @@ class Recorded:
             own = clock(self.entry, PUSHES_CLOCK)
             return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].inputs), own.sd, own.offset),) if own.sd else ()
         return tuple(
-            Clock(d.part.device.name, frozenset(d.channels) & frozenset(CHANNEL_NAMES), _fmu_names(d.inputs), d.part.clock.sd,
-                  d.part.clock.offset)
-            for d in self.drafts if d.part.clock.sd > 0)  # fmt: skip
+            Clock(
+                d.part.device.name,
+                frozenset(d.channels) & frozenset(CHANNEL_NAMES),
+                _fmu_names(d.inputs),
+                d.part.clock.sd,
+                d.part.clock.offset,
+            )
+            for d in self.drafts
+            if d.part.clock.sd > 0
+        )
 
     @property
     def input_steps(self) -> dict[str, float]:

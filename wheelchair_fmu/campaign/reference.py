@@ -102,9 +102,18 @@ effects (`[effect] rolling_resistance_asymmetry.D = 2`) are listed by `wheelchai
 
 def page() -> str:
     """The whole page, as Markdown."""
-    sections = [HEAD, *map(_table, TABLES), CHANNEL_WORDS, _channels((TIME, *INPUTS, *CHANNELS, *SOURCES)), FORMAT_WORDS,
-                _formats(), OPTION_WORDS, _options(), PARAMETER_WORDS,
-                _parameters(p for p in Variant().parameters() if _plain(p))]  # fmt: skip
+    sections = [
+        HEAD,
+        *map(_table, TABLES),
+        CHANNEL_WORDS,
+        _channels((TIME, *INPUTS, *CHANNELS, *SOURCES)),
+        FORMAT_WORDS,
+        _formats(),
+        OPTION_WORDS,
+        _options(),
+        PARAMETER_WORDS,
+        _parameters(p for p in Variant().parameters() if _plain(p)),
+    ]
     return "".join(sections)
 
 
@@ -117,21 +126,34 @@ def _table(record: TableRecord) -> str:
     if record is COLUMN:
         lines.append(COLUMN_EXAMPLE)
     if record.keys:
-        rows = [(f"`{k.name}`", k.kind + (f", {k.unit}" if k.unit else ""), k.meaning, k.default, _code(k.example), k.fault)
-                for k in record.keys]  # fmt: skip
+        rows = [
+            (f"`{k.name}`", k.kind + (f", {k.unit}" if k.unit else ""), k.meaning, k.default, _code(k.example), k.fault)
+            for k in record.keys
+        ]
         lines.append(_rows(("key", "value", "meaning", "default", "example", "a fault it can cause"), rows))
     return "".join(lines)
 
 
 def _channels(channels: Iterable[Channel]) -> str:
-    rows = [(f"`{c.name}`", c.unit.name, c.meaning + (f"; or {c.rotary.name} with the wheel's radius" if c.rotary else ""))
-            for c in channels]  # fmt: skip
+    rows = [
+        (f"`{c.name}`", c.unit.name, c.meaning + (f"; or {c.rotary.name} with the wheel's radius" if c.rotary else ""))
+        for c in channels
+    ]
     return _rows(("channel", "SI unit", "meaning"), rows)
 
 
 def _formats() -> str:
-    rows = [(f"`{f.id}`", f.title, " ".join(f.suffixes), f.meaning, ", ".join(o.key for o in f.options),
-             f"`pip install {f.needs}`" if f.needs else "") for f in bundled().values()]  # fmt: skip
+    rows = [
+        (
+            f"`{f.id}`",
+            f.title,
+            " ".join(f.suffixes),
+            f.meaning,
+            ", ".join(o.key for o in f.options),
+            f"`pip install {f.needs}`" if f.needs else "",
+        )
+        for f in bundled().values()
+    ]
     return _rows(("format", "what", "endings", "how it is read", "options", "needs"), rows)
 
 

@@ -118,6 +118,8 @@ def _spacing(new: np.ndarray) -> float | None:
 def _filled(new: np.ndarray, rows: float, n: int) -> np.ndarray:
     """And those that must have been there where nothing changed for longer: a chair at rest is measured, too."""
     ends = np.append(new[1:], n)
-    more = [start + np.arange(0, end - start - 0.5 * rows, rows).round().astype(int) if end - start > 1.5 * rows else [start]
-            for start, end in zip(new, ends, strict=True)]  # fmt: skip
+    more = [
+        start + np.arange(0, end - start - 0.5 * rows, rows).round().astype(int) if end - start > 1.5 * rows else [start]
+        for start, end in zip(new, ends, strict=True)
+    ]
     return np.concatenate(more)

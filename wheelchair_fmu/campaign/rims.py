@@ -90,8 +90,12 @@ def _shapes(time: np.ndarray, draft: Draft, name: str, rim: Rim) -> tuple[np.nda
 def unfounded(runs: Sequence[Recorded], found: Mapping[int, Mapping[str, Rim]]) -> list[Fault]:
     """A warning for each rim whose baseline was asked for and cannot be told."""
     cure = "record some seconds without hands on the rims, or take the push out of [nuisance]"
-    return [run_fault(run.file, f"the baseline of {name} cannot be told: {rim.found.why}", cure, severity=WARNING)
-            for run in runs for name, rim in found.get(run.entry.place, {}).items() if not rim.found.enough]  # fmt: skip
+    return [
+        run_fault(run.file, f"the baseline of {name} cannot be told: {rim.found.why}", cure, severity=WARNING)
+        for run in runs
+        for name, rim in found.get(run.entry.place, {}).items()
+        if not rim.found.enough
+    ]
 
 
 def unasked(runs: Sequence[Recorded], asked: Collection[str]) -> list[Fault]:

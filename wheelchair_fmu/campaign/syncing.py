@@ -72,6 +72,7 @@ def signals(run: Recorded) -> Iterator[Signal]:
 
 SHOWN = ("wheel_speed_l", "wheel_speed_r", "u", "x", "yaw_rate", "a_x", "F_rl", "F_rr", "M_rl", "M_rr")  # the first there is
 
+
 def alike(run: Recorded) -> tuple[str, dict[str, tuple[np.ndarray, np.ndarray]]]:
     """What to draw of a run's devices beside each other, and for each its times and values (n,) on its own clock, less their
     median and in units of their range: a speed, or what comes nearest to it."""

@@ -37,12 +37,17 @@ def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
     if samples <= most or campaign.thinned:
         return campaign
     rng = np.random.default_rng(0)
-    chosen = [cell for role in (campaign.fit, campaign.holdout)
-              for cell in _drawn([_cells(run, WINDOW) for run in role], most / samples, rng)]  # fmt: skip
+    chosen = [
+        cell
+        for role in (campaign.fit, campaign.holdout)
+        for cell in _drawn([_cells(run, WINDOW) for run in role], most / samples, rng)
+    ]
     runs = tuple(_own(_cut(run, _calmest(run, start, stop), stop)) for run, start, stop in chosen)
     share = sum(len(run.time) for run in runs) / samples
-    said = (f"{samples} samples are too many to search at once: {len(runs)} windows of about {WINDOW:g} s, spread over all "
-            f"runs, were used, {100 * share:.2g} % of the samples; `wheelchair compare` looks at all")  # fmt: skip
+    said = (
+        f"{samples} samples are too many to search at once: {len(runs)} windows of about {WINDOW:g} s, spread over all "
+        f"runs, were used, {100 * share:.2g} % of the samples; `wheelchair compare` looks at all"
+    )
     return replace(campaign, runs=runs, thinned=said)
 
 
@@ -86,8 +91,16 @@ def _cut(run: Run, start: int, stop: int) -> Run:
     known = {name: value for name, value in run.set.items() if not start or not name.startswith(STARTS)}
     known |= {} if heading is None else {HEADING: heading}
     baselines = tuple(replace(b, shapes=b.shapes[part]) for b in run.baselines)
-    return replace(run, name=f"{run.name}@{run.time[start]:.6g}s", u0=_speed(channels) if start else run.u0, set=known,
-                   time=run.time[part], inputs=inputs, channels=channels, baselines=baselines)  # fmt: skip
+    return replace(
+        run,
+        name=f"{run.name}@{run.time[start]:.6g}s",
+        u0=_speed(channels) if start else run.u0,
+        set=known,
+        time=run.time[part],
+        inputs=inputs,
+        channels=channels,
+        baselines=baselines,
+    )
 
 
 def _own(run: Run) -> Run:

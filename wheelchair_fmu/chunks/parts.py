@@ -32,8 +32,13 @@ def is_done(job: Job, out: Path) -> bool:
         return False
 
 
-def complete(job: Job, out: Path, pool: Pool, told: Callable[[int], None] = lambda rows: None,
-             known: Mapping[int, pa.Table] = MappingProxyType({})) -> None:  # fmt: skip
+def complete(
+    job: Job,
+    out: Path,
+    pool: Pool,
+    told: Callable[[int], None] = lambda rows: None,
+    known: Mapping[int, pa.Table] = MappingProxyType({}),
+) -> None:
     """Do what is not done yet, and put the parts together as `out`. `told` hears how many rows are done, as they are.
 
     `known` are chunks whose tables another result already had.

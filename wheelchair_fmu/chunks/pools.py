@@ -36,8 +36,10 @@ def here(workers: int) -> Pool:
                 for done in wait(waiting, return_when=FIRST_COMPLETED).done:
                     yield waiting.pop(done), done.result()
         except BrokenProcessPool as error:
-            raise Failure("a worker process was killed, perhaps for want of memory; run the same command again to go on, "
-                          "with fewer --workers if it happens again") from error  # fmt: skip
+            raise Failure(
+                "a worker process was killed, perhaps for want of memory; run the same command again to go on, "
+                "with fewer --workers if it happens again"
+            ) from error
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -91,8 +93,9 @@ def dask(address: str, wait_seconds: float = 60.0) -> Pool:
                     for future in submit(1):
                         done.add(future)
             except (KilledWorker, CancelledError) as error:
-                raise Failure("the cluster lost its workers again and again; see their logs, and run the same command again "
-                              "to go on") from error  # fmt: skip
+                raise Failure(
+                    "the cluster lost its workers again and again; see their logs, and run the same command again to go on"
+                ) from error
 
     return chunks
 
@@ -110,6 +113,7 @@ def _connected(client: Callable, address: str, seconds: float):
         connection = client(address, timeout=seconds)
         connection.wait_for_workers(1, timeout=seconds)
     except (OSError, TimeoutError, ValueError) as error:
-        raise Failure(f"no Dask cluster with a worker at {address} ({error}); give its scheduler, as in "
-                      "tcp://127.0.0.1:8786") from error  # fmt: skip
+        raise Failure(
+            f"no Dask cluster with a worker at {address} ({error}); give its scheduler, as in tcp://127.0.0.1:8786"
+        ) from error
     return connection

@@ -42,8 +42,9 @@ def add(
     files = write_improved(output, better.variant, better.ladder)
     if as_json:
         steps = [step.as_json() for step in better.ladder]
-        print_json({"ladder": steps, "values": dict(better.variant.values), "variant": str(output),
-                    "notes": list(better.notes)})  # fmt: skip
+        print_json(
+            {"ladder": steps, "values": dict(better.variant.values), "variant": str(output), "notes": list(better.notes)}
+        )
         return
     for note in better.notes:
         console().print(f"note: {note}")

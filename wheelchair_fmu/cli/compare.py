@@ -87,8 +87,9 @@ def _calibrated(measured: Campaign, chair: Variant, names: str) -> dict[str, flo
     return dict(fit(bench, wanted, {n: start_value(bench, bench.records[n]) for n in wanted}).values) if wanted else {}
 
 
-def _through_fmu(measured: Campaign, chair: Variant, values: dict[str, float],
-                 say: Callable[[str], None]) -> Iterator[RunErrors]:  # fmt: skip
+def _through_fmu(
+    measured: Campaign, chair: Variant, values: dict[str, float], say: Callable[[str], None]
+) -> Iterator[RunErrors]:
     """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
     cut = {run.name: pieces(run, PIECE) for run in measured.runs}
     bench = Bench(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
@@ -167,9 +168,15 @@ def _figures(measured: Campaign, c: Comparison, offsets: dict[str, float], folde
     figures = {"where": where_figure([r.name for r in c.runs], channels, rms)}
     for r, run in zip(c.runs, measured.runs, strict=True):
         shown = {ch: r.predicted[:, i] for i, ch in enumerate(r.channels)}
-        figures[f"run-{r.name}"] = overlay_figure(r.name, run.time, {ch: run.channels[ch] for ch in r.channels}, shown,
-                                                  {ch: measured.noise[ch] for ch in r.channels},
-                                                  units={c.name: c.unit.name for c in CHANNELS}, offsets=offsets)  # fmt: skip
+        figures[f"run-{r.name}"] = overlay_figure(
+            r.name,
+            run.time,
+            {ch: run.channels[ch] for ch in r.channels},
+            shown,
+            {ch: measured.noise[ch] for ch in r.channels},
+            units={c.name: c.unit.name for c in CHANNELS},
+            offsets=offsets,
+        )
     files = []
     for name, figure in figures.items():
         for ending in (".png", ".svg"):

@@ -50,10 +50,17 @@ def diagnose(
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="For figures and proposals.")] = None,
-    resamples: Annotated[int, typer.Option("--bootstrap", metavar="N", min=0, help="Resample the measurements N times, and "
-                                                  "say how often the diagnosis would be the same.")] = 0,
+    resamples: Annotated[
+        int,
+        typer.Option(
+            "--bootstrap",
+            metavar="N",
+            min=0,
+            help="Resample the measurements N times, and say how often the diagnosis would be the same.",
+        ),
+    ] = 0,
     progress: Progress = False,
-) -> None:  # fmt: skip
+) -> None:
     """Say which physical effect is missing from the model, with the evidence."""
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     measured = windows(measured)  # here already, so that the rest is not kept in memory
@@ -149,8 +156,10 @@ def _missing_picture(d: Diagnosis, file: Path) -> Path:
     term = terms()[d.proposal.effect]
     free = profiles(term)
     found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, free)
-    panels = [{"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
-              for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)]  # fmt: skip
+    panels = [
+        {"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
+        for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
+    ]
     with written(file) as beside:
         save(missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels), beside)
     return file

@@ -102,10 +102,13 @@ def new(
         beside.write_text(template(kind, effect), encoding="utf-8")
     announce(file)
     where = f"--effects {quote(str(folder))}"
-    print("It is a whole effect already; its first lines say what to change. Then check it, diagnose with it, add it:",
-          f"  wheelchair effects show {effect} {where}",
-          f"  wheelchair diagnose CAMPAIGN {where}",
-          f"  wheelchair add {effect} CAMPAIGN {where} -o better.toml", sep="\n")  # fmt: skip
+    print(
+        "It is a whole effect already; its first lines say what to change. Then check it, diagnose with it, add it:",
+        f"  wheelchair effects show {effect} {where}",
+        f"  wheelchair diagnose CAMPAIGN {where}",
+        f"  wheelchair add {effect} CAMPAIGN {where} -o better.toml",
+        sep="\n",
+    )
 
 
 def template(kind: str, effect: str) -> str:
@@ -122,9 +125,16 @@ def quantities(as_json: AsJson = False) -> None:
     common = vocabulary(usual)
     for symbol, q in (vocabulary(swivelling) | common).items():
         components = ", ".join(q.components)
-        told.append({"symbol": symbol, "unit": q.unit.name, "components": components, "meaning": q.meaning,
-                     "acted_on": symbol in targets(swivelling) or symbol in targets(usual),
-                     "needs": {} if symbol in common else {"caster": "swivelling"}})  # fmt: skip
+        told.append(
+            {
+                "symbol": symbol,
+                "unit": q.unit.name,
+                "components": components,
+                "meaning": q.meaning,
+                "acted_on": symbol in targets(swivelling) or symbol in targets(usual),
+                "needs": {} if symbol in common else {"caster": "swivelling"},
+            }
+        )
     if as_json:
         print_json(told)
         return
@@ -153,9 +163,15 @@ def record(effect: Effect) -> dict[str, Any]:
 def _parameter(p: Parameter) -> dict[str, Any]:
     bounds = {key: None if abs(value) == float("inf") else value for key, value in (("lower", p.lower), ("upper", p.upper))}
     return {
-        "name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default, **bounds,
-        "smallest_interesting": p.smallest_interesting, "estimated": p.estimated, "source": p.source,
-    }  # fmt: skip
+        "name": p.name,
+        "unit": p.unit.name,
+        "meaning": p.meaning,
+        "default": p.default,
+        **bounds,
+        "smallest_interesting": p.smallest_interesting,
+        "estimated": p.estimated,
+        "source": p.source,
+    }
 
 
 def _size(p: Parameter) -> str:

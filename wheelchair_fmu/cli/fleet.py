@@ -64,8 +64,9 @@ def _tell(whole: Path, output: Path) -> None:
     _write(output.with_name(f"{output.stem}-effects.csv"), found)
     _write(output.with_name(f"{output.stem}-summary.csv"), together)
     if failed:
-        console(stderr=True).print(f"{failed} of {table.num_rows} campaigns were not diagnosed (see column error), "
-                                   f"the first: {first}")  # fmt: skip
+        console(stderr=True).print(
+            f"{failed} of {table.num_rows} campaigns were not diagnosed (see column error), the first: {first}"
+        )
     if chairs:
         console().print(_verdicts(table.to_pandas()))
     if len(together):
@@ -81,8 +82,9 @@ def _write(file: Path, table: pd.DataFrame) -> None:
 
 def _verdicts(table: pd.DataFrame) -> Table:
     """How often each verdict was given, and what it left on runs held out."""
-    shown = Table(box=box.SIMPLE, title="whitened RMS error on runs held out, median; 1.0 is the noise floor",
-                  title_justify="left")  # fmt: skip
+    shown = Table(
+        box=box.SIMPLE, title="whitened RMS error on runs held out, median; 1.0 is the noise floor", title_justify="left"
+    )
     for title in ("verdict", "chairs", "calibrated", "with what was found"):
         shown.add_column(title, justify="left" if title == "verdict" else "right")
     for verdict, rows in table.groupby("verdict"):
@@ -104,8 +106,11 @@ def _shares(together: pd.DataFrame, chairs: int) -> Table:
 
 def _sizes(together: pd.DataFrame) -> Table:
     """How large what is lacking is, and whether as large in all chairs."""
-    shown = Table(box=box.SIMPLE, title="its size where it is missing or tied, and whether that is the same in all chairs",
-                  title_justify="left")  # fmt: skip
+    shown = Table(
+        box=box.SIMPLE,
+        title="its size where it is missing or tied, and whether that is the same in all chairs",
+        title_justify="left",
+    )
     for title in ("parameter", "chairs", "mean", "chair to chair", "Q", "p", "I²"):
         shown.add_column(title, justify="left" if title == "parameter" else "right")
     for row in together[together.n > 0].itertuples():

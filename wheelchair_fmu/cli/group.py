@@ -78,8 +78,10 @@ def ending(error: BaseException) -> tuple[str, int]:
         case OSError():
             return _file_message(error), 1
     what = " ".join(f"{type(error).__name__}: {error}".split())
-    return (f"an error that nobody expected ({what}); please report it with the command, its files and what it says with "
-            f"{TRACEBACK}=1 in the environment"), 1  # fmt: skip
+    return (
+        f"an error that nobody expected ({what}); please report it with the command, its files and what it says with "
+        f"{TRACEBACK}=1 in the environment"
+    ), 1
 
 
 def _file_message(error: OSError) -> str:

@@ -100,8 +100,11 @@ def _at_terminal() -> bool:
 def _asked(wanted: Wanted, found: Found) -> Wanted:
     """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
     answers: dict[str, float | None] = {}
-    for name, words in (("mass", "mass of chair and rider, kg"), ("radius", "radius of the rear wheels, m"),
-                        ("track", "track of the rear wheels, m")):  # fmt: skip
+    for name, words in (
+        ("mass", "mass of chair and rider, kg"),
+        ("radius", "radius of the rear wheels, m"),
+        ("track", "track of the rear wheels, m"),
+    ):
         known = getattr(wanted, name)
         answers[name] = known if known is not None else _number(words)
     axes = wanted.axes
@@ -187,8 +190,10 @@ def _show(found: Found) -> None:
 
 
 def _rows(plan: Plan) -> list[tuple[str, str, str]]:
-    rows = [(c.channel if not c.beside else f"({c.channel})", _column(c), f"{c.beside} measures it too" if c.beside else c.why)
-            for c in plan.choices]  # fmt: skip
+    rows = [
+        (c.channel if not c.beside else f"({c.channel})", _column(c), f"{c.beside} measures it too" if c.beside else c.why)
+        for c in plan.choices
+    ]
     if plan.markers:
         rows.append(("x, y, yaw", " and ".join(plan.markers.values()), plan.why_axes))
     return rows or [("", "", "see below" if plan.doubts else "no column is known by its name")]
@@ -211,8 +216,10 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
     for doubt in (d for d in doubts if not (wanted.axes and d.endswith(AXES_CURE))):
         out.print(f"look at this: {doubt}")
     how = "linked to" if link else "copied into"
-    out.print(f"runs: {len(found.runs)}; devices: {len(found.plans)}; recordings are {how} {output / RUNS}"
-              + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else ""))  # fmt: skip
+    out.print(
+        f"runs: {len(found.runs)}; devices: {len(found.plans)}; recordings are {how} {output / RUNS}"
+        + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else "")
+    )
     left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "look at"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
     out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")

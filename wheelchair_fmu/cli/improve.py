@@ -59,8 +59,9 @@ def improve(
     files = []
     for attempt in range(MOST_PROPOSALS + 1):
         with _watched() as watch:
-            found = diagnose(measured, chair, library(), progress=watch.says, experiments=experiments(), fixed=fixed,
-                             climbed=watch.climbs)  # fmt: skip
+            found = diagnose(
+                measured, chair, library(), progress=watch.says, experiments=experiments(), fixed=fixed, climbed=watch.climbs
+            )
         if found.proposal is None or attempt == MOST_PROPOSALS:
             break
         folder = output.with_name(f"{output.stem}-effects")

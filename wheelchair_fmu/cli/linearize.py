@@ -80,23 +80,35 @@ def record(linear: Linear) -> dict[str, Any]:
     values, shapes = linear.modes
     return {
         "trim": {
-            "speed": state.speed, "delta_force": state.delta_force, "v": state.v, "psi_dot": state.psi_dot,
-            "radius": state.radius if isfinite(state.radius) else None, "slip_rl": results["slip.rl"],
-            "slip_rr": results["slip.rr"], "total_force": results["push.total_needed"],
+            "speed": state.speed,
+            "delta_force": state.delta_force,
+            "v": state.v,
+            "psi_dot": state.psi_dot,
+            "radius": state.radius if isfinite(state.radius) else None,
+            "slip_rl": results["slip.rl"],
+            "slip_rr": results["slip.rr"],
+            "total_force": results["push.total_needed"],
         },
-        "states": linear.states, "inputs": linear.inputs, "outputs": linear.outputs,
-        "A": linear.A.tolist(), "B": linear.B.tolist(), "C": linear.C.tolist(), "D": linear.D.tolist(),
+        "states": linear.states,
+        "inputs": linear.inputs,
+        "outputs": linear.outputs,
+        "A": linear.A.tolist(),
+        "B": linear.B.tolist(),
+        "C": linear.C.tolist(),
+        "D": linear.D.tolist(),
         "eigenvalues": [[z.real, z.imag] for z in values.tolist()],
         "modes": [{n: [z.real, z.imag] for n, z in zip(linear.states, shape, strict=True)} for shape in shapes.T.tolist()],
         "radius_sensitivity": radius_sensitivities(state, slopes),
         "radius_slope": slopes,
-    }  # fmt: skip
+    }
 
 
 def _show(linear: Linear) -> None:
     out, state = console(), linear.trim
-    out.print(f"u = {state.speed:g} m/s, ΔF = {state.delta_force:.6g} N, needed: F_rl + F_rr = "
-              f"{state.results['push.total_needed']:.6g} N")  # fmt: skip
+    out.print(
+        f"u = {state.speed:g} m/s, ΔF = {state.delta_force:.6g} N, needed: F_rl + F_rr = "
+        f"{state.results['push.total_needed']:.6g} N"
+    )
     way = f"R_c = {state.radius:.6g} m" if isfinite(state.radius) else "straight on"
     slips = ", ".join(f"λ_{side} = {state.results[f'slip.{side}'] * 180 / pi:.4f}°" for side in ("rl", "rr"))
     out.print(f"{way}, ψ' = {state.psi_dot:.6g} rad/s, v = {state.v:.6g} m/s, {slips}\n")
@@ -134,9 +146,13 @@ def _modes(linear: Linear) -> Table:
             continue
         swings = z.imag > 0
         constant = -1 / z.real if z.real else inf
-        table.add_row(f"{z:.5g}" if swings else f"{z.real:.5g}", f"{constant:.4g}" if constant > 0 else "grows",
-                      f"{z.imag / (2 * pi):.4g}" if swings else "", f"{-z.real / abs(z):.3f}" if swings else "",
-                      _short(linear.states[int(np.abs(shape).argmax())]))  # fmt: skip
+        table.add_row(
+            f"{z:.5g}" if swings else f"{z.real:.5g}",
+            f"{constant:.4g}" if constant > 0 else "grows",
+            f"{z.imag / (2 * pi):.4g}" if swings else "",
+            f"{-z.real / abs(z):.3f}" if swings else "",
+            _short(linear.states[int(np.abs(shape).argmax())]),
+        )
     return table
 
 

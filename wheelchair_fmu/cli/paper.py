@@ -108,8 +108,17 @@ def _write_table(findings: Findings, found: Ranges, file: Path) -> Path:
 
 def _record(findings: Findings, found: Ranges) -> dict[str, object]:
     """Both tables as plain data; a range is what holds around the chosen value, null where that one does not."""
-    statements = [{"id": s.id, "where": s.where, "says": s.says, "figure": findings[s.id].figure, "holds": findings[s.id].holds,
-                   "ranges": {r.open.name: r.around for r in found.get(s.id, [])}} for s in STATEMENTS]  # fmt: skip
+    statements = [
+        {
+            "id": s.id,
+            "where": s.where,
+            "says": s.says,
+            "figure": findings[s.id].figure,
+            "holds": findings[s.id].holds,
+            "ranges": {r.open.name: r.around for r in found.get(s.id, [])},
+        }
+        for s in STATEMENTS
+    ]
     tried = {r.open.name: r.open.tried for r in next(iter(found.values()), [])}
     return {"statements": statements, "tried": tried}
 

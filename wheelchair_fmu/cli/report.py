@@ -46,8 +46,11 @@ def report(
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     measured = windows(measured)
     with working("reading", lines=progress) as say:
-        told = _read(diagnosis, measured) if diagnosis else story(
-            diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))  # fmt: skip
+        told = (
+            _read(diagnosis, measured)
+            if diagnosis
+            else story(diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))
+        )
         say("writing the page")
         html = _html(measured, _with_proposal(chair, told), told, fixed)
     with written(output) as beside:

@@ -32,8 +32,9 @@ def parse(settings: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def subject(campaign: Path, variant: Path | None, effects: Path | None,
-            settings: Iterable[str] | None) -> tuple[Variant, Campaign, tuple[str, ...]]:  # fmt: skip
+def subject(
+    campaign: Path, variant: Path | None, effects: Path | None, settings: Iterable[str] | None
+) -> tuple[Variant, Campaign, tuple[str, ...]]:
     """What a command of the loop is about, by its options: the chair, the measurements, and the names that --set fixes."""
     return applied(parse(settings or ()), chair(variant, effects), measurements(campaign))
 

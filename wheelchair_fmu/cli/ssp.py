@@ -27,12 +27,23 @@ from .group import console
 from .settings import catalogue
 from .terminal import announce
 
-app = typer.Typer(no_args_is_help=True, rich_markup_mode=None,
-                  help="Systems of FMUs by the SSP standard: the chair with a pusher and a floor.")  # fmt: skip
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Systems of FMUs by the SSP standard: the chair with a pusher and a floor.",
+)
 FILE = typer.Argument(metavar="FILE.ssp", help="An archive, as `build` makes it.")
 VERSION = typer.Option("--ssp", metavar="1|2", help=f"Version of the standard: {' or '.join(sources.VERSIONS.values())}.")
-SHOWN = ("Chair.chair.x", "Chair.chair.y", "Chair.chair.u", "Chair.slip.rl", "Chair.slip.rr", "Pusher.push.F_rl",
-         "Pusher.push.F_rr", "Pusher.path.deviation")  # fmt: skip
+SHOWN = (
+    "Chair.chair.x",
+    "Chair.chair.y",
+    "Chair.chair.u",
+    "Chair.slip.rl",
+    "Chair.slip.rr",
+    "Pusher.push.F_rl",
+    "Pusher.push.F_rr",
+    "Pusher.path.deviation",
+)
 FEW = 8  # results in the table of a system that has none of these
 
 
@@ -45,12 +56,18 @@ def build_ssp(
     system: Annotated[str, typer.Argument(metavar="SYSTEM", help=f"{', '.join(sources.systems())}, or a .toml.")] = "slalom",
     version: Annotated[str, VERSION] = "1",
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The chair: laws, effects and values.")] = None,
-    parameters: Annotated[list[str] | None, typer.Option("--parameters", metavar="SET",
-        help=f"Bind a set: {', '.join(sources.parameter_sets())}, or a .toml; again for more.")] = None,
+    parameters: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--parameters",
+            metavar="SET",
+            help=f"Bind a set: {', '.join(sources.parameter_sets())}, or a .toml; again for more.",
+        ),
+    ] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     replay: Annotated[Path | None, typer.Option(metavar="CSV", help="The pusher replays this recording.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE.ssp", help="Where to write it.")] = None,
-) -> None:  # fmt: skip
+) -> None:
     """Build the archive of a system: three FMUs, connections, parameter sets."""
     recording = read_recording(replay) if replay else None
     chair = read_variant(variant, catalogue(effects)) if variant else None
@@ -65,11 +82,15 @@ def run_ssp(
     step: Annotated[float | None, typer.Option(help="Communication step [s]; the system's own unless given.")] = None,
     time: Annotated[float | None, typer.Option(help="Stop time [s]; the system's own unless given.")] = None,
     description: Annotated[str, typer.Option(metavar="SSD", help="Which description in the archive.")] = MAIN,
-    parameters: Annotated[list[str] | None, typer.Option("--parameters", metavar="SET",
-        help="A parameter set in the archive, on top of what is bound; again for more.")] = None,
+    parameters: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--parameters", metavar="SET", help="A parameter set in the archive, on top of what is bound; again for more."
+        ),
+    ] = None,
     animation: Annotated[bool, typer.Option("--animation", help="Make a GIF too.")] = False,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out"),
-) -> None:  # fmt: skip
+) -> None:
     """Run a system by fmpy, with its parameter sets applied; a CSV, a figure and a table of results."""
     trace = run(file, step=step, stop=time, description=description, parameters=parameters or ())
     for warning in trace.warnings:
@@ -81,8 +102,7 @@ def run_ssp(
 
 @app.command(name="check")
 def check_ssp(
-    file: Annotated[Path, FILE],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    file: Annotated[Path, FILE], as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False
 ) -> None:
     """Every fault of an archive at once, with file, line, element and cure."""
     faults = check(file)
@@ -98,12 +118,16 @@ def check_ssp(
 
 @app.command()
 def parameters(
-    source: Annotated[str, typer.Argument(metavar="TOML|SET",
-        help=f"A variant, as `wheelchair add` writes it, or {', '.join(sources.parameter_sets())}.")],
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="TOML|SET", help=f"A variant, as `wheelchair add` writes it, or {', '.join(sources.parameter_sets())}."
+        ),
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.ssv", help="Where to write it.")],
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     version: Annotated[str, VERSION] = "1",
-) -> None:  # fmt: skip
+) -> None:
     """Write a variant's values as an SSP parameter set, which other tools bind to the FMU."""
     found = sources.parameter_set(source, catalogue(effects))[1]
     with written(output) as beside:
@@ -130,8 +154,14 @@ def _write(trace: Trace, stem: Path, animated: bool) -> list[Path]:
 
 def _course(trace: Trace) -> Course | None:
     """What the figure shows, where the system has a chair and a pusher as those of `build`."""
-    names = {"x": "Chair.chair.x", "y": "Chair.chair.y", "psi": "Chair.chair.psi", "u": "Chair.chair.u",
-             "F_rl": "Pusher.push.F_rl", "F_rr": "Pusher.push.F_rr"}  # fmt: skip
+    names = {
+        "x": "Chair.chair.x",
+        "y": "Chair.chair.y",
+        "psi": "Chair.chair.psi",
+        "u": "Chair.chair.u",
+        "F_rl": "Pusher.push.F_rl",
+        "F_rr": "Pusher.push.F_rr",
+    }
     if not set(names.values()) <= set(trace.columns):
         return None
     columns = {key: trace[name] for key, name in names.items()}
@@ -146,8 +176,9 @@ def _course(trace: Trace) -> Course | None:
 
 def _patches(p: dict[str, float]) -> list[tuple[float, float, float, float, str]]:
     """The parts of the floor that are not level or not smooth, each with words for it."""
-    ramp, cross, carpet = (p.get(f"Floor.{name}", off) for name, off in
-                           (("ramp.slope", 0.0), ("cross.slope", 0.0), ("carpet.rolling_factor", 1.0)))  # fmt: skip
+    ramp, cross, carpet = (
+        p.get(f"Floor.{name}", off) for name, off in (("ramp.slope", 0.0), ("cross.slope", 0.0), ("carpet.rolling_factor", 1.0))
+    )
     words = {
         "ramp": ramp and f"ramp, {'falls' if ramp > 0 else 'rises'} {np.degrees(abs(ramp)):.2g}°",
         "cross": cross and f"falls {np.degrees(abs(cross)):.2g}° to the {'right' if cross > 0 else 'left'}",

@@ -73,23 +73,35 @@ def _locus(chair: Chair, state: SteadyState) -> list[Linear]:
 
 def _columns(found: Turns) -> Columns:
     """Steady turns as columns (n,), all positive, with slip in degrees."""
-    names = {"delta_force": lambda s: abs(s.delta_force), "radius": lambda s: abs(s.radius),
-             "a_y": lambda s: abs(s.speed * s.psi_dot),
-             "slip": lambda s: np.degrees(max(abs(s.results["slip.rl"]), abs(s.results["slip.rr"])))}  # fmt: skip
+    names = {
+        "delta_force": lambda s: abs(s.delta_force),
+        "radius": lambda s: abs(s.radius),
+        "a_y": lambda s: abs(s.speed * s.psi_dot),
+        "slip": lambda s: np.degrees(max(abs(s.results["slip.rl"]), abs(s.results["slip.rr"]))),
+    }
     return {name: np.array([of(s) for s in found.states]) for name, of in names.items()}
 
 
 def _write(state: SteadyState, curves: Mapping[float, Turns], locus: list[Linear], slip: float, folder: Path) -> list[Path]:
     """Turns and eigenvalues as CSV, and the figure."""
     columns = {speed: _columns(found) for speed, found in curves.items()}
-    parts = [{"speed [m/s]": np.full(len(c["radius"]), speed), "delta_force [N]": c["delta_force"], "radius [m]": c["radius"],
-              "a_y [m/s2]": c["a_y"], "slip [deg]": c["slip"]} for speed, c in columns.items()]  # fmt: skip
+    parts = [
+        {
+            "speed [m/s]": np.full(len(c["radius"]), speed),
+            "delta_force [N]": c["delta_force"],
+            "radius [m]": c["radius"],
+            "a_y [m/s2]": c["a_y"],
+            "slip [deg]": c["slip"],
+        }
+        for speed, c in columns.items()
+    ]
     tables = {"steady-turns.csv": {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}}
     speeds = np.array([one.trim.speed for one in locus])
     values = np.array([one.eigenvalues for one in locus])
     parts_of = [(k, part) for k in range(values.shape[1]) for part in ("real", "imag")]
-    tables["eigenvalues.csv"] = {"speed [m/s]": speeds} | {f"{part}_{k + 1} [1/s]": getattr(values[:, k], part)
-                                                           for k, part in parts_of}  # fmt: skip
+    tables["eigenvalues.csv"] = {"speed [m/s]": speeds} | {
+        f"{part}_{k + 1} [1/s]": getattr(values[:, k], part) for k, part in parts_of
+    }
     for name, table in tables.items():
         write_table(folder / name, table)
     title = f"steady turns; eigenvalues at ΔF = {state.delta_force:.4g} N"
@@ -105,20 +117,32 @@ def _record(state: SteadyState, found: Gradients, ends: Mapping[str, Turns], loc
     """Everything as plain data, SI units."""
     return {
         "trim": _turn(state),
-        "gradients": {"at_radius": found.at_radius, "at_speed": found.at_speed, "of_force": found.of_force,
-                      "of_radius": found.of_radius},
+        "gradients": {
+            "at_radius": found.at_radius,
+            "at_speed": found.at_speed,
+            "of_force": found.of_force,
+            "of_radius": found.of_radius,
+        },
         "character": found.character,
-        "limits": {name: {"reached": end.limit is not None, "why": end.limit.meaning if end.limit else end.why,
-                          **_turn(end.last)} for name, end in ends.items()},
-        "root_locus": [{"speed": one.trim.speed, "eigenvalues": [[z.real, z.imag] for z in one.eigenvalues.tolist()]}
-                       for one in locus],
-    }  # fmt: skip
+        "limits": {
+            name: {"reached": end.limit is not None, "why": end.limit.meaning if end.limit else end.why, **_turn(end.last)}
+            for name, end in ends.items()
+        },
+        "root_locus": [
+            {"speed": one.trim.speed, "eigenvalues": [[z.real, z.imag] for z in one.eigenvalues.tolist()]} for one in locus
+        ],
+    }
 
 
 def _turn(state: SteadyState) -> dict[str, float | None]:
-    return {"speed": state.speed, "delta_force": state.delta_force, "a_y": state.speed * state.psi_dot,
-            "radius": state.radius if isfinite(state.radius) else None, "slip_rl": state.results["slip.rl"],
-            "slip_rr": state.results["slip.rr"]}  # fmt: skip
+    return {
+        "speed": state.speed,
+        "delta_force": state.delta_force,
+        "a_y": state.speed * state.psi_dot,
+        "radius": state.radius if isfinite(state.radius) else None,
+        "slip_rl": state.results["slip.rl"],
+        "slip_rr": state.results["slip.rr"],
+    }
 
 
 def _show(state: SteadyState, found: Gradients, ends: Mapping[str, Turns], locus: list[Linear]) -> None:
@@ -134,8 +158,13 @@ def _show(state: SteadyState, found: Gradients, ends: Mapping[str, Turns], locus
     for end in ends.values():
         last = end.last
         slips = (f"{np.degrees(last.results[f'slip.{side}']):.3f}" for side in ("rl", "rr"))
-        table.add_row(end.limit.meaning if end.limit else f"(not reached: {end.why})", f"{last.delta_force:.4g}",
-                      f"{last.radius:.4g}", f"{last.speed * last.psi_dot / EARTH:.3f}", *slips)  # fmt: skip
+        table.add_row(
+            end.limit.meaning if end.limit else f"(not reached: {end.why})",
+            f"{last.delta_force:.4g}",
+            f"{last.radius:.4g}",
+            f"{last.speed * last.psi_dot / EARTH:.3f}",
+            *slips,
+        )
     out.print(table)
     if "lift" not in ends:
         out.print(f"no wheel can lift: the CM's height is 0; give it by --set {HEIGHT}=0.6")
@@ -145,7 +174,12 @@ def _show(state: SteadyState, found: Gradients, ends: Mapping[str, Turns], locus
 def _stability(locus: list[Linear]) -> str:
     fast, slow = locus[0].trim.speed, locus[-1].trim.speed
     grows = [one.trim.speed for one in locus if one.eigenvalues.real.max() > 0]
-    said = f"no motion grows from {slow:.3g} to {fast:.3g} m/s" if not grows else (
-        f"a motion grows at {len(grows)} of {len(locus)} speeds from {slow:.3g} to {fast:.3g} m/s, "
-        f"from {min(grows, key=abs):.3g} m/s on")  # fmt: skip
+    said = (
+        f"no motion grows from {slow:.3g} to {fast:.3g} m/s"
+        if not grows
+        else (
+            f"a motion grows at {len(grows)} of {len(locus)} speeds from {slow:.3g} to {fast:.3g} m/s, "
+            f"from {min(grows, key=abs):.3g} m/s on"
+        )
+    )
     return said if len(locus) == LOCUS[2] else f"{said}; at slower ones there is no such turn"

@@ -100,8 +100,13 @@ def _job(plan: Plan, engine: str) -> Job:
             bench = Bench(measured, variant)
             found = bench.evidence(measured.runs, variant.values, (), tune_start=TUNING)
             yardsticks[chair.label] = tuple(
-                Yardstick(bench.on_time(e.run, variant.values, e.start), e.channels, e.ruler().errors, measured.known,
-                          {**e.run.set, **{name: e.start[name] for name in START}})
+                Yardstick(
+                    bench.on_time(e.run, variant.values, e.start),
+                    e.channels,
+                    e.ruler().errors,
+                    measured.known,
+                    {**e.run.set, **{name: e.start[name] for name in START}},
+                )
                 for e in found.runs
-            )  # fmt: skip
+            )
     return Job(plan, engine, yardsticks, measured.name, measured.fingerprint)

@@ -54,8 +54,10 @@ def sync(
 
 def _told(one: RunClocks) -> dict[str, Any]:
     """What was found of a run, by device."""
-    return {device: {"offset": one.seconds(device), "se": clock.se, "sure": device in one.sure, "why": one.why(device)}
-            for device, clock in one.clocks.items()}  # fmt: skip
+    return {
+        device: {"offset": one.seconds(device), "se": clock.se, "sure": device in one.sure, "why": one.why(device)}
+        for device, clock in one.clocks.items()
+    }
 
 
 def show(found: Sequence[RunClocks]) -> list[str]:
@@ -75,8 +77,9 @@ def show(found: Sequence[RunClocks]) -> list[str]:
         for device, clock in one.clocks.items():
             sure = device in one.sure
             offset = f"{one.seconds(device):.4f}" if sure else "not sure"
-            table.add_row(one.run.name, device, one.reference, offset, f"{clock.se:.4f}" if sure else "",
-                          one.why(device) if sure else "")  # fmt: skip
+            table.add_row(
+                one.run.name, device, one.reference, offset, f"{clock.se:.4f}" if sure else "", one.why(device) if sure else ""
+            )
             if not sure:
                 doubts.append(f"{one.run.name}: {one.why(device)}")
     out.print(table)

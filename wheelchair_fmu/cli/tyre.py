@@ -124,8 +124,14 @@ def _identified(file: Path, axes: str, tolerance: float = TOLERANCE) -> tuple[Me
 
 
 def _slopes(found: Identified) -> Table:
-    table = _table("linear, at the origin", "C_λ [N/rad]", "C_mλ [N m/rad]", "C_φ [N/rad]", "C_mφ [N m/rad]",
-                   f"force, torque straight to {100 * found.tolerance:g} %")  # fmt: skip
+    table = _table(
+        "linear, at the origin",
+        "C_λ [N/rad]",
+        "C_mλ [N m/rad]",
+        "C_φ [N/rad]",
+        "C_mφ [N m/rad]",
+        f"force, torque straight to {100 * found.tolerance:g} %",
+    )
     for fit in found.conditions:
         told = summarised(fit, found.tolerance)["linear"]
         cells = [_with_error(told[name], told["se"][name]) for name in ("C_lambda", "C_m_lambda", "C_phi", "C_m_phi")]
@@ -135,8 +141,15 @@ def _slopes(found: Identified) -> Table:
 
 
 def _dugoff(found: Identified) -> Table:
-    table = _table("Dugoff, over all slips", "C_λ [N/rad]", "μ", "c_p [mm]", "rms [N]", "rms [N m]",
-                   f"torque off by {100 * OF_PEAK:g} % of its peak")  # fmt: skip
+    table = _table(
+        "Dugoff, over all slips",
+        "C_λ [N/rad]",
+        "μ",
+        "c_p [mm]",
+        "rms [N]",
+        "rms [N m]",
+        f"torque off by {100 * OF_PEAK:g} % of its peak",
+    )
     for fit in found.conditions:
         law = fit.dugoff
         if law is None:
@@ -144,8 +157,15 @@ def _dugoff(found: Identified) -> Table:
             continue
         off = ", ".join(f"{math.degrees(a):.1f}–{math.degrees(b):.1f}°" for a, b in dugoff_off(fit, TORQUE) or ()) or "–"
         trail = "–" if law.c_p is None else f"{1000 * law.c_p.value:.2f}"
-        table.add_row(str(fit.condition), f"{law.C_lambda.value:.0f}", f"{law.mu.value:.3f}", trail, f"{law.rms_force:.2f}",
-                      _number(law.rms_torque), off)  # fmt: skip
+        table.add_row(
+            str(fit.condition),
+            f"{law.C_lambda.value:.0f}",
+            f"{law.mu.value:.3f}",
+            trail,
+            f"{law.rms_force:.2f}",
+            _number(law.rms_torque),
+            off,
+        )
     return table
 
 
@@ -153,9 +173,15 @@ def _magic(found: Identified, channel: str, unit: str) -> Table:
     table = _table(f"Magic Formula, {channel}", "B [1/rad]", "C", f"D [{unit}]", "E", f"rms [{unit}]", "rests on the prior")
     for fit in found.conditions:
         law = fit.magic(SLIP, channel)
-        cells = ["–"] * 6 if law is None else [
-            *(_with_error(e.value, e.se, 2) for e in (law.B, law.C, law.D, law.E)), f"{law.rms:.3f}",
-            ", ".join(law.untold) or "–"]  # fmt: skip
+        cells = (
+            ["–"] * 6
+            if law is None
+            else [
+                *(_with_error(e.value, e.se, 2) for e in (law.B, law.C, law.D, law.E)),
+                f"{law.rms:.3f}",
+                ", ".join(law.untold) or "–",
+            ]
+        )
         table.add_row(str(fit.condition), *cells)
     return table
 

@@ -41,8 +41,9 @@ def workbench(
         from ..workbench.server import Workbench
         from ..workbench.session import Session, prune
     except ImportError as error:
-        raise Failure(f"the workbench needs {error.name}, which is not installed; "
-                      "pip install 'wheelchair-fmu[workbench]'") from None  # fmt: skip
+        raise Failure(
+            f"the workbench needs {error.name}, which is not installed; pip install 'wheelchair-fmu[workbench]'"
+        ) from None
     if campaign and not campaign.is_dir():
         raise UsageError(f"{campaign}: no such folder; give one with recordings")
     root = folder or Path(platformdirs.user_data_dir("wheelchair-fmu")) / "workbench"
@@ -69,7 +70,8 @@ def _listen(port: int) -> socket.socket:
     try:
         listening.bind((HOST, port))
     except (OSError, OverflowError) as error:
-        raise UsageError(f"port {port} cannot be used ({getattr(error, 'strerror', None) or error}); "
-                         "give another by --port, or 0") from None  # fmt: skip
+        raise UsageError(
+            f"port {port} cannot be used ({getattr(error, 'strerror', None) or error}); give another by --port, or 0"
+        ) from None
     listening.listen()  # so that whoever opens the address at once waits, and is not refused
     return listening

@@ -39,8 +39,14 @@ def breaches(effect: Effect) -> list[Breach]:
         cure = LISTED if known.startswith("known") else known or WHOLE
         return [Breach(effect.id, "equations", fact.removeprefix(f"effect {effect.id} "), cure)]
     except Exception as error:  # what somebody else's law may raise
-        return [Breach(effect.id, "equations", f"its law fails{_line(effect, error)}: {type(error).__name__}: {_last(error)}",
-                       "write it of quantities, numbers and CasADi's functions, without if")]  # fmt: skip
+        return [
+            Breach(
+                effect.id,
+                "equations",
+                f"its law fails{_line(effect, error)}: {type(error).__name__}: {_last(error)}",
+                "write it of quantities, numbers and CasADi's functions, without if",
+            )
+        ]
 
 
 def _line(effect: Effect, error: Exception) -> str:

@@ -33,8 +33,13 @@ def neutral(subject: Subject) -> list[Breach]:
             worst += _furthest(records, is_[: len(should)], should)
     if not worst:
         return []
-    return [subject.breach("neutral when off", f"with its parameters at 0 {_words(*max(worst, key=lambda far: far[0]))}",
-                           "write each term so that it is 0, and each factor 1, where the parameters are 0")]  # fmt: skip
+    return [
+        subject.breach(
+            "neutral when off",
+            f"with its parameters at 0 {_words(*max(worst, key=lambda far: far[0]))}",
+            "write each term so that it is 0, and each factor 1, where the parameters are 0",
+        )
+    ]
 
 
 def present(subject: Subject) -> list[Breach]:
@@ -49,14 +54,24 @@ def present(subject: Subject) -> list[Breach]:
         if any(not np.array_equal(a, b) for a, b in zip(on, without, strict=True)):
             return []
     sizes = ", ".join(f"{p.name} = {p.smallest_interesting:g} {p.unit.name}" for e in subject.effects for p in e.parameters)
-    return [subject.breach("does something", f"with {sizes} nothing changes, at rest, forward, backward and in turns",
-                           "let a law read the parameter")]  # fmt: skip
+    return [
+        subject.breach(
+            "does something",
+            f"with {sizes} nothing changes, at rest, forward, backward and in turns",
+            "let a law read the parameter",
+        )
+    ]
 
 
 def passive(subject: Subject) -> list[Breach]:
     """What it says opposes a velocity takes power from it, whatever its size."""
-    return [breach for effect in subject.effects for c in effect.contributions if c.opposes
-            for breach in _opposes(subject, c.to, c.opposes)]  # fmt: skip
+    return [
+        breach
+        for effect in subject.effects
+        for c in effect.contributions
+        if c.opposes
+        for breach in _opposes(subject, c.to, c.opposes)
+    ]
 
 
 def _opposes(subject: Subject, to: str, velocity: str) -> Iterator[Breach]:
@@ -98,10 +113,14 @@ def mirror(subject: Subject) -> list[Breach]:
             (here,), (there,) = (evaluate(model, at, what) for at in (place, image))
             for found in _furthest(records, there, mirrored(records, here), SAME):
                 own = ", ".join(f'{p.name} "{p.mirror}"' for e in subject.effects for p in e.parameters)
-                return [subject.breach(
-                    "mirror", f"in a mirror along the chair, with mirror= of {own}, {_words(*found)}",
-                    'what turns left into right has mirror="-", the same on both sides "+", a left and a right parameter each '
-                    'other\'s symbol behind the sign; or leave mirror= out')]  # fmt: skip
+                return [
+                    subject.breach(
+                        "mirror",
+                        f"in a mirror along the chair, with mirror= of {own}, {_words(*found)}",
+                        'what turns left into right has mirror="-", the same on both sides "+", a left and a right parameter '
+                        "each other's symbol behind the sign; or leave mirror= out",
+                    )
+                ]
     return []
 
 

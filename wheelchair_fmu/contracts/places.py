@@ -85,6 +85,4 @@ def _partner(records: tuple[Quantity, ...], record: Quantity, partner: str) -> Q
 
 
 def mirrored_place(model: Model, place: Place) -> Place:
-    return Place(
-        mirrored(model.states, place.x), mirrored(model.inputs, place.w), mirrored(model.parameters, place.p)
-    )
+    return Place(mirrored(model.states, place.x), mirrored(model.inputs, place.w), mirrored(model.parameters, place.p))

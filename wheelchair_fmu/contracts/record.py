@@ -81,7 +81,7 @@ def _values(effect: Effect) -> list[tuple[str, str]]:
     if not effect.parameters:
         found.append(("it has no parameters", "give it one that is 0 when the effect is off"))
     if not effect.contributions and not effect.delays_record:
-        found.append(("it contributes to nothing", "add for example adds(\"F_x\", law)"))
+        found.append(("it contributes to nothing", 'add for example adds("F_x", law)'))
     twice = _twice(q.symbol for q in (*effect.parameters, *effect.constants, *(row.state for row in effect.rows)))
     if twice:
         found.append((f"the symbol {twice} is used twice", "give each parameter, constant and state its own"))
@@ -97,8 +97,10 @@ def _of_size(p: Parameter) -> Iterator[tuple[str, str]]:
     elif not (math.isfinite(p.lower) and math.isfinite(p.upper)):
         yield f"the bounds of {p.name} are {p.lower:g} to {p.upper:g} {unit}", "give finite numbers, lower= and upper="
     elif not p.lower <= 0 < size < p.upper:
-        yield (f"{p.name} goes from {p.lower:g} to {p.upper:g} {unit} and {size:g} {unit} is of interest",
-               "it must go lower ≤ 0 < smallest_interesting < upper")  # fmt: skip
+        yield (
+            f"{p.name} goes from {p.lower:g} to {p.upper:g} {unit} and {size:g} {unit} is of interest",
+            "it must go lower ≤ 0 < smallest_interesting < upper",
+        )
     for key in ("meaning", "source"):
         if not getattr(p, key):
             yield f"{p.name} has no {key}", f"give {key}=, a few words in quotes"
@@ -110,5 +112,8 @@ def _twice(names: Iterable[str]) -> str:
 
 
 def _short(value: Any) -> str:
-    return f"a {type(value).__name__}" if not isinstance(value, tuple | list) else (
-        f"a {type(value).__name__} of {', '.join(sorted({type(v).__name__ for v in value})) or 'nothing'}")
+    return (
+        f"a {type(value).__name__}"
+        if not isinstance(value, tuple | list)
+        else (f"a {type(value).__name__} of {', '.join(sorted({type(v).__name__ for v in value})) or 'nothing'}")
+    )

@@ -36,8 +36,13 @@ def finite(subject: Subject) -> list[Breach]:
             return [subject.breach("finite at standstill", f"{words} and at rest, {_row(model, i)} is {value[i, 0]}", cure)]
         for i, j in np.argwhere(~np.isfinite(slopes))[:1]:
             by = _names((*model.states, *model.inputs, *model.parameters))[j]
-            return [subject.breach("finite at standstill",
-                                   f"{words} and at rest, the slope of {_row(model, i)} by {by} is {slopes[i, j]}", cure)]
+            return [
+                subject.breach(
+                    "finite at standstill",
+                    f"{words} and at rest, the slope of {_row(model, i)} by {by} is {slopes[i, j]}",
+                    cure,
+                )
+            ]
     return []
 
 
@@ -59,8 +64,14 @@ def _moving(subject: Subject) -> list[Breach]:
         off = abs(said - found) - CLOSE * abs(found) - SMALL * (abs(found).max() + 1)
         i = int(np.argmax(off))
         if off[i] > 0:
-            return [subject.breach(NAME, f"at 1 m/s {_row(model, i)} changes by {found[i]:.6g} along some direction, but its "
-                                   f"derivative says {said[i]:.6g}", NO_JUMPS)]  # fmt: skip
+            return [
+                subject.breach(
+                    NAME,
+                    f"at 1 m/s {_row(model, i)} changes by {found[i]:.6g} along some direction, but its "
+                    f"derivative says {said[i]:.6g}",
+                    NO_JUMPS,
+                )
+            ]
     return []
 
 

@@ -46,10 +46,12 @@ class Subject:
 
     def values(self, size: float) -> np.ndarray:
         """Parameters (np,): the effects' at `size` times their smallest interesting size, within bounds; the rest as usual."""
-        return np.array([
-            q.default if q.smallest_interesting is None else min(max(size * q.smallest_interesting, q.lower), q.upper)
-            for q in self.model.parameters
-        ])  # fmt: skip
+        return np.array(
+            [
+                q.default if q.smallest_interesting is None else min(max(size * q.smallest_interesting, q.lower), q.upper)
+                for q in self.model.parameters
+            ]
+        )
 
     def breach(self, contract: str, fact: str, cure: str) -> Breach:
         return Breach(self.id, contract, fact, cure)

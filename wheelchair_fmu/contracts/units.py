@@ -21,8 +21,10 @@ SINGLE = 1.7  # the same, of one unit alone
 PLACES = 3
 NEAR = 1e-9
 MIXED = "it adds unlike quantities, or a plain number stands where a quantity with a unit belongs"
-NAME_IT = ("make such a number one of the effect's constants=(Parameter(name, unit, meaning, default=...),), or in an "
-           "expression write its unit behind it, as in 0.1 [m/s]")  # fmt: skip
+NAME_IT = (
+    "make such a number one of the effect's constants=(Parameter(name, unit, meaning, default=...),), or in an "
+    "expression write its unit behind it, as in 0.1 [m/s]"
+)
 
 
 def units(subject: Subject) -> list[Breach]:
@@ -43,8 +45,10 @@ def _fault(line: Line, effect: Effect, places: Sequence[Values]) -> tuple[str, s
     exponents = _exponents(line, places)
     if exponents is None:
         return f"{line.words} has no unit, but {line.unit.name} belongs there: {MIXED}", NAME_IT
-    return (f"{line.words} comes out in {named(*exponents).name} where {line.unit.name} belongs",
-            _cure(line, effect, places[0], exponents))  # fmt: skip
+    return (
+        f"{line.words} comes out in {named(*exponents).name} where {line.unit.name} belongs",
+        _cure(line, effect, places[0], exponents),
+    )
 
 
 def _cure(line: Line, effect: Effect, at: Values, exponents: Sequence[int]) -> str:

@@ -41,16 +41,22 @@ def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | 
 def helper(name: str) -> ctypes.CDLL:
     """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
     flags = ["-fvisibility=default", "-O3"]
-    return _loaded(kept(_name(name, compiler.SUFFIX), compiler.SUFFIX,
-                        lambda path: compiler.compile_shared([CSRC / f"{name}.c"], path, flags)))  # fmt: skip
+    return _loaded(
+        kept(
+            _name(name, compiler.SUFFIX),
+            compiler.SUFFIX,
+            lambda path: compiler.compile_shared([CSRC / f"{name}.c"], path, flags),
+        )
+    )
 
 
 def _loaded(path: Path) -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
-        raise BuildError(f"what {' '.join(compiler.command())} makes cannot be loaded here ({error}); set CC to a compiler "
-                         "for this machine") from error  # fmt: skip
+        raise BuildError(
+            f"what {' '.join(compiler.command())} makes cannot be loaded here ({error}); set CC to a compiler for this machine"
+        ) from error
 
 
 def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, target: Path) -> None:
@@ -97,8 +103,7 @@ def _toolchain() -> str:
 @cache
 def sources() -> str:
     """What all generated code depends on: this package's equations, and CasADi."""
-    files = sorted([*(PACKAGE / "model").rglob("*.py"), *(PACKAGE / "engine").rglob("*.[pch]*"),
-                    PACKAGE / "quantities.py"])  # fmt: skip
+    files = sorted([*(PACKAGE / "model").rglob("*.py"), *(PACKAGE / "engine").rglob("*.[pch]*"), PACKAGE / "quantities.py"])
     files = [f for f in files if "__pycache__" not in f.parts]
     texts = hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
     return f"{texts} {version('casadi')}"

@@ -18,8 +18,7 @@ from ..children import run
 from ..errors import BuildError
 
 # Contracting a·b + c to one rounding would give other digits on other machines. Nobody asks errno after a square root.
-FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden",
-         "-fno-sanitize=all")  # fmt: skip
+FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all")
 LONGEST = 900.0  # seconds: ziglang compiles its C library at first, which takes slow machines minutes
 CURE = "set CC to one, or unset it"
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
@@ -35,8 +34,9 @@ def command() -> tuple[str, ...]:
         if words := shlex.split(os.environ.get("CC", "")):
             return tuple(words)
     except ValueError as error:
-        raise BuildError(f"CC = {os.environ['CC']!r} is no command: {str(error).lower()}; set it as a shell would read it, or "
-                         "unset it") from None  # fmt: skip
+        raise BuildError(
+            f"CC = {os.environ['CC']!r} is no command: {str(error).lower()}; set it as a shell would read it, or unset it"
+        ) from None
     for name in ("cc", "gcc", "clang"):
         if path := shutil.which(name):
             return (path,)
@@ -93,12 +93,16 @@ def _run(words: list[str], seconds: float | None = None) -> str:
     except subprocess.TimeoutExpired:
         raise BuildError(f"the C compiler {words[0]!r} was ended after {seconds:g} s without a result; {CURE}") from None
     if done.returncode < 0:
-        raise BuildError(f"the C compiler {words[0]!r} was ended by {_signal(-done.returncode)}, perhaps for want of memory; "
-                         "run the same again, with less beside it")  # fmt: skip
+        raise BuildError(
+            f"the C compiler {words[0]!r} was ended by {_signal(-done.returncode)}, perhaps for want of memory; "
+            "run the same again, with less beside it"
+        )
     said = "\n".join(filter(None, (shlex.join(words), done.stderr.strip())))
     if done.returncode and os.strerror(errno.ENOSPC) in said:
-        raise BuildError(f"no room for what the C compiler writes; make room, or set TMPDIR and WHEELCHAIR_CACHE to folders on "
-                         f"another disk: {said}")  # fmt: skip
+        raise BuildError(
+            f"no room for what the C compiler writes; make room, or set TMPDIR and WHEELCHAIR_CACHE to folders on "
+            f"another disk: {said}"
+        )
     if done.returncode:
         raise BuildError(f"the C compiler failed; set CC to another, or unset it and `pip install ziglang`: {said}")
     return done.stdout

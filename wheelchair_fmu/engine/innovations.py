@@ -24,9 +24,11 @@ MOST = 64  # states, pushes and readings together, as in innovations.c
 class _Filter(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_int) for name in ("nx", "nq", "nz")),
-        *((name, ctypes.c_void_p)
-          for name in ("A", "B", "C", "H", "D", "input_sd", "input_phi", "sd", "phi", "start_cov", "present")),
-    )  # fmt: skip
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("A", "B", "C", "H", "D", "input_sd", "input_phi", "sd", "phi", "start_cov", "present")
+        ),
+    )
 
 
 @dataclass(frozen=True)
@@ -61,8 +63,15 @@ class Whitener:
     tell nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
     """
 
-    def __init__(self, run: Linearised, which: list[int], noise: Noise, present: np.ndarray, speeds: Sequence[int] = (),
-                 pushes: Sequence[int] | None = None):  # fmt: skip
+    def __init__(
+        self,
+        run: Linearised,
+        which: list[int],
+        noise: Noise,
+        present: np.ndarray,
+        speeds: Sequence[int] = (),
+        pushes: Sequence[int] | None = None,
+    ):
         self.present, self.noise = present, noise
         n, nz = present.shape
         nx, nq = run.transition.shape[1], len(noise.pushes)
@@ -70,11 +79,18 @@ class Whitener:
             raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
         push_sd, push_phi = _by_push(run.time, noise)
         at = list(range(nq) if pushes is None else pushes)
-        arrays = {"A": run.transition, "B": run.push_before[:, :, at], "C": run.push_after[:, :, at],
-                  "H": run.by_state[:, which], "D": run.by_push[:, which][:, :, at],
-                  "input_sd": push_sd, "input_phi": push_phi, "sd": noise.readings,
-                  "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
-                  "start_cov": noise.start}  # fmt: skip
+        arrays = {
+            "A": run.transition,
+            "B": run.push_before[:, :, at],
+            "C": run.push_after[:, :, at],
+            "H": run.by_state[:, which],
+            "D": run.by_push[:, which][:, :, at],
+            "input_sd": push_sd,
+            "input_phi": push_phi,
+            "sd": noise.readings,
+            "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
+            "start_cov": noise.start,
+        }
         self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self._arrays["present"] = np.ascontiguousarray(present, np.int8)
         self._size = (nx, nq, nz)
@@ -83,8 +99,9 @@ class Whitener:
             _library().wc_drop_kinks(ctypes.byref(self._filter), ctypes.c_long(n), ctypes.c_double(dt), *speeds)
         self.kinks = present & (self._arrays["present"] == 0)
         self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
-        self.logdet: float = _library().wc_design(ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain),
-                                                  _of(self._scale))  # fmt: skip
+        self.logdet: float = _library().wc_design(
+            ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain), _of(self._scale)
+        )
         self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(noise.readings)))
 
     @property
@@ -100,8 +117,16 @@ class Whitener:
         out = np.asarray(signals, float, order="C") if in_place else np.array(signals, float, order="C")
         m = out.shape[2]
         mean, work = np.ascontiguousarray(start_mean, float), np.empty(2 * self._gain.shape[2] * m)
-        _library().wc_whiten(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(self._gain), _of(self._scale),
-                             _of(mean), ctypes.c_int(m), _of(out), _of(work))  # fmt: skip
+        _library().wc_whiten(
+            ctypes.byref(self._filter),
+            ctypes.c_long(len(out)),
+            _of(self._gain),
+            _of(self._scale),
+            _of(mean),
+            ctypes.c_int(m),
+            _of(out),
+            _of(work),
+        )
         out[~self.present, 0] = np.nan
         return out
 

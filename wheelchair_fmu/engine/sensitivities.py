@@ -16,9 +16,15 @@ from .tangent import PUSHES, differentiable, sensed
 
 
 class _Wanted(ctypes.Structure):
-    _fields_ = (("active", ctypes.c_int), ("which", ctypes.c_void_p), ("forced", ctypes.c_int),
-                *((name, ctypes.c_void_p) for name in ("transition", "push_before", "push_after", "by_state",
-                                                       "by_push", "start", "by_parameter")))  # fmt: skip
+    _fields_ = (
+        ("active", ctypes.c_int),
+        ("which", ctypes.c_void_p),
+        ("forced", ctypes.c_int),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("transition", "push_before", "push_after", "by_state", "by_push", "start", "by_parameter")
+        ),
+    )
 
 
 @dataclass(frozen=True)
@@ -63,13 +69,7 @@ class Sensitivities:
             self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
 
     def run(
-        self,
-        time: np.ndarray,
-        inputs: np.ndarray,
-        parameters: np.ndarray,
-        by: Sequence[str] = (),
-        *,
-        tolerance: float = 1e-6,
+        self, time: np.ndarray, inputs: np.ndarray, parameters: np.ndarray, by: Sequence[str] = (), *, tolerance: float = 1e-6
     ) -> Linearised:
         """Simulate over `time` (n,) with inputs (n, nw) linear between samples; derivatives `by` these parameters.
 
@@ -79,21 +79,33 @@ class Sensitivities:
         which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
         n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
         x, y = np.empty((n, nx)), np.empty((n, ny))
-        out = {"transition": np.empty((n - 1, nx, nx)), "push_before": np.empty((n - 1, nx, PUSHES)),
-               "push_after": np.empty((n - 1, nx, PUSHES)), "by_state": np.empty((n, ns, nx)),
-               "by_push": np.empty((n, ns, PUSHES)), "start": np.empty((nx, k)),
-               "by_parameter": np.empty((n, ns, k))}  # fmt: skip
+        out = {
+            "transition": np.empty((n - 1, nx, nx)),
+            "push_before": np.empty((n - 1, nx, PUSHES)),
+            "push_after": np.empty((n - 1, nx, PUSHES)),
+            "by_state": np.empty((n, ns, nx)),
+            "by_push": np.empty((n, ns, PUSHES)),
+            "start": np.empty((nx, k)),
+            "by_parameter": np.empty((n, ns, k)),
+        }
         forced = any(not name.startswith("start.") for name in by)
         wanted = _Wanted(k, which.ctypes.data, forced, *(a.ctypes.data for a in out.values()))
         work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()
         status = self._library.wc_tangent_run(
-            self._kernel, self._tangent, ctypes.c_void_p(p.ctypes.data), ctypes.c_double(tolerance), ctypes.c_long(n),
-            *(ctypes.c_void_p(a.ctypes.data) for a in (t, w, x, y)), ctypes.byref(wanted),
-            ctypes.c_void_p(work.ctypes.data), ctypes.byref(reached),
-        )  # fmt: skip
+            self._kernel,
+            self._tangent,
+            ctypes.c_void_p(p.ctypes.data),
+            ctypes.c_double(tolerance),
+            ctypes.c_long(n),
+            *(ctypes.c_void_p(a.ctypes.data) for a in (t, w, x, y)),
+            ctypes.byref(wanted),
+            ctypes.c_void_p(work.ctypes.data),
+            ctypes.byref(reached),
+        )
         if status:
             when = t[min(max(reached.value, 1), n) - 1]
-            raise SimulationError(f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and "
-                                  "parameters there")  # fmt: skip
+            raise SimulationError(
+                f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
+            )
         return Linearised(t, x, y, y[:, list(self.rows)], **out)

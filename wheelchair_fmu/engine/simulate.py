@@ -91,13 +91,23 @@ class Simulator:
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
             status = self._library.wc_run(
-                self._at(self._kernel), _of(p), Accuracy(tolerance, grid), ctypes.c_long(len(t)), _of(t), _of(w),
-                int(hold), _of(x), _of(y), ctypes.byref(reached), ctypes.byref(steps),
-            )  # fmt: skip
+                self._at(self._kernel),
+                _of(p),
+                Accuracy(tolerance, grid),
+                ctypes.c_long(len(t)),
+                _of(t),
+                _of(w),
+                int(hold),
+                _of(x),
+                _of(y),
+                ctypes.byref(reached),
+                ctypes.byref(steps),
+            )
         if status:
             when = t[min(max(reached.value, 1), len(t)) - 1]
-            raise SimulationError(f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and "
-                                  "parameters there")  # fmt: skip
+            raise SimulationError(
+                f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
+            )
         return Trajectory(t, x, y, tuple(o.name for o in self.model.outputs), steps.value)
 
     def _start(self, p: np.ndarray, w: np.ndarray, x: np.ndarray) -> int:

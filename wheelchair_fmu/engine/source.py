@@ -60,22 +60,29 @@ def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | N
     """C text that defines `const wc_tangent <prefix>_tangent`; `by_hand` as in `c_source`."""
     by_hand = by_hand or {}
     names = [name for name in TANGENT_NAMES if name not in by_hand]
-    return _generated(tangent.functions, names, prefix) + _declared(by_hand) + TANGENT_RECORD.format(
-        prefix=prefix,
-        rows=", ".join(map(str, tangent.rows)),
-        places=", ".join(map(str, tangent.places)) or "0",
-        columns=len(tangent.columns),
-        sensors=len(tangent.rows),
-        prepared=max(tangent.length(name) for name in ("prepare", "prepare_all")),
-        touches=len(tangent.touched),
-        touched=", ".join(map(str, tangent.touched)) or "0",
-        functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in TANGENT_NAMES),
+    return (
+        _generated(tangent.functions, names, prefix)
+        + _declared(by_hand)
+        + TANGENT_RECORD.format(
+            prefix=prefix,
+            rows=", ".join(map(str, tangent.rows)),
+            places=", ".join(map(str, tangent.places)) or "0",
+            columns=len(tangent.columns),
+            sensors=len(tangent.rows),
+            prepared=max(tangent.length(name) for name in ("prepare", "prepare_all")),
+            touches=len(tangent.touched),
+            touched=", ".join(map(str, tangent.touched)) or "0",
+            functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in TANGENT_NAMES),
+        )
     )
 
 
 def _declared(by_hand: Mapping[str, str]) -> str:
-    return "".join(f"extern int {name}(const double **, double **, long long *, double *, int);\n"
-                   for name in by_hand.values() if name != NOTHING)  # fmt: skip
+    return "".join(
+        f"extern int {name}(const double **, double **, long long *, double *, int);\n"
+        for name in by_hand.values()
+        if name != NOTHING
+    )
 
 
 def coefficients() -> str:
@@ -88,9 +95,15 @@ def coefficients() -> str:
         lines = ",\n".join("    {" + (", ".join(map(repr, row)) or "0") + "}" for row in rows)
         return f"static const double wc_{name}[6][6] = {{\n{lines}}};\n"
 
-    return (f"static const double wc_GAMMA = {rodas.GAMMA!r};\n" + numbers("ALPHA", rodas.ALPHA)
-            + numbers("GAMMA_I", rodas.GAMMA_I) + numbers("DENSE_2", rodas.DENSE_2) + numbers("DENSE_3", rodas.DENSE_3)
-            + triangle("A", rodas.A) + triangle("C", rodas.C))  # fmt: skip
+    return (
+        f"static const double wc_GAMMA = {rodas.GAMMA!r};\n"
+        + numbers("ALPHA", rodas.ALPHA)
+        + numbers("GAMMA_I", rodas.GAMMA_I)
+        + numbers("DENSE_2", rodas.DENSE_2)
+        + numbers("DENSE_3", rodas.DENSE_3)
+        + triangle("A", rodas.A)
+        + triangle("C", rodas.C)
+    )
 
 
 def _generated(functions: dict[str, cs.Function], names: Sequence[str], prefix: str) -> str:

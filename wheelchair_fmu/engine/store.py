@@ -70,8 +70,10 @@ def kept(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
                     other.unlink(missing_ok=True)
             settle(beside, target)
     except OSError as error:
-        raise BuildError(f"{folder()}: cannot keep there what was compiled: {(error.strerror or str(error)).lower()}; make "
-                         "room, or set WHEELCHAIR_CACHE to another folder") from error  # fmt: skip
+        raise BuildError(
+            f"{folder()}: cannot keep there what was compiled: {(error.strerror or str(error)).lower()}; make "
+            "room, or set WHEELCHAIR_CACHE to another folder"
+        ) from error
     _sound.add(target)
     return target
 
@@ -125,11 +127,14 @@ def _instead_of(place: Path, why: str) -> Path:
         atexit.register(shutil.rmtree, instead, ignore_errors=True)
         (instead / "compiled").mkdir(mode=0o700)
     except OSError as error:
-        raise BuildError(f"{place}: {why}; and nothing can be written to {tempfile.gettempdir()} either; set WHEELCHAIR_CACHE "
-                         "to a folder of your own") from error  # fmt: skip
+        raise BuildError(
+            f"{place}: {why}; and nothing can be written to {tempfile.gettempdir()} either; set WHEELCHAIR_CACHE "
+            "to a folder of your own"
+        ) from error
     os.environ["WHEELCHAIR_CACHE"] = str(instead)
-    log.warning("%s: %s; what is compiled is kept until this command ends; set WHEELCHAIR_CACHE to a folder of your own",
-                place, why)  # fmt: skip
+    log.warning(
+        "%s: %s; what is compiled is kept until this command ends; set WHEELCHAIR_CACHE to a folder of your own", place, why
+    )
     return instead / "compiled"
 
 

@@ -38,8 +38,7 @@ from ..model.wheelchair import Model
 from ..quantities import Parameter
 from .kernel import _algebraic_change
 
-NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses",
-         "begin")  # fmt: skip
+NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses", "begin")
 SENSORS = "sensor."
 SENSED = ("chair.u", "chair.v")  # results that are also measured directly
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
@@ -64,10 +63,14 @@ def differentiable(model: Model, names: Sequence[str] | None = None) -> tuple[Pa
     """Parameters that a fit may touch, or those of them that have these `names`: no choices, regularisations, gravity or
     fixed constants."""
     return tuple(
-        p for p in model.parameters
-        if not p.choices and p.estimated and not p.name.startswith(("regularisation.", "speed.")) and p.name != "g"
+        p
+        for p in model.parameters
+        if not p.choices
+        and p.estimated
+        and not p.name.startswith(("regularisation.", "speed."))
+        and p.name != "g"
         and (names is None or p.name in names)
-    )  # fmt: skip
+    )
 
 
 def sensed(model: Model) -> tuple[int, ...]:
@@ -96,7 +99,7 @@ def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent
         "readout": cs.Function("readout", at, cs.cse([_rows(cs.densify(cs.jacobian(y, everything)))])),
         "masses": cs.Function("masses", [p], [cs.densify(model.mass), _rows(by_columns(model.mass))]),
         "begin": cs.Function("begin", at, [_rows(cs.densify(_begin(model, places)))]),
-    }  # fmt: skip
+    }
     return Tangent(columns, rows, tuple(places), _touched(model, p[places]), functions)
 
 

@@ -22,9 +22,22 @@ from .tangent import tangent
 
 PUSHES = 2  # the hands' forces: a campaign states no noise of torques
 STACK = 1 << 20  # bytes; the filter's matrices take the most
-FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-std=c11", "-O3", "-fno-unroll-loops", "-msimd128", "-g0", "-s",
-         "-ffp-contract=off", "-fno-sanitize=all", "-fvisibility=hidden", f"-Wl,-z,stack-size={STACK}",
-         f"-DWC_PUSHES={PUSHES}")  # fmt: skip
+FLAGS = (
+    "-target",
+    "wasm32-wasi",
+    "-mexec-model=reactor",
+    "-std=c11",
+    "-O3",
+    "-fno-unroll-loops",
+    "-msimd128",
+    "-g0",
+    "-s",
+    "-ffp-contract=off",
+    "-fno-sanitize=all",
+    "-fvisibility=hidden",
+    f"-Wl,-z,stack-size={STACK}",
+    f"-DWC_PUSHES={PUSHES}",
+)
 
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
 KERNEL = {"step": "wc_page_step", "forward": NOTHING, "rate": NOTHING}
@@ -41,8 +54,9 @@ def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence
     Raises BuildError where ziglang is not installed.
     """
     if not find_spec("ziglang"):
-        raise BuildError("the model is compiled to WebAssembly by ziglang, which is not installed; "
-                         "pip install 'wheelchair-fmu[report]'")  # fmt: skip
+        raise BuildError(
+            "the model is compiled to WebAssembly by ziglang, which is not installed; pip install 'wheelchair-fmu[report]'"
+        )
     with side_by_side() as pool:
         waiting = []
         for choice, some in models:
@@ -68,8 +82,10 @@ def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], plac
     """The model's C files, and what they need beside them."""
     with _deriving:
         model = assemble(choice, effects)
-        sources = {"model.c": c_source(kernel(model), "model", KERNEL),
-                   "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT)}  # fmt: skip
+        sources = {
+            "model.c": c_source(kernel(model), "model", KERNEL),
+            "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT),
+        }
     for name, text in {**sources, "coefficients.h": coefficients()}.items():
         (place / name).write_text(text)
     return [place / name for name in sources]

@@ -82,8 +82,10 @@ class Fleet:
 
     def _row(self, place: Path) -> dict[str, Any]:
         if not place.exists():
-            raise Failure(f"{place}: not there for the process that was to diagnose it; the workers of a cluster must see "
-                          "the campaigns' folders under the same names")  # fmt: skip
+            raise Failure(
+                f"{place}: not there for the process that was to diagnose it; the workers of a cluster must see "
+                "the campaigns' folders under the same names"
+            )
         about = {"folder": str(place), "campaign": place.name}
         try:
             measured = windows(read(place, known_parameters()))

@@ -40,13 +40,18 @@ def schema(chair: Variant, metadata: Mapping[str, str]) -> pa.Schema:
     """Columns of the table: words, numbers, and each parameter of the catalogue with its standard error, by FMI name."""
     records = [p for e in chair.catalogue.values() for p in e.owned if p.estimated]
     units = [(name, p.unit.name) for p in records for name in (p.name, p.name + SE)]
-    return pa.schema([
-        *(pa.field(name, pa.string(), metadata={"meaning": meaning}) for name, meaning in WORDS.items()),
-        *(pa.field(name, pa.float64(), metadata={"unit": "s" if name == "seconds" else "1", "meaning": meaning})
-          for name, meaning in NUMBERS.items()),
-        pa.field(ERROR, pa.string(), metadata={"meaning": "why this campaign was not diagnosed; empty where it was"}),
-        *(pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units),
-    ], metadata=dict(metadata))  # fmt: skip
+    return pa.schema(
+        [
+            *(pa.field(name, pa.string(), metadata={"meaning": meaning}) for name, meaning in WORDS.items()),
+            *(
+                pa.field(name, pa.float64(), metadata={"unit": "s" if name == "seconds" else "1", "meaning": meaning})
+                for name, meaning in NUMBERS.items()
+            ),
+            pa.field(ERROR, pa.string(), metadata={"meaning": "why this campaign was not diagnosed; empty where it was"}),
+            *(pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units),
+        ],
+        metadata=dict(metadata),
+    )
 
 
 def of_diagnosis(d: Diagnosis) -> dict[str, Any]:
@@ -58,12 +63,15 @@ def of_diagnosis(d: Diagnosis) -> dict[str, Any]:
         "ties": "; ".join(", ".join(group) for group in d.ties),
         "proposal": d.proposal.effect if d.proposal else "",
         "notes": "; ".join(d.notes),
-        "rms_fit_nominal": nominal.fit, "rms_holdout_nominal": finite(nominal.heldout),
-        "rms_fit_calibrated": calibrated.fit, "rms_holdout_calibrated": finite(calibrated.heldout),
-        "rms_fit": last.fit, "rms_holdout": finite(last.heldout),
+        "rms_fit_nominal": nominal.fit,
+        "rms_holdout_nominal": finite(nominal.heldout),
+        "rms_fit_calibrated": calibrated.fit,
+        "rms_holdout_calibrated": finite(calibrated.heldout),
+        "rms_fit": last.fit,
+        "rms_holdout": finite(last.heldout),
         "seconds": d.seconds,
         **_estimates(d),
-    }  # fmt: skip
+    }
 
 
 def _estimates(d: Diagnosis) -> dict[str, float | None]:
@@ -80,8 +88,11 @@ def long(table: pa.Table) -> pd.DataFrame:
     """A line for each campaign and parameter of an effect it names: `folder`, `campaign`, `verdict`, `effect`, `parameter`,
     `unit`, `estimate`, `se` (empty where the data do not tell)."""
     lines = []
-    units = {field.name: field.metadata[b"unit"].decode() for field in table.schema
-             if field.name.startswith("effect.") and not field.name.endswith(SE)}  # fmt: skip
+    units = {
+        field.name: field.metadata[b"unit"].decode()
+        for field in table.schema
+        if field.name.startswith("effect.") and not field.name.endswith(SE)
+    }
     for row in table.to_pylist():
         for name, unit in units.items():
             if row[name] is not None:

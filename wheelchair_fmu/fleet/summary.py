@@ -26,8 +26,27 @@ def summary(found: pd.DataFrame, chairs: int) -> pd.DataFrame:
     fewer than two chairs.
     """
     lines = [line for effect, rows in found.groupby("effect", sort=False) for line in _lines(str(effect), rows, chairs)]
-    table = pd.DataFrame(lines, columns=["effect", "missing", "tied", "small", "share", "low", "high", "parameter", "unit", "n",
-                                         "mean", "se", "spread", "Q", "p", "I2"])  # fmt: skip
+    table = pd.DataFrame(
+        lines,
+        columns=[
+            "effect",
+            "missing",
+            "tied",
+            "small",
+            "share",
+            "low",
+            "high",
+            "parameter",
+            "unit",
+            "n",
+            "mean",
+            "se",
+            "spread",
+            "Q",
+            "p",
+            "I2",
+        ],
+    )
     return table.sort_values("share", ascending=False, kind="stable", ignore_index=True)
 
 
@@ -35,10 +54,19 @@ def _lines(effect: str, rows: pd.DataFrame, chairs: int) -> list[dict[str, Any]]
     by = rows.drop_duplicates("folder").verdict
     missing, tied, small = (int(by.isin(verdicts).sum()) for verdicts in (FOUND, TIED, SMALL))
     low, high = proportion_confint(missing + tied, chairs, LEVEL, method="wilson")
-    counts = {"effect": effect, "missing": missing, "tied": tied, "small": small, "share": (missing + tied) / chairs,
-              "low": low, "high": high}  # fmt: skip
-    return [{**counts, "parameter": name, "unit": part.unit.iloc[0], **_sizes(part[part.verdict.isin((*FOUND, *TIED))])}
-            for name, part in rows.groupby("parameter", sort=False)]  # fmt: skip
+    counts = {
+        "effect": effect,
+        "missing": missing,
+        "tied": tied,
+        "small": small,
+        "share": (missing + tied) / chairs,
+        "low": low,
+        "high": high,
+    }
+    return [
+        {**counts, "parameter": name, "unit": part.unit.iloc[0], **_sizes(part[part.verdict.isin((*FOUND, *TIED))])}
+        for name, part in rows.groupby("parameter", sort=False)
+    ]
 
 
 def _sizes(rows: pd.DataFrame) -> dict[str, float]:
@@ -47,10 +75,23 @@ def _sizes(rows: pd.DataFrame) -> dict[str, float]:
     size, se = sure.estimate.to_numpy(float), sure.se.to_numpy(float)
     if len(size) < 2:
         nan = float("nan")
-        return {"n": len(size), "mean": size[0] if len(size) else nan, "se": se[0] if len(se) else nan, "spread": nan,
-                "Q": nan, "p": nan, "I2": nan}  # fmt: skip
+        return {
+            "n": len(size),
+            "mean": size[0] if len(size) else nan,
+            "se": se[0] if len(se) else nan,
+            "spread": nan,
+            "Q": nan,
+            "p": nan,
+            "I2": nan,
+        }
     together = combine_effects(size, se**2, method_re="iterated")
     Q = float(together.q)
-    return {"n": len(size), "mean": float(together.mean_effect_re), "se": float(together.sd_eff_w_re),
-            "spread": float(np.sqrt(together.tau2)), "Q": Q, "p": float(together.test_homogeneity().pvalue),
-            "I2": max(0.0, 1 - together.df / Q) if Q > 0 else 0.0}  # fmt: skip
+    return {
+        "n": len(size),
+        "mean": float(together.mean_effect_re),
+        "se": float(together.sd_eff_w_re),
+        "spread": float(np.sqrt(together.tau2)),
+        "Q": Q,
+        "p": float(together.test_homogeneity().pvalue),
+        "I2": max(0.0, 1 - together.df / Q) if Q > 0 else 0.0,
+    }

@@ -65,8 +65,9 @@ def build(
     platforms: str = "host",
 ) -> Path:
     """Build the FMU of a variant, for one version of FMI, and return its path. Raises as `build_each`."""
-    return build_each({fmi: Path(target)}, variant, effects=effects, equations=equations, flavour=flavour,
-                      platforms=platforms)[0]  # fmt: skip
+    return build_each({fmi: Path(target)}, variant, effects=effects, equations=equations, flavour=flavour, platforms=platforms)[
+        0
+    ]
 
 
 def build_each(

@@ -37,8 +37,10 @@ def _refuse_too_large(m: Model) -> None:
     sizes = {"parameters": m.p, "outputs": m.y, "states": m.x, "inputs": m.w, "crossings": crossings(m)}
     for what, symbol in sizes.items():
         if symbol.numel() > LIMITS[what]:
-            raise BuildError(f"the model has {symbol.numel()} {what}, more than the {LIMITS[what]} that an instance "
-                             f"holds; raise WC_MAX_{what.upper()}")  # fmt: skip
+            raise BuildError(
+                f"the model has {symbol.numel()} {what}, more than the {LIMITS[what]} that an instance "
+                f"holds; raise WC_MAX_{what.upper()}"
+            )
 
 
 def _rules(m: Model) -> str:
@@ -54,33 +56,43 @@ def tables(face: Interface, name: str, token: str) -> str:
     """model_data.c: `model`, from what the generated files before it define."""
     kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in face.choices)
     chooser = face.by_name[face.chooser].index if face.chooser else -1
-    return "\n".join([
-        '#include "model.h"',
-        "",
-        "#include <math.h>",
-        "",
-        *(_choices(v) for v in face.variables if v.choices),
-        *_array("wc_variable", "variables", map(_variable, face.variables)),
-        *_array("wc_jump", "jumps", (f"{{{j.parameter.index}, {j.mode.index}, {j.when}, {j.state}}}"
-                                     for j in face.jumps)),
-        *(f"static const double limits_{i}[] = {{{', '.join(map(_number, w.limits))}}};"
-          for i, w in enumerate(face.watches)),
-        *_array("wc_watch", "watches", (
-            f"{{{w.variables[0].reference}, {len(w.variables)}, limits_{i}, {w.guard.index if w.guard else -1}, "
-            f"{_number(w.guard_limit)}, {_string(w.meaning)}}}" for i, w in enumerate(face.watches))),
-        *_array("wc_state", "states", (f"{{{place}, {v.reference}, {_number(v.nominal)}}}"
-                                       for place, v in face.states.items())),
-        *_array("int", "crossings", (str(v.index) for v in face.of("output") if v.type == "Boolean")),
-        f"static const wc_kernel *const kernels[] = {{{kernels}}};",
-        "",
-        "static const wc_model the_model = {",
-        f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
-        f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
-        f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
-        f"    {len(face.states)}, states, {len(face.of('indicator'))}, crossings}};",
-        "static const wc_model *const model = &the_model;",
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            '#include "model.h"',
+            "",
+            "#include <math.h>",
+            "",
+            *(_choices(v) for v in face.variables if v.choices),
+            *_array("wc_variable", "variables", map(_variable, face.variables)),
+            *_array("wc_jump", "jumps", (f"{{{j.parameter.index}, {j.mode.index}, {j.when}, {j.state}}}" for j in face.jumps)),
+            *(
+                f"static const double limits_{i}[] = {{{', '.join(map(_number, w.limits))}}};"
+                for i, w in enumerate(face.watches)
+            ),
+            *_array(
+                "wc_watch",
+                "watches",
+                (
+                    f"{{{w.variables[0].reference}, {len(w.variables)}, limits_{i}, {w.guard.index if w.guard else -1}, "
+                    f"{_number(w.guard_limit)}, {_string(w.meaning)}}}"
+                    for i, w in enumerate(face.watches)
+                ),
+            ),
+            *_array(
+                "wc_state", "states", (f"{{{place}, {v.reference}, {_number(v.nominal)}}}" for place, v in face.states.items())
+            ),
+            *_array("int", "crossings", (str(v.index) for v in face.of("output") if v.type == "Boolean")),
+            f"static const wc_kernel *const kernels[] = {{{kernels}}};",
+            "",
+            "static const wc_model the_model = {",
+            f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
+            f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
+            f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
+            f"    {len(face.states)}, states, {len(face.of('indicator'))}, crossings}};",
+            "static const wc_model *const model = &the_model;",
+            "",
+        ]
+    )
 
 
 def _choices(v: Variable) -> str:
@@ -96,9 +108,11 @@ def _array(kind: str, name: str, rows: Iterable[str]) -> list[str]:
 
 def _variable(v: Variable) -> str:
     start = 0.0 if v.start is None else v.start
-    return (f"{{{_string(v.name)}, {_string(v.unit.name)}, WC_{v.kind.upper()}, WC_{v.type.upper()}, {v.index}, "
-            f"{int(v.fixed)}, {_number(start)}, {_number(v.lower)}, {_number(v.upper)}, "
-            f"{f'choices_{v.reference}' if v.choices else '0'}}}")  # fmt: skip
+    return (
+        f"{{{_string(v.name)}, {_string(v.unit.name)}, WC_{v.kind.upper()}, WC_{v.type.upper()}, {v.index}, "
+        f"{int(v.fixed)}, {_number(start)}, {_number(v.lower)}, {_number(v.upper)}, "
+        f"{f'choices_{v.reference}' if v.choices else '0'}}}"
+    )
 
 
 def _number(value: float) -> str:

@@ -20,8 +20,9 @@ def continuous(face: Interface) -> Known:
     models = face.models.values()
     by_x, by_w = (np.maximum.reduce([_kinds(m, face, by) for m in models]) for by in (0, 1))
     knowns = [*((place, v, by_x) for place, v in face.states.items()), *((v.index, v, by_w) for v in face.of("input"))]
-    return {u.name: [(v, KINDS[kind[row, place]]) for place, v, kind in knowns if kind[row, place]]
-            for row, u in _unknowns(face)}  # fmt: skip
+    return {
+        u.name: [(v, KINDS[kind[row, place]]) for place, v, kind in knowns if kind[row, place]] for row, u in _unknowns(face)
+    }
 
 
 def initial(face: Interface) -> Known:
@@ -31,9 +32,12 @@ def initial(face: Interface) -> Known:
         group = face.chooser.rpartition(".")[0] + "."  # what the chosen model reads, the choice acts on
         chosen = [v.index for v in face.of("parameter") if v.name.startswith(group)]
         on_p[:, face.by_name[face.chooser].index] |= on_p[:, chosen].any(axis=1)
-    return {u.name: [(v, "dependent") for on, kind in ((on_p, "parameter"), (on_w, "input"))
-                     for v in face.of(kind) if on[row, v.index]]
-            for row, u in _unknowns(face)}  # fmt: skip
+    return {
+        u.name: [
+            (v, "dependent") for on, kind in ((on_p, "parameter"), (on_w, "input")) for v in face.of(kind) if on[row, v.index]
+        ]
+        for row, u in _unknowns(face)
+    }
 
 
 def _expressions(m: Model) -> cs.SX:

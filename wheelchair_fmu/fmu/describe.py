@@ -26,22 +26,43 @@ LOG_CATEGORIES = {
 # Per interface, what each flavour can do; every word of it is tested.
 OWN_MEMORY = {"canNotUseMemoryManagementFunctions": "true"}
 NATIVE = {
-    "ModelExchange": {**OWN_MEMORY, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true",
-                      "providesDirectionalDerivative": "true"},
-    "CoSimulation": {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true",
-                     "maxOutputDerivativeOrder": "1", **OWN_MEMORY, "canGetAndSetFMUstate": "true",
-                     "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"},
-}  # fmt: skip
+    "ModelExchange": {
+        **OWN_MEMORY,
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+        "providesDirectionalDerivative": "true",
+    },
+    "CoSimulation": {
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": "true",
+        "maxOutputDerivativeOrder": "1",
+        **OWN_MEMORY,
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+        "providesDirectionalDerivative": "true",
+    },
+}
 PYTHON = {
-    "CoSimulation": {"needsExecutionTool": "true", "canHandleVariableCommunicationStepSize": "true",
-                     **OWN_MEMORY, "canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"},
-}  # fmt: skip
+    "CoSimulation": {
+        "needsExecutionTool": "true",
+        "canHandleVariableCommunicationStepSize": "true",
+        **OWN_MEMORY,
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+    }
+}
 
 
 def description(face: Interface, name: str, token: str, abilities: Mapping[str, dict[str, str]], sources: list[str]) -> bytes:
     """The XML text. `abilities` are the flavour's; `sources` the C files to compile, where the archive carries some."""
-    root = ET.Element("fmiModelDescription", fmiVersion="2.0", modelName=name, guid=token, **about(face),
-                      numberOfEventIndicators=str(len(face.of("indicator"))))  # fmt: skip
+    root = ET.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=name,
+        guid=token,
+        **about(face),
+        numberOfEventIndicators=str(len(face.of("indicator"))),
+    )
     root.extend(_interface(kind, name, able, sources) for kind, able in abilities.items())
     root.extend([units(face), types(face), log_categories(), experiment(), variables(face), structure(face)])
     return to_bytes(root)
@@ -49,8 +70,14 @@ def description(face: Interface, name: str, token: str, abilities: Mapping[str, 
 
 def about(face: Interface) -> dict[str, str]:
     """What both versions say of the model as a whole."""
-    words = {"description": face.title, "author": AUTHOR, "version": __version__, "license": "MIT",
-             "generationTool": f"wheelchair-fmu {__version__}", "variableNamingConvention": "structured"}  # fmt: skip
+    words = {
+        "description": face.title,
+        "author": AUTHOR,
+        "version": __version__,
+        "license": "MIT",
+        "generationTool": f"wheelchair-fmu {__version__}",
+        "variableNamingConvention": "structured",
+    }
     if moment := package.moment():
         words["generationDateAndTime"] = moment.strftime("%Y-%m-%dT%H:%M:%SZ")
     return words
@@ -129,8 +156,9 @@ def log_categories() -> ET.Element:
 
 
 def experiment() -> ET.Element:
-    return ET.Element("DefaultExperiment", startTime="0", stopTime=number(STOP), tolerance=number(TOLERANCE),
-                      stepSize=number(STEP))  # fmt: skip
+    return ET.Element(
+        "DefaultExperiment", startTime="0", stopTime=number(STOP), tolerance=number(TOLERANCE), stepSize=number(STEP)
+    )
 
 
 def variables(face: Interface) -> ET.Element:
@@ -142,8 +170,14 @@ def variables(face: Interface) -> ET.Element:
 
 
 def variable(v: Variable, reinit: bool) -> ET.Element:
-    element = ET.Element("ScalarVariable", name=v.name, valueReference=str(v.reference), description=v.description,
-                         causality=v.causality, variability=v.variability)  # fmt: skip
+    element = ET.Element(
+        "ScalarVariable",
+        name=v.name,
+        valueReference=str(v.reference),
+        description=v.description,
+        causality=v.causality,
+        variability=v.variability,
+    )
     if v.initial and v.kind != "input":
         element.set("initial", v.initial)
     if v.type == "Real":
@@ -184,17 +218,24 @@ def structure(face: Interface) -> ET.Element:
     element = ET.Element("ModelStructure")
     continuous, initial = dependencies.continuous(face), dependencies.initial(face)
     outputs, derivatives = face.of("output"), face.of("derivative")
-    groups = (("Outputs", outputs, continuous), ("Derivatives", derivatives, continuous),
-              ("InitialUnknowns", (*outputs, *derivatives), initial))  # fmt: skip
+    groups = (
+        ("Outputs", outputs, continuous),
+        ("Derivatives", derivatives, continuous),
+        ("InitialUnknowns", (*outputs, *derivatives), initial),
+    )
     for title, unknowns, known in groups:
         if not unknowns:
             continue
         group = ET.SubElement(element, title)
         for v in unknowns:
             on = known[v.name]
-            ET.SubElement(group, "Unknown", index=str(v.reference + 1),
-                          dependencies=" ".join(str(d.reference + 1) for d, _ in on),
-                          dependenciesKind=" ".join(kind for _, kind in on))  # fmt: skip
+            ET.SubElement(
+                group,
+                "Unknown",
+                index=str(v.reference + 1),
+                dependencies=" ".join(str(d.reference + 1) for d, _ in on),
+                dependenciesKind=" ".join(kind for _, kind in on),
+            )
     return element
 
 

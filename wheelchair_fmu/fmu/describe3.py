@@ -22,26 +22,50 @@ from .describe import (
 from .variables import Interface, Variable
 
 VERSION = "3.0"
-COMMON = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true", "providesDirectionalDerivatives": "true",
-          "providesAdjointDerivatives": "true"}  # fmt: skip
+COMMON = {
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "true",
+    "providesAdjointDerivatives": "true",
+}
 INTERFACES = {
     "ModelExchange": {**COMMON, "needsCompletedIntegratorStep": "true"},
     # No fixedInternalStepSize: steps adapt, the grid is only their upper bound.
-    "CoSimulation": {**COMMON, "canHandleVariableCommunicationStepSize": "true", "maxOutputDerivativeOrder": "1",
-                     "providesIntermediateUpdate": "true", "canReturnEarlyAfterIntermediateUpdate": "true"},
-}  # fmt: skip
+    "CoSimulation": {
+        **COMMON,
+        "canHandleVariableCommunicationStepSize": "true",
+        "maxOutputDerivativeOrder": "1",
+        "providesIntermediateUpdate": "true",
+        "canReturnEarlyAfterIntermediateUpdate": "true",
+    },
+}
 # Where other parts of a simulator plug in: the variables of each terminal by their name in it, and where it is drawn.
 TERMINALS = {
-    "pushrim_left": ("the left hand: force on the rim or torque on the axle, brake, and how fast the wheel turns",
-                     {"F": "push.F_rl", "M": "push.M_rl", "brake": "brake.rl", "speed": "sensor.wheel_speed_l"},
-                     (-110, 40), "pushrim"),
-    "pushrim_right": ("the right hand: force on the rim or torque on the axle, brake, and how fast the wheel turns",
-                      {"F": "push.F_rr", "M": "push.M_rr", "brake": "brake.rr", "speed": "sensor.wheel_speed_r"},
-                      (-110, -60), "pushrim"),
-    "floor": ("the floor under the chair, and where the chair is on it",
-              {"slope_x": "floor.slope_x", "slope_y": "floor.slope_y", "rolling_factor": "floor.rolling_factor",
-               "x": "chair.x", "y": "chair.y"}, (-10, -110), "floor"),
-}  # fmt: skip
+    "pushrim_left": (
+        "the left hand: force on the rim or torque on the axle, brake, and how fast the wheel turns",
+        {"F": "push.F_rl", "M": "push.M_rl", "brake": "brake.rl", "speed": "sensor.wheel_speed_l"},
+        (-110, 40),
+        "pushrim",
+    ),
+    "pushrim_right": (
+        "the right hand: force on the rim or torque on the axle, brake, and how fast the wheel turns",
+        {"F": "push.F_rr", "M": "push.M_rr", "brake": "brake.rr", "speed": "sensor.wheel_speed_r"},
+        (-110, -60),
+        "pushrim",
+    ),
+    "floor": (
+        "the floor under the chair, and where the chair is on it",
+        {
+            "slope_x": "floor.slope_x",
+            "slope_y": "floor.slope_y",
+            "rolling_factor": "floor.rolling_factor",
+            "x": "chair.x",
+            "y": "chair.y",
+        },
+        (-10, -110),
+        "floor",
+    ),
+}
 SIZE = 20  # of a terminal, where the chair's icon goes from -100 to 100
 
 
@@ -70,8 +94,13 @@ def _variables(face: Interface) -> ET.Element:
 
 
 def _variable(v: Variable, reinit: bool) -> ET.Element:
-    words = {"name": v.name, "valueReference": str(v.reference), "description": v.description, "causality": v.causality,
-             "variability": v.variability}  # fmt: skip
+    words = {
+        "name": v.name,
+        "valueReference": str(v.reference),
+        "description": v.description,
+        "causality": v.causality,
+        "variability": v.variability,
+    }
     if v.initial:
         words["initial"] = v.initial
     if v.kind in ("input", "output"):
@@ -91,28 +120,40 @@ def _structure(face: Interface) -> ET.Element:
     element = ET.Element("ModelStructure")
     continuous, initial = dependencies.continuous(face), dependencies.initial(face)
     outputs, derivatives = face.of("output"), face.of("derivative")
-    groups = (("Output", outputs, continuous), ("ContinuousStateDerivative", derivatives, continuous),
-              ("InitialUnknown", (*outputs, *derivatives), initial),
-              ("EventIndicator", face.of("indicator"), continuous))  # fmt: skip
+    groups = (
+        ("Output", outputs, continuous),
+        ("ContinuousStateDerivative", derivatives, continuous),
+        ("InitialUnknown", (*outputs, *derivatives), initial),
+        ("EventIndicator", face.of("indicator"), continuous),
+    )
     for title, unknowns, known in groups:
         for v in unknowns:
             on = known[v.name]
-            ET.SubElement(element, title, valueReference=str(v.reference),
-                          dependencies=" ".join(str(d.reference) for d, _ in on),
-                          dependenciesKind=" ".join(kind for _, kind in on))  # fmt: skip
+            ET.SubElement(
+                element,
+                title,
+                valueReference=str(v.reference),
+                dependencies=" ".join(str(d.reference) for d, _ in on),
+                dependenciesKind=" ".join(kind for _, kind in on),
+            )
     return element
 
 
 def build_description(name: str, version: str, unit: str) -> bytes:
     """How to compile the sources, of FMI 2.0 or 3.0: the C file `unit` against the FMI headers."""
     root = ET.Element("fmiBuildDescription", fmiVersion=VERSION)
-    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name,
-                                  description=f"C11, beside the headers of FMI {version}.0")  # fmt: skip
+    configuration = ET.SubElement(
+        root, "BuildConfiguration", modelIdentifier=name, description=f"C11, beside the headers of FMI {version}.0"
+    )
     files = ET.SubElement(configuration, "SourceFileSet", language="C11")
     ET.SubElement(files, "SourceFile", name=unit)
-    ET.SubElement(files, "PreprocessorDefinition", name=f"FMI{version}_FUNCTION_PREFIX", value=f"{name}_",
-                  description=f"for linking; a shared library is compiled with FMI{version}_OVERRIDE_FUNCTION_PREFIX "
-                              "beside it")  # fmt: skip
+    ET.SubElement(
+        files,
+        "PreprocessorDefinition",
+        name=f"FMI{version}_FUNCTION_PREFIX",
+        value=f"{name}_",
+        description=f"for linking; a shared library is compiled with FMI{version}_OVERRIDE_FUNCTION_PREFIX beside it",
+    )
     ET.SubElement(configuration, "Library", name="m", external="true", description="the system's mathematics")
     return to_bytes(root)
 
@@ -137,8 +178,21 @@ def terminals(face: Interface) -> bytes:
     for name, (meaning, members, (x, y), icon) in found.items():
         terminal = ET.SubElement(group, "Terminal", name=name, matchingRule="bus", description=meaning)
         for member, variable in members.items():
-            ET.SubElement(terminal, "TerminalMemberVariable", variableName=face.by_name[variable].name, memberName=member,
-                          variableKind="signal")  # fmt: skip
-        ET.SubElement(terminal, "TerminalGraphicalRepresentation", x1=str(x), y1=str(y), x2=str(x + SIZE), y2=str(y + SIZE),
-                      defaultConnectionColor="30 90 160", iconBaseName=icon)  # fmt: skip
+            ET.SubElement(
+                terminal,
+                "TerminalMemberVariable",
+                variableName=face.by_name[variable].name,
+                memberName=member,
+                variableKind="signal",
+            )
+        ET.SubElement(
+            terminal,
+            "TerminalGraphicalRepresentation",
+            x1=str(x),
+            y1=str(y),
+            x2=str(x + SIZE),
+            y2=str(y + SIZE),
+            defaultConnectionColor="30 90 160",
+            iconBaseName=icon,
+        )
     return to_bytes(root)

@@ -42,18 +42,18 @@ def files(face: Interface, version: str, results: Mapping[str, bytes]) -> dict[s
         step=number(1000 * STEP),
         slopes=MOVED[version],
         reference=_reference(results),
-    )  # fmt: skip
-    return {
-        "documentation/index.html": filled.encode(),
-        "documentation/licenses/license.txt": LICENCE.read_bytes(),
-    }
+    )
+    return {"documentation/index.html": filled.encode(), "documentation/licenses/license.txt": LICENCE.read_bytes()}
 
 
 def icons(face: Interface) -> dict[str, bytes]:
     """The model's icon and its terminals', by their path in the archive: drawn, and as pixels for who cannot draw."""
     places = {"icon": face.pages / "model", **{name: SOURCE / "icons" / name for name in describe3.terminal_icons(face)}}
-    return {f"terminalsAndIcons/{name}.{kind}": place.with_suffix(f".{kind}").read_bytes()
-            for name, place in places.items() for kind in ("png", "svg")}  # fmt: skip
+    return {
+        f"terminalsAndIcons/{name}.{kind}": place.with_suffix(f".{kind}").read_bytes()
+        for name, place in places.items()
+        for kind in ("png", "svg")
+    }
 
 
 def _drawing(name: str) -> str:
@@ -66,16 +66,20 @@ def _reference(results: Mapping[str, bytes]) -> str:
     from . import plot  # matplotlib takes its time
 
     folder = f"../{related.FOLDER}"
-    return (f'<p><a href="{folder}/reference.csv">reference.csv</a> is what this build should give for <a '
-            f'href="{folder}/reference_in.csv">reference_in.csv</a>, whose values are held over steps of 10&nbsp;ms; <a '
-            f'href="{folder}/start.ssv">start.ssv</a> is the set of values that it starts from.</p>\n'
-            f'<figure>{plot.reference_run(results["reference.csv"])}</figure>')  # fmt: skip
+    return (
+        f'<p><a href="{folder}/reference.csv">reference.csv</a> is what this build should give for <a '
+        f'href="{folder}/reference_in.csv">reference_in.csv</a>, whose values are held over steps of 10&nbsp;ms; <a '
+        f'href="{folder}/start.ssv">start.ssv</a> is the set of values that it starts from.</p>\n'
+        f"<figure>{plot.reference_run(results['reference.csv'])}</figure>"
+    )
 
 
 def _effects(face: Interface, known: dict[str, dict[str, str]]) -> str:
     """Each effect with its parameters, folded up."""
-    folded = [_effect(e.id, e.title, [v for v in face.of("parameter") if v.name.startswith(f"effect.{e.id}.")], known)
-              for e in face.model.effects]  # fmt: skip
+    folded = [
+        _effect(e.id, e.title, [v for v in face.of("parameter") if v.name.startswith(f"effect.{e.id}.")], known)
+        for e in face.model.effects
+    ]
     return "\n".join(folded) or "<p>none</p>"
 
 

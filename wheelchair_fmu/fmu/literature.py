@@ -15,9 +15,13 @@ def entries() -> dict[str, dict[str, str]]:
     """The fields of each work by its key."""
     text = FILE.read_text(encoding="utf-8")
     found = re.findall(r"^@\w+\{(\w+),\n(.*?)^\}", text, flags=re.MULTILINE | re.DOTALL)
-    return {key: {name: " ".join(value.replace("{", "").replace("}", "").split())
-                  for name, value in re.findall(r"^\s*(\w+)\s*=\s*\{(.*?)\},?$", body, flags=re.MULTILINE | re.DOTALL)}
-            for key, body in found}  # fmt: skip
+    return {
+        key: {
+            name: " ".join(value.replace("{", "").replace("}", "").split())
+            for name, value in re.findall(r"^\s*(\w+)\s*=\s*\{(.*?)\},?$", body, flags=re.MULTILINE | re.DOTALL)
+        }
+        for key, body in found
+    }
 
 
 def keys_in(sources: list[str], known: dict[str, dict[str, str]]) -> list[str]:

@@ -18,8 +18,10 @@ from ..model.wheelchair import base_parameters
 from ..quantities import Parameter, Unit
 from .describe import PASCALS, number
 
-NAMESPACE = {kind: f"http://ssp-standard.org/SSP1/SystemStructure{word}" for kind, word in {
-    "ssc": "Common", "ssd": "Description", "ssv": "ParameterValues", "ssm": "ParameterMapping"}.items()}  # fmt: skip
+NAMESPACE = {
+    kind: f"http://ssp-standard.org/SSP1/SystemStructure{word}"
+    for kind, word in {"ssc": "Common", "ssd": "Description", "ssv": "ParameterValues", "ssm": "ParameterMapping"}.items()
+}
 NAMESPACE["osp"] = "http://opensimulationplatform.com/SSP/OSPAnnotations"  # libcosim's own
 TOOL = f"wheelchair-fmu {__version__}"
 TABLE_1 = "Doria, Table 1"

@@ -60,7 +60,7 @@ PLATFORMS = {
         Platform("x86_64-darwin", "darwin64", "x86_64-macos.11.0", ".dylib", MACH),
         Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", ".dylib", MACH),
     )
-}  # fmt: skip
+}
 
 
 def _host() -> str:

@@ -44,17 +44,22 @@ def archive(face: Interface) -> dict[str, bytes]:
         script = _write(source, package, modules, _interface(face, token))
         files = _pythonfmu(script, source / package, Path(folder) / f"{NAME}.fmu")
     description = describe.description(face, NAME, token, describe.PYTHON, [])
-    return {**files, "modelDescription.xml": description, "model.png": (face.pages / "model.png").read_bytes(),
-            **documentation.files(face, "2", {}),
-            "documentation/externalDependencies.txt": _dependencies().encode()}  # fmt: skip
+    return {
+        **files,
+        "modelDescription.xml": description,
+        "model.png": (face.pages / "model.png").read_bytes(),
+        **documentation.files(face, "2", {}),
+        "documentation/externalDependencies.txt": _dependencies().encode(),
+    }
 
 
 def _dependencies() -> str:
     """What a host must have for this FMU to run, with the versions that it was built with."""
     lines = [f"{name} {version(name)}" for name in ("pythonfmu", *NEEDED)]
-    return ("This FMU runs in the Python of its host. It needs Python 3.11 or newer and these packages, for instance by\n"
-            f"pip install {' '.join(NEEDED)}\n\npythonfmu is inside. Built with:\n"
-            + "".join(f"{line}\n" for line in lines))  # fmt: skip
+    return (
+        "This FMU runs in the Python of its host. It needs Python 3.11 or newer and these packages, for instance by\n"
+        f"pip install {' '.join(NEEDED)}\n\npythonfmu is inside. Built with:\n" + "".join(f"{line}\n" for line in lines)
+    )
 
 
 def _modules(face: Interface) -> dict[str, str]:
@@ -75,8 +80,9 @@ def _modules(face: Interface) -> dict[str, str]:
 
 def _token(face: Interface, modules: dict[str, str]) -> str:
     slave = (documentation.SOURCE / "python" / "slave.py").read_text(encoding="utf-8")
-    content = "\0".join((json.dumps(_interface(face, ""), sort_keys=True), slave,
-                         *(name + "\0" + modules[name] for name in sorted(modules))))  # fmt: skip
+    content = "\0".join(
+        (json.dumps(_interface(face, ""), sort_keys=True), slave, *(name + "\0" + modules[name] for name in sorted(modules)))
+    )
     return "{" + str(UUID(bytes=hashlib.sha256(content.encode()).digest()[:16])) + "}"
 
 
@@ -92,18 +98,34 @@ def _interface(face: Interface, token: str) -> dict[str, Any]:
         "grid": GRID,
         "log_categories": describe.LOG_CATEGORIES,
         "variables": [_variable(v) for v in face.variables],
-        "jumps": [{"parameter": j.parameter.name, "mode": j.mode.name, "when": j.when, "state": j.state}
-                  for j in face.jumps],
-        "watches": [{"variables": [v.name for v in w.variables], "limits": w.limits, "meaning": w.meaning,
-                     "guard": w.guard.name if w.guard else "", "guard_limit": w.guard_limit} for w in face.watches],
-    }  # fmt: skip
+        "jumps": [{"parameter": j.parameter.name, "mode": j.mode.name, "when": j.when, "state": j.state} for j in face.jumps],
+        "watches": [
+            {
+                "variables": [v.name for v in w.variables],
+                "limits": w.limits,
+                "meaning": w.meaning,
+                "guard": w.guard.name if w.guard else "",
+                "guard_limit": w.guard_limit,
+            }
+            for w in face.watches
+        ],
+    }
 
 
 def _variable(v: Variable) -> dict[str, Any]:
     start = int(v.start or 0) if v.choices else v.start
     lower, upper = (b if isfinite(b) else None for b in (v.lower, v.upper))
-    return {"name": v.name, "kind": v.kind, "type": v.type, "unit": v.unit.name, "start": start, "min": lower,
-            "max": upper, "variability": v.variability, "choices": v.choices}  # fmt: skip
+    return {
+        "name": v.name,
+        "kind": v.kind,
+        "type": v.type,
+        "unit": v.unit.name,
+        "start": start,
+        "min": lower,
+        "max": upper,
+        "variability": v.variability,
+        "choices": v.choices,
+    }
 
 
 def _write(source: Path, package: str, modules: dict[str, str], interface: dict[str, Any]) -> Path:

@@ -14,8 +14,18 @@ from ..errors import BuildError, SimulationError
 from .variables import GRID, TOLERANCE, Interface
 
 DURATION, STEP = 5.0, 0.01  # s
-OUTPUTS = ("chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_dot", "slip.rl", "slip.rr",
-           "sensor.a_x", "sensor.a_y")  # fmt: skip
+OUTPUTS = (
+    "chair.x",
+    "chair.y",
+    "chair.psi",
+    "chair.u",
+    "chair.v",
+    "chair.psi_dot",
+    "slip.rl",
+    "slip.rr",
+    "sensor.a_x",
+    "sensor.a_y",
+)
 
 
 def strokes(time: np.ndarray) -> dict[str, np.ndarray]:
@@ -34,8 +44,10 @@ def files(face: Interface) -> dict[str, bytes]:
         run = simulator.run(time, simulator.inputs(len(time), inputs), tolerance=TOLERANCE, grid=GRID, hold=True)
     except SimulationError as error:
         raise BuildError(f"the reference run from this variant's own start values fails: {error}") from error
-    return {"reference_in.csv": _csv(("time", *inputs), [time, *inputs.values()]),
-            "reference.csv": _csv(("time", *OUTPUTS), [time, *(run[name] for name in OUTPUTS)])}  # fmt: skip
+    return {
+        "reference_in.csv": _csv(("time", *inputs), [time, *inputs.values()]),
+        "reference.csv": _csv(("time", *OUTPUTS), [time, *(run[name] for name in OUTPUTS)]),
+    }
 
 
 def _csv(names: Sequence[str], columns: Sequence[np.ndarray]) -> bytes:

@@ -47,8 +47,11 @@ def files(variant: Variant, results: Mapping[str, bytes]) -> dict[str, bytes]:
 
 def _manifest() -> bytes:
     ET.register_namespace("fmi-ls", NAMESPACE)
-    said = {"name": NAME, "version": VERSION,
-            "description": "Layered Standard providing information on related files included in an FMU."}  # fmt: skip
+    said = {
+        "name": NAME,
+        "version": VERSION,
+        "description": "Layered Standard providing information on related files included in an FMU.",
+    }
     root = ET.Element("fmiReferences", {f"{{{NAMESPACE}}}fmi-ls-{key}": value for key, value in said.items()})
     for name, related in RELATED.items():
         ET.SubElement(root, "Related", type=related.kind, source=name, role=related.role, description=related.meaning)

@@ -130,8 +130,10 @@ class Interface:
     def jumps(self) -> tuple[Jump, ...]:
         states = [s.symbol for s in self.model.states for _ in s.names]
         modes = {name: self.by_name[mode] for name, (mode, _, _) in HELD.items()}
-        return tuple(Jump(self.by_name[name], modes[name], 1 + modes[name].choices.index(when), states.index(state))
-                     for name, (_, when, state) in HELD.items())  # fmt: skip
+        return tuple(
+            Jump(self.by_name[name], modes[name], 1 + modes[name].choices.index(when), states.index(state))
+            for name, (_, when, state) in HELD.items()
+        )
 
     @property
     def watches(self) -> tuple[Watch, ...]:
@@ -139,11 +141,25 @@ class Interface:
         # The paper calls its curves linear below 3°; the other laws were fitted to 9°.
         slip = tuple({"linear": 0.0524}.get(law, 0.16) for law in LAWS["tyre"])
         return (
-            *(Watch((name[o.name],), (0.5,) * len(slip), None, 0.0,
-                    f"{o.limit} and the model no longer holds; push or turn less") for o in self.model.outputs if o.limit),
-            Watch((name["slip.rl"], name["slip.rr"]), slip, name["chair.u"], 0.3,
-                  "the tyre law is not meant for so much slip; push or turn less, or choose another tyre.law"),
-        )  # fmt: skip
+            *(
+                Watch(
+                    (name[o.name],),
+                    (0.5,) * len(slip),
+                    None,
+                    0.0,
+                    f"{o.limit} and the model no longer holds; push or turn less",
+                )
+                for o in self.model.outputs
+                if o.limit
+            ),
+            Watch(
+                (name["slip.rl"], name["slip.rr"]),
+                slip,
+                name["chair.u"],
+                0.3,
+                "the tyre law is not meant for so much slip; push or turn less, or choose another tyre.law",
+            ),
+        )
 
 
 def interface(variant: Variant) -> Interface:
@@ -171,11 +187,29 @@ def interface(variant: Variant) -> Interface:
     outputs = [v for v in table if v.kind == "output"]
     for place, unit in _differential(model, starts):
         state = next(v for v in outputs if cs.is_equal(model.y[v.index], model.x[place]))
-        table.append(Variable(len(table), f"der({state.name})", f"rate of change of {state.name}", unit, "derivative",
-                              index=place, state=state.reference))  # fmt: skip
+        table.append(
+            Variable(
+                len(table),
+                f"der({state.name})",
+                f"rate of change of {state.name}",
+                unit,
+                "derivative",
+                index=place,
+                state=state.reference,
+            )
+        )
     for i, record in enumerate(o for o in model.outputs if o.boolean):
-        table.append(Variable(len(table), f"{record.name}.margin", f"positive while {record.name} is false", record.margin,
-                              "indicator", index=i, nominal=10.0))  # fmt: skip
+        table.append(
+            Variable(
+                len(table),
+                f"{record.name}.margin",
+                f"positive while {record.name} is false",
+                record.margin,
+                "indicator",
+                index=i,
+                nominal=10.0,
+            )
+        )
     return Interface(variant, models, tuple(table))
 
 
@@ -197,8 +231,22 @@ def parameter_variable(reference: int, index: int, p: Parameter, start: float, f
     kind = "Enumeration" if p.choices else "Real"
     lower, upper = (1, len(p.choices)) if p.choices else (p.lower, p.upper)
     assert p.nominal is not None
-    return Variable(reference, p.name, p.meaning, p.unit, "parameter", kind, index, start, lower, upper, p.nominal,
-                    fixed, p.choices, p.source)  # fmt: skip
+    return Variable(
+        reference,
+        p.name,
+        p.meaning,
+        p.unit,
+        "parameter",
+        kind,
+        index,
+        start,
+        lower,
+        upper,
+        p.nominal,
+        fixed,
+        p.choices,
+        p.source,
+    )
 
 
 def input_variable(reference: int, index: int, w: Input) -> Variable:

@@ -67,8 +67,10 @@ def linearize(state: SteadyState, *, free_speed: bool = False) -> Linear:
     _, _, mass, f_x, f_w, _, y_x, y_w, *_ = state.derivatives if free_speed else state.derivatives_held
     moving = [i for i in range(U if free_speed else MOTION, len(names)) if mass[i, 0] != 0]
     algebraic = [i for i in range(MOTION, len(names)) if mass[i, 0] == 0]
-    follow_z, follow_w = (-np.linalg.solve(f_x[np.ix_(algebraic, algebraic)], by[algebraic][:, columns])
-                          for by, columns in ((f_x, moving), (f_w, slice(None))))  # fmt: skip
+    follow_z, follow_w = (
+        -np.linalg.solve(f_x[np.ix_(algebraic, algebraic)], by[algebraic][:, columns])
+        for by, columns in ((f_x, moving), (f_w, slice(None)))
+    )
     shown = _shown(state)
 
     def eliminated(by_x: np.ndarray, by_w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -99,8 +101,11 @@ def radius_slopes(state: SteadyState) -> dict[str, float]:
     radius = state.v * slopes[0] / path_squared - slopes[1] / state.psi_dot  # (23)
     radius[speed] += state.speed / path_squared
     level = ~state.derivatives[9].any(axis=0)
-    real = {p.name for p, stays in zip(chair.model.parameters, level, strict=True)
-            if stays and not p.choices and not p.name.startswith("start.")}  # fmt: skip
+    real = {
+        p.name
+        for p, stays in zip(chair.model.parameters, level, strict=True)
+        if stays and not p.choices and not p.name.startswith("start.")
+    }
     return {n: float(s) for n, s in zip(chair.parameters, radius, strict=True) if n in real}
 
 

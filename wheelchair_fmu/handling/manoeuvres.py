@@ -60,8 +60,9 @@ def slalom(speed: float = 1.0, delta_force: float = 10.0, period: float = 4.0, t
     _positive("--speed", speed, "m/s", TOP_SPEED)
     _positive("--period", period, "s")
     if period < 10 * INTERVAL:
-        raise UsageError(f"--period {period:g} s is shorter than ten samples of {INTERVAL:g} s; give at least "
-                         f"{10 * INTERVAL:g} s")  # fmt: skip
+        raise UsageError(
+            f"--period {period:g} s is shorter than ten samples of {INTERVAL:g} s; give at least {10 * INTERVAL:g} s"
+        )
     t = _samples(time)
     title = f"slalom at {speed:g} m/s, ΔF = {delta_force:g} N, T = {period:g} s"
     wave = delta_force * np.cos(2 * np.pi * t / period)
@@ -71,8 +72,9 @@ def slalom(speed: float = 1.0, delta_force: float = 10.0, period: float = 4.0, t
 def coast_down(speed: float = 1.0, time: float = 10.0) -> Manoeuvre:
     """Hands off from `speed` [m/s], forward or backward: rolling resistance brings the chair to rest."""
     if not isfinite(speed) or not 0 < abs(speed) <= TOP_SPEED:
-        raise UsageError(f"--speed {speed:g} m/s: a coast-down starts in motion; give a speed of at most {TOP_SPEED:g} "
-                         "m/s, not zero")  # fmt: skip
+        raise UsageError(
+            f"--speed {speed:g} m/s: a coast-down starts in motion; give a speed of at most {TOP_SPEED:g} m/s, not zero"
+        )
     t = _samples(time)
     return Manoeuvre("coast-down", f"coast-down from {speed:g} m/s", _free(speed), t, _pair(0 * t), "chair.u")
 
@@ -96,13 +98,18 @@ def spin(delta_force: float = 12.0, time: float = 10.0) -> Manoeuvre:
     """
     t = _samples(time)
     turns = np.interp(t, (0.0, 0.2, 2.8, 3.2, 7.8, 8.2), (0.0, 1.0, 1.0, -1.0, -1.0, 0.0))
-    return Manoeuvre("spin", f"spin on the spot, ΔF = {delta_force:g} N", _free(0.0), t, _pair(delta_force * turns),
-                     "chair.psi_dot")  # fmt: skip
+    return Manoeuvre(
+        "spin", f"spin on the spot, ΔF = {delta_force:g} N", _free(0.0), t, _pair(delta_force * turns), "chair.psi_dot"
+    )
 
 
 MANOEUVRES: dict[str, Callable[..., Manoeuvre]] = {
-    "steady-turn": steady_turn, "slalom": slalom, "coast-down": coast_down, "start-stop": start_stop, "spin": spin,
-}  # fmt: skip
+    "steady-turn": steady_turn,
+    "slalom": slalom,
+    "coast-down": coast_down,
+    "start-stop": start_stop,
+    "spin": spin,
+}
 
 
 def manoeuvre(name: str, **options: float | None) -> Manoeuvre:

@@ -103,8 +103,10 @@ def limits(chair: Chair, slip: float) -> tuple[Limit, ...]:
     def lifting(state: SteadyState) -> float:
         return -min(state.results[f"load.{wheel}"] for wheel in ("rl", "rr", "fl", "fr"))
 
-    found = (Limit("slip", f"a rear tyre slips by {np.degrees(slip):g}°", slipping),
-             Limit("friction", f"a rear tyre's lateral force is μ N, μ = {mu:g}", sliding))  # fmt: skip
+    found = (
+        Limit("slip", f"a rear tyre slips by {np.degrees(slip):g}°", slipping),
+        Limit("friction", f"a rear tyre's lateral force is μ N, μ = {mu:g}", sliding),
+    )
     return (*found, Limit("lift", "a wheel lifts", lifting)) if shifts else found
 
 

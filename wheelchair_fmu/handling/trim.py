@@ -143,11 +143,7 @@ class SteadyState:
 
 
 def trim(
-    chair: Chair,
-    speed: float,
-    delta_force: float | None = None,
-    radius: float | None = None,
-    near: SteadyState | None = None,
+    chair: Chair, speed: float, delta_force: float | None = None, radius: float | None = None, near: SteadyState | None = None
 ) -> SteadyState:
     """The steady state at `speed` [m/s] under `delta_force` [N], or on a circle of `radius` [m]: > 0 right, inf straight.
 
@@ -173,8 +169,9 @@ def branch(chair: Chair, speed: float, right: bool = True) -> Iterator[SteadySta
     try:
         start = _solved(chair, speed, chair.at_rest(speed), _pushed(0.0))
     except NoSolutionError:
-        raise Failure(f"no steady state at {speed:g} m/s, not even without a difference of pushes; try another speed or "
-                      "smaller effects") from None  # fmt: skip
+        raise Failure(
+            f"no steady state at {speed:g} m/s, not even without a difference of pushes; try another speed or smaller effects"
+        ) from None
     towards = np.zeros(len(start.z))
     towards[-1] = 1.0 if right else -1.0
     points = follow(chair.equations(speed), start.z, chair.scale, towards)
@@ -224,8 +221,10 @@ def _reached(chair: Chair, speed: float, goal: Goal, asked: str) -> SteadyState:
         before = after
     if nearest is not before:
         why = "what resists the turn gives no more than that, and the chair would turn ever faster"
-    raise Failure(f"no steady turn at {speed:g} m/s with {asked}: {why}; the nearest has "
-                  f"ΔF = {_towards_zero(nearest.delta_force):g} N and a radius of {nearest.radius:.4g} m")  # fmt: skip
+    raise Failure(
+        f"no steady turn at {speed:g} m/s with {asked}: {why}; the nearest has "
+        f"ΔF = {_towards_zero(nearest.delta_force):g} N and a radius of {nearest.radius:.4g} m"
+    )
 
 
 def _towards_zero(value: float) -> float:
@@ -246,8 +245,9 @@ def _refuse(chair: Chair, speed: float, delta_force: float | None, radius: float
     if radius is not None and (isnan(radius) or radius == 0):
         raise UsageError(f"--radius {radius:g} m is no turn; give a number, > 0 to the right, or inf for straight on")
     if chair.variant.choice.equations == "paper" and speed <= 0:
-        raise UsageError(f"--speed {speed:g} m/s: the paper divides by the forward speed; give one above 0, or "
-                         "--equations extended")  # fmt: skip
+        raise UsageError(
+            f"--speed {speed:g} m/s: the paper divides by the forward speed; give one above 0, or --equations extended"
+        )
     if radius is not None and speed == 0:
         raise UsageError("--speed 0 with --radius: a spin on the spot has no radius to choose; give --delta-force")
 
@@ -256,8 +256,10 @@ def _level(state: SteadyState) -> SteadyState:
     """The state, where it stays steady as the heading changes."""
     by_heading = np.abs(state.derivatives[3][U:, PSI]).max()
     if by_heading > LEVEL and not state.straight:
-        raise Failure("no steady turn on a floor that slopes: gravity pulls from another side at every heading; the nearest "
-                      "steady motion is straight on, --radius inf, or set the slope to 0")  # fmt: skip
+        raise Failure(
+            "no steady turn on a floor that slopes: gravity pulls from another side at every heading; the nearest "
+            "steady motion is straight on, --radius inf, or set the slope to 0"
+        )
     return state
 
 

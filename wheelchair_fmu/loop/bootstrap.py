@@ -39,8 +39,10 @@ class Bootstrap:
     estimates: Mapping[str, tuple[float, float, float]]
 
     def as_json(self) -> dict[str, object]:
-        rounds = [{"effect": s.effect, "first": dict(s.first), "tied": dict(s.tied), "heldout_gain_positive": s.predicts}
-                  for s in self.rounds]  # fmt: skip
+        rounds = [
+            {"effect": s.effect, "first": dict(s.first), "tied": dict(s.tied), "heldout_gain_positive": s.predicts}
+            for s in self.rounds
+        ]
         estimates = {n: {"se": se, "low": low, "high": high} for n, (se, low, high) in self.estimates.items()}
         return {"resamples": self.resamples, "rounds": rounds, "estimates": estimates}
 
@@ -96,8 +98,10 @@ def _estimates(found: Fit, rng: np.random.Generator, resamples: int) -> dict[str
     surplus += rng.standard_normal(surplus.shape) @ found.prior_slopes
     steps = np.linalg.solve(A, surplus[:, :, None])[:, :, 0]
     low, high = np.quantile(steps, INTERVAL, axis=0)
-    return {n: (float(se), found.values[n] + float(a), found.values[n] + float(b))
-            for n, se, a, b in zip(found.names, steps.std(axis=0), low, high, strict=True)}  # fmt: skip
+    return {
+        n: (float(se), found.values[n] + float(a), found.values[n] + float(b))
+        for n, se, a, b in zip(found.names, steps.std(axis=0), low, high, strict=True)
+    }
 
 
 def _normal_equations(evidence: Evidence) -> tuple[np.ndarray, np.ndarray]:

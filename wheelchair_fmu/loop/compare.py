@@ -54,16 +54,19 @@ class Comparison:
             return []
         place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
         total = float(excess.sum())
-        return [(float(a), float(b), float(excess[place == i].sum()) / total if total else 0.0)
-                for i, (a, b) in enumerate(pairwise(edges))]  # fmt: skip
+        return [
+            (float(a), float(b), float(excess[place == i].sum()) / total if total else 0.0)
+            for i, (a, b) in enumerate(pairwise(edges))
+        ]
 
     def worst(self) -> tuple[str, str, float]:
         """(run, channel, whitened RMS) where the error is largest."""
         return max(((r.name, c, v) for r in self.runs for c, v in r.rms.items()), key=lambda row: row[2])
 
 
-def errors_of(evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str],
-              results: Sequence[str]) -> RunErrors:  # fmt: skip
+def errors_of(
+    evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str], results: Sequence[str]
+) -> RunErrors:
     """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
     there = evidence.predicted if predicted is None else evidence.on_rows(predicted)
     where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
@@ -83,5 +86,6 @@ def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
         return np.concatenate([array.astype(np.float32) for array in arrays])
 
     regime = {name: joined(piece.regime[name] for piece in pieces) for name in pieces[0].regime}
-    return replace(pieces[0], name=name, e=joined(p.e for p in pieces), predicted=joined(p.predicted for p in pieces),
-                   regime=regime)  # fmt: skip
+    return replace(
+        pieces[0], name=name, e=joined(p.e for p in pieces), predicted=joined(p.predicted for p in pieces), regime=regime
+    )

@@ -14,8 +14,9 @@ Thing = TypeVar("Thing")
 Result = TypeVar("Result")
 
 
-def each(do: Callable[[Thing], Result], things: Iterable[Thing],
-         size: Callable[[Thing], float] = lambda thing: 0.0) -> list[Result]:  # fmt: skip
+def each(
+    do: Callable[[Thing], Result], things: Iterable[Thing], size: Callable[[Thing], float] = lambda thing: 0.0
+) -> list[Result]:
     """`do` of each thing, on all cores, the largest first, so that no core waits long for the last. In what is done so
     already, one after the other; and one alone may use all cores."""
     things = list(things)

@@ -122,9 +122,17 @@ class Round:
 class Search(Screen):
     """The search for what is missing: a round of it screens, refits what is promising, and judges."""
 
-    def candidate(self, base: Fit, base_held: Evidence | None, effects: tuple[str, ...], s: Screened,
-                  tests: int, rival: float = math.inf, least: float = -math.inf,
-                  visible: float = 0.0) -> Candidate | None:  # fmt: skip
+    def candidate(
+        self,
+        base: Fit,
+        base_held: Evidence | None,
+        effects: tuple[str, ...],
+        s: Screened,
+        tests: int,
+        rival: float = math.inf,
+        least: float = -math.inf,
+        visible: float = 0.0,
+    ) -> Candidate | None:
         """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
         `least`, and some channel's RMS in some run by `visible`; `rival` is the best misfit yet."""
         w, effect = self.workshop, s.score.effect
@@ -155,8 +163,9 @@ class Search(Screen):
         held = bench.restarted(bench.evidence(w.campaign.holdout, found.values), found.values) if w.campaign.holdout else None
         return self.judge(base, base_held, found, held, effect, own, tests)
 
-    def _starts(self, bench: Bench, base: Fit, s: Screened, least: float,
-                visible: float) -> list[tuple[dict[str, float], Evidence | None]]:  # fmt: skip
+    def _starts(
+        self, bench: Bench, base: Fit, s: Screened, least: float, visible: float
+    ) -> list[tuple[dict[str, float], Evidence | None]]:
         """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
         in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
         change, both signs of δ, and larger ones."""
@@ -176,8 +185,16 @@ class Search(Screen):
         thetas = self._sizes(bench, base, names, calibrations, s, least, visible)
         return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
 
-    def _sizes(self, bench: Bench, base: Fit, names: Sequence[str], calibrations: Sequence[Sequence[float]], s: Screened,
-               least: float, visible: float) -> list[tuple[float, ...]]:  # fmt: skip
+    def _sizes(
+        self,
+        bench: Bench,
+        base: Fit,
+        names: Sequence[str],
+        calibrations: Sequence[Sequence[float]],
+        s: Screened,
+        least: float,
+        visible: float,
+    ) -> list[tuple[float, ...]]:
         """The most promising calibrations and sizes of an effect together, by `names`."""
         records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
         record, known, calibrated = self.workshop.catalogue[s.score.effect], s.evidence.only(base.names), len(base.names)
@@ -207,8 +224,9 @@ class Search(Screen):
         """Does an effect lower some channel's RMS in some run by about so much, by a step that was simulated?"""
         return s.anyway(visible) or visible_fall(bench, known, names, to) > NEARLY_ENOUGH * visible
 
-    def judge(self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str,
-              names: Sequence[str], tests: int) -> Candidate:  # fmt: skip
+    def judge(
+        self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str, names: Sequence[str], tests: int
+    ) -> Candidate:
         """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         one_sided = np.array([self.records[n].lower == 0 for n in names])
@@ -217,8 +235,10 @@ class Search(Screen):
         small = _small(along, spread)
         dispersion = float(np.mean(found.evidence.r**2))
         drop = (base.misfit - found.misfit) / dispersion
-        p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
-                chance_beyond(drop / correlation_time(found.evidence), len(spread)))  # fmt: skip
+        p = max(
+            chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
+            chance_beyond(drop / correlation_time(found.evidence), len(spread)),
+        )
         if len(names) == 1 and one_sided[0]:
             p /= 2
         return Candidate(
@@ -243,9 +263,18 @@ class Search(Screen):
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         return _small(*seen_directions(estimate / delta, covariance / np.outer(delta, delta)))
 
-    def round(self, effects: tuple[str, ...], base: Fit, base_held: Evidence, among: Iterable[str] | None = None,
-              most: int = SHORTLIST, visible: float = 0.0, twin: float = ALIKE, rival: float = math.inf,
-              least: float = PROMISING) -> Round:  # fmt: skip
+    def round(
+        self,
+        effects: tuple[str, ...],
+        base: Fit,
+        base_held: Evidence,
+        among: Iterable[str] | None = None,
+        most: int = SHORTLIST,
+        visible: float = 0.0,
+        twin: float = ALIKE,
+        rival: float = math.inf,
+        least: float = PROMISING,
+    ) -> Round:
         """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, or −2 log likelihood by
         `least`, as far as slopes tell, is not refitted; what looks like the leader, by a cosine above `twin`, is, however many
         there are. `rival` is the misfit of another model to be compared with."""

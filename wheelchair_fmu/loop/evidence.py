@@ -208,8 +208,14 @@ class Bench:
     derive is compiled without, and only runs evidence `again`.
     """
 
-    def __init__(self, campaign: Campaign, variant: Variant, colour: Colour | None = None,
-                 columns: Sequence[str] | None = None, derives: bool = True):  # fmt: skip
+    def __init__(
+        self,
+        campaign: Campaign,
+        variant: Variant,
+        colour: Colour | None = None,
+        columns: Sequence[str] | None = None,
+        derives: bool = True,
+    ):
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
         wanted = None if columns is None else (*columns, *START)
         self.sensitivities = Sensitivities(self.variant, wanted if derives else ())
@@ -226,8 +232,9 @@ class Bench:
         """What the campaign file says of this run's chair."""
         return {**self.campaign.known, **run.set}
 
-    def evidence(self, runs: Iterable[Run], values: Mapping[str, float], by: Sequence[str] = (), *,
-                 tune_start: int = 0) -> Evidence:  # fmt: skip
+    def evidence(
+        self, runs: Iterable[Run], values: Mapping[str, float], by: Sequence[str] = (), *, tune_start: int = 0
+    ) -> Evidence:
         """Evidence of these runs at parameter `values` (SI), with sensitivities `by` some of them.
 
         `tune_start`: how often at most to move the simulated start to where the readings want it.
@@ -267,8 +274,9 @@ class Bench:
 
         return Evidence(tuple(each(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
-    def readings(self, run: Run, values: Mapping[str, float],
-                 start: Mapping[str, float]) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:  # fmt: skip
+    def readings(
+        self, run: Run, values: Mapping[str, float], start: Mapping[str, float]
+    ) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
         """The channels of a run, what was measured (n, nz), less the sensors' offsets, and what is simulated (n, nz)."""
         return self._channels(run), self._measured(run, values), self._simulated(run, values, start)[1]
 
@@ -319,12 +327,14 @@ class Bench:
         for j, column in enumerate(by_constant):
             signals[:, :, 1 + k + m + j] = column
         whitener = Marginal(filter_, signals[:, :, 1 + k + m :] * [c.sd for c in constants])
-        offset = np.concatenate((to_state @ [prior[n] - start[n] for n in START],
-                                 [-start.get(c.name, 0.0) / c.sd for c in constants]))  # fmt: skip
+        offset = np.concatenate(
+            (to_state @ [prior[n] - start[n] for n in START], [-start.get(c.name, 0.0) / c.sd for c in constants])
+        )
         white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
-        return RunEvidence(run, channels, r[:, :, 0], S, start_S, start,
-                           simulated.results, predicted, measured, whitener, offset)  # fmt: skip
+        return RunEvidence(
+            run, channels, r[:, :, 0], S, start_S, start, simulated.results, predicted, measured, whitener, offset
+        )
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
         """What was measured (n, nz), less the sensors' offsets."""
@@ -358,8 +368,17 @@ class Bench:
             w[:, names.index(name)] = values
         return w
 
-    def _fill_columns(self, out: np.ndarray, run: Run, simulated: Linearised, pushed: np.ndarray, by: Sequence[str],
-                      columns: Sequence[str], which: Sequence[int], whitener: Whitener) -> None:  # fmt: skip
+    def _fill_columns(
+        self,
+        out: np.ndarray,
+        run: Run,
+        simulated: Linearised,
+        pushed: np.ndarray,
+        by: Sequence[str],
+        columns: Sequence[str],
+        which: Sequence[int],
+        whitener: Whitener,
+    ) -> None:
         """Unwhitened sensitivities into zeros (n, nz, len(by) + 6). `pushed` (n, nq) are the recorded pushes."""
         names = (*by, *START)
         free = [j for j, name in enumerate(names) if name not in run.set]

@@ -60,9 +60,12 @@ def separate(
     repeats = int(np.ceil(needed / max(gain, 1e-9)))
     if repeats > MOST_REPEATS:
         return None
-    return {"manoeuvre": best.words, "separates": list(effects), "repeats": repeats,
-            "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; "
-                   f"{needed:.0f} decide"}  # fmt: skip
+    return {
+        "manoeuvre": best.words,
+        "separates": list(effects),
+        "repeats": repeats,
+        "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; {needed:.0f} decide",
+    }
 
 
 def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
@@ -83,12 +86,17 @@ def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Exp
     if best is None:
         return None
     repeats = int(np.ceil(TIED / best[3]))
-    return {"manoeuvre": best[1].words, "separates": best[2], "repeats": max(1, min(repeats, MOST_REPEATS)),
-            "why": f"it would show {best[0]} effects of interesting size that these runs could not"}  # fmt: skip
+    return {
+        "manoeuvre": best[1].words,
+        "separates": best[2],
+        "repeats": max(1, min(repeats, MOST_REPEATS)),
+        "why": f"it would show {best[0]} effects of interesting size that these runs could not",
+    }
 
 
-def _shown(search: Search, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str],
-           names: Sequence[str]) -> tuple[list[str], float]:  # fmt: skip
+def _shown(
+    search: Search, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str], names: Sequence[str]
+) -> tuple[list[str], float]:
     """Effects that one run would show at δ, and the information of the weakest of them."""
     k = len(base.names)
     Z, known = S[:, :k], np.linalg.pinv(base.covariance, hermitian=True) + prior**2
@@ -110,10 +118,25 @@ def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
     known = {**bench.variant.values, **bench.campaign.known}
     given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
     measured = {c for r in bench.campaign.runs for c in r.channels} | set(experiment.sensors)
-    blank = Run(experiment.words, Path(experiment.words), experiment.words, "fit", experiment.speed, given,
-                experiment.time, dict(experiment.inputs), {})  # fmt: skip
-    bench.starts[blank.name] = {"start.x": 0.0, "start.y": 0.0, "start.psi": experiment.heading,
-                                "start.u": experiment.speed, "start.v": 0.0, "start.psi_dot": 0.0}  # fmt: skip
+    blank = Run(
+        experiment.words,
+        Path(experiment.words),
+        experiment.words,
+        "fit",
+        experiment.speed,
+        given,
+        experiment.time,
+        dict(experiment.inputs),
+        {},
+    )
+    bench.starts[blank.name] = {
+        "start.x": 0.0,
+        "start.y": 0.0,
+        "start.psi": experiment.heading,
+        "start.u": experiment.speed,
+        "start.v": 0.0,
+        "start.psi_dot": 0.0,
+    }
     w = bench.inputs(blank)
     p = bench.variant.vector({**known, **model.values, **given, **bench.starts[blank.name]})
     simulated = bench.sensitivities.run(experiment.time, w, p)

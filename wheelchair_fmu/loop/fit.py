@@ -154,14 +154,28 @@ class Problem:
             along = Q.T @ r
             return np.append(along, np.sqrt(max(0.0, float(r @ r - along @ along))))
 
-        found = least_squares(residuals, inside, jac=lambda q: np.vstack([R, np.zeros(len(q))]),
-                              bounds=(self.lower, self.upper), x_scale=self.scale, ftol=1e-7, xtol=1e-6, gtol=1e-10,
-                              max_nfev=10)  # fmt: skip
+        found = least_squares(
+            residuals,
+            inside,
+            jac=lambda q: np.vstack([R, np.zeros(len(q))]),
+            bounds=(self.lower, self.upper),
+            x_scale=self.scale,
+            ftol=1e-7,
+            xtol=1e-6,
+            gtol=1e-10,
+            max_nfev=10,
+        )
         return found.x, latest[found.x.tobytes()]
 
 
-def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Evidence | None = None,
-        rival: float = math.inf, most: int = MOST) -> Fit:  # fmt: skip
+def fit(
+    bench: Bench,
+    names: Sequence[str],
+    start: Mapping[str, float],
+    here: Evidence | None = None,
+    rival: float = math.inf,
+    most: int = MOST,
+) -> Fit:
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
     `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
@@ -190,8 +204,9 @@ def fit(bench: Bench, names: Sequence[str], start: Mapping[str, float], here: Ev
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 
-def _taken(problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray,
-           shrinks: Sequence[float] = (1.0, 0.5, 0.25)) -> tuple[np.ndarray, Evidence] | None:  # fmt: skip
+def _taken(
+    problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray, shrinks: Sequence[float] = (1.0, 0.5, 0.25)
+) -> tuple[np.ndarray, Evidence] | None:
     """The step from `theta`, or as much of it, the first of `shrinks`, that is more likely once all is linearised anew.
 
     A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.

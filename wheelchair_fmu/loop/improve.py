@@ -30,8 +30,9 @@ class Improved:
     notes: tuple[str, ...]
 
 
-def add(campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (),
-        say: Callable[[str], None] = lambda words: None) -> Improved:  # fmt: skip
+def add(
+    campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = lambda words: None
+) -> Improved:
     """Refit the chair with one more effect; its own effects are estimated anew.
 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
@@ -77,6 +78,7 @@ def with_proposal(d: Diagnosis, chair: Variant, campaign: Campaign, effect: str)
     assert d.proposal is not None
     old, new = f"effect.{d.proposal.effect}.", f"effect.{effect}."
     fit = d.proposal.fit
-    renamed = replace(fit, names=tuple(n.replace(old, new) for n in fit.names),
-                      values={n.replace(old, new): v for n, v in fit.values.items()})  # fmt: skip
+    renamed = replace(
+        fit, names=tuple(n.replace(old, new) for n in fit.names), values={n.replace(old, new): v for n, v in fit.values.items()}
+    )
     return improved(chair, (*d.included, effect), renamed, campaign)

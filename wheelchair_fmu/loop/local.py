@@ -109,8 +109,9 @@ def rate_of(time: np.ndarray, pushed: np.ndarray) -> np.ndarray:
     return (ahead - behind) / (2 * STROKE)
 
 
-def slope(local: Local, run: Run, channels: Sequence[str], predicted: np.ndarray,
-          pushes: Sequence[str], whitener: Whitener) -> np.ndarray:  # fmt: skip
+def slope(
+    local: Local, run: Run, channels: Sequence[str], predicted: np.ndarray, pushes: Sequence[str], whitener: Whitener
+) -> np.ndarray:
     """What one unit of a constant would add to the readings (n, nz), to first order."""
     little = 1e-3 * local.sd
     after, before = (local.read(run.time, channels, predicted, side * little) for side in (1, -1))

@@ -23,8 +23,7 @@ EVEN = 0.25  # share of the usual time over so many readings by which one may di
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 
 
-def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
-              lowest: float = 0.0) -> tuple[Colour, list[str]]:  # fmt: skip
+def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour, lowest: float = 0.0) -> tuple[Colour, list[str]]:
     """Noise by channel, and a sentence for each channel where the data contradict the campaign file.
 
     The innovations of `evidence` are by the noise `taken` so far; where they change as white noise does, and errors
@@ -44,8 +43,9 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour,
             ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
         if not trusted:
             sd[channel] = sigma
-            notes.append(f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; "
-                         "the data's own is used")  # fmt: skip
+            notes.append(
+                f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; the data's own is used"
+            )
     pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in FORCES}
     return Colour(sd, ar | {side: phi for side, phi in pushes.items() if phi > STEADY}), notes
 
@@ -104,6 +104,11 @@ def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
         model = 2 * np.exp(q[0]) * (1 - q[1] ** k) + np.exp(q[2]) * k**2
         return np.log(model * scale / np.maximum(D, 1e-300))
 
-    best = min((least_squares(off, (np.log(0.5 / (1 - phi ** k[0])), phi, -8.0), bounds=([-20, 0, -30], [20, 0.995, 5]))
-                for phi in (0.05, 0.5, 0.9)), key=lambda s: s.cost)  # fmt: skip
+    best = min(
+        (
+            least_squares(off, (np.log(0.5 / (1 - phi ** k[0])), phi, -8.0), bounds=([-20, 0, -30], [20, 0.995, 5]))
+            for phi in (0.05, 0.5, 0.9)
+        ),
+        key=lambda s: s.cost,
+    )
     return float(np.sqrt(np.exp(best.x[0]) * scale)), float(best.x[1])

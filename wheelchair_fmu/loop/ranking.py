@@ -27,10 +27,13 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
-        "sync": {run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
-                 for run, of in d.search.clocks.items()},
-        "baseline": {run: {push: dict(found) for push, found in of.items()}
-                     for run, of in d.search.workshop.campaign.rims.items()},
+        "sync": {
+            run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
+            for run, of in d.search.clocks.items()
+        },
+        "baseline": {
+            run: {push: dict(found) for push, found in of.items()} for run, of in d.search.workshop.campaign.rims.items()
+        },
         "notes": list(d.notes),
         "seconds": d.seconds,
     }
@@ -45,8 +48,14 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
         for c in r.candidates:
             if c.effect not in candidates or c.effect in d.included:
                 candidates[c.effect] = (c, r)
-    order = sorted(scores, key=lambda e: (e not in d.effects, e not in candidates, -(candidates[e][0].drop if e in candidates
-                                          else scores[e].drop)))  # fmt: skip
+    order = sorted(
+        scores,
+        key=lambda e: (
+            e not in d.effects,
+            e not in candidates,
+            -(candidates[e][0].drop if e in candidates else scores[e].drop),
+        ),
+    )
     rivals = _rivals(first.scores)
     return [_row(d, scores[e], *candidates.get(e, (None, first)), rivals.get(e, [])) for e in order]
 
@@ -55,11 +64,15 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
     records = d.search.records
     estimate, se = _estimate(d, s, c)
     parameters = {
-        name.rpartition(".")[2]: {"estimate": float(v), "se": finite(e), "unit": records[name].unit.name,
-                                  "smallest_interesting": records[name].smallest_interesting,
-                                  **({"interval": list(d.intervals[name])} if name in d.intervals else {})}
+        name.rpartition(".")[2]: {
+            "estimate": float(v),
+            "se": finite(e),
+            "unit": records[name].unit.name,
+            "smallest_interesting": records[name].smallest_interesting,
+            **({"interval": list(d.intervals[name])} if name in d.intervals else {}),
+        }
         for name, v, e in zip(s.names, estimate, se, strict=True)
-    }  # fmt: skip
+    }
     before = r.heldout.rms if r.heldout.runs else float("nan")
     return {
         "effect": s.effect,

@@ -62,8 +62,9 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
     return moving.T @ moving / width
 
 
-def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray,
-          one_sided: np.ndarray) -> Score:  # fmt: skip
+def score(
+    evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray, one_sided: np.ndarray
+) -> Score:
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
     r, scaled = evidence.r, S * delta
     s = off(scaled)
@@ -95,5 +96,15 @@ def score(evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndar
     direction = s_V @ change
     length = np.linalg.norm(direction)
     visible = float((evidence.own_cell_rms - evidence.cell_rms(r - direction)).max(initial=0))
-    return Score(effect, tuple(names), estimate, se, p, drop, seen_at_delta, visible, hidden,
-                 direction / length if length > 0 else direction)  # fmt: skip
+    return Score(
+        effect,
+        tuple(names),
+        estimate,
+        se,
+        p,
+        drop,
+        seen_at_delta,
+        visible,
+        hidden,
+        direction / length if length > 0 else direction,
+    )

@@ -42,9 +42,15 @@ def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable
     return Outlook(float(r @ r + rows @ rows - g @ step), at, (*(np.array(at[:k]) + step), *at[k:]))
 
 
-def most_promising(bench: Bench, known: Evidence, names: Sequence[str], tries: Iterable[Sequence[float]], wanted: int,
-                   weight: np.ndarray,
-                   kind: Callable[[tuple[float, ...]], object] | None = None) -> list[Outlook]:  # fmt: skip
+def most_promising(
+    bench: Bench,
+    known: Evidence,
+    names: Sequence[str],
+    tries: Iterable[Sequence[float]],
+    wanted: int,
+    weight: np.ndarray,
+    kind: Callable[[tuple[float, ...]], object] | None = None,
+) -> list[Outlook]:
     """The best of `tries`, best first; with a `kind`, or of where a step from them leads, but no two that have values of one
     kind beyond those that slopes are known by. Where there are many, all are tried on the few runs only in which `weight`
     (N,), which says where to look, has most of its length."""

@@ -38,8 +38,9 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     return tuple(group)
 
 
-def beside(search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence,
-           before: Round | None) -> Round | None:  # fmt: skip
+def beside(
+    search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence, before: Round | None
+) -> Round | None:
     """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it,
     if that knew the same noise. None where it stands without that, or where the model cannot run without it."""
     w, others = search.workshop, tuple(e for e in effects if e != effect)

@@ -69,8 +69,11 @@ class Diagnosis:
     @property
     def included(self) -> tuple[str, ...]:
         """The effects that `final`, or the proposal's fit, has in it."""
-        return tuple(step.name[1:] for step in self.ladder if step.name.startswith("+")
-                     and not (self.proposal and step.name[1:] == self.proposal.effect))  # fmt: skip
+        return tuple(
+            step.name[1:]
+            for step in self.ladder
+            if step.name.startswith("+") and not (self.proposal and step.name[1:] == self.proposal.effect)
+        )
 
 
 @threadpool_limits.wrap(limits=1)  # runs are what is shared among the cores; BLAS threads would only wait for one another
@@ -118,9 +121,24 @@ def diagnose(
     thinned = (campaign.thinned,) if campaign.thinned else ()
     beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
     notes = (*thinned, *search.notes, *search.noise_notes, *beyond_limits)
-    return Diagnosis(campaign.name, verdict, tuple(named), climb.already, ties, tuple(ladder), tuple(rounds),
-                     tuple(beside.values()), leftover, proposal, base, intervals, search, notes, following,
-                     time.monotonic() - began)  # fmt: skip
+    return Diagnosis(
+        campaign.name,
+        verdict,
+        tuple(named),
+        climb.already,
+        ties,
+        tuple(ladder),
+        tuple(rounds),
+        tuple(beside.values()),
+        leftover,
+        proposal,
+        base,
+        intervals,
+        search,
+        notes,
+        following,
+        time.monotonic() - began,
+    )
 
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
@@ -129,8 +147,13 @@ def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], 
     return {n: profile_interval(bench, found, n) for n in names if n in found.names}
 
 
-def _next(search: Search, verdict: str, ties: Sequence[tuple[Sequence[str], Round]], rounds: Sequence[Round],
-          experiments: Sequence[Experiment]) -> dict[str, Any] | None:  # fmt: skip
+def _next(
+    search: Search,
+    verdict: str,
+    ties: Sequence[tuple[Sequence[str], Round]],
+    rounds: Sequence[Round],
+    experiments: Sequence[Experiment],
+) -> dict[str, Any] | None:
     """What to measure next: to break the first tie, each with the round that tied it, or to see what could not be seen."""
     if not experiments:
         return None
@@ -160,8 +183,17 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
     asked = len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR)
     if asked and plainly < _room(base.evidence):  # does one term do alone what these were to do, and plainly more?
         promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
-        alone = generic_search.round(first.effects, first.fit, first.heldout, list(generic), most=TERMS, twin=1.0,
-                                     visible=PLAINLY_VISIBLE, rival=base.misfit, least=HOPELESS * promised)  # fmt: skip
+        alone = generic_search.round(
+            first.effects,
+            first.fit,
+            first.heldout,
+            list(generic),
+            most=TERMS,
+            twin=1.0,
+            visible=PLAINLY_VISIBLE,
+            rival=base.misfit,
+            least=HOPELESS * promised,
+        )
         lone = next((c for c in alone.candidates if _clear(c)), None)
         if lone is not None and lone.fit.misfit < base.misfit - plainly:
             return alone, lone
@@ -170,8 +202,16 @@ def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None
         return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
     catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
     better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
-    left = generic_search.round(effects, base, held, list(generic), most=TERMS, visible=PLAINLY_VISIBLE, twin=1.0,
-                                least=max(PROMISING, HALFWAY * better))  # fmt: skip
+    left = generic_search.round(
+        effects,
+        base,
+        held,
+        list(generic),
+        most=TERMS,
+        visible=PLAINLY_VISIBLE,
+        twin=1.0,
+        least=max(PROMISING, HALFWAY * better),
+    )
     terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
     return left, next(terms, None)
 
@@ -187,8 +227,9 @@ def _clear(c: Candidate) -> bool:
     return c.proven and c.visible > PLAINLY_VISIBLE
 
 
-def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate,
-            ladder: list[Step]) -> tuple[tuple[str, ...], Candidate, list[Step]]:  # fmt: skip
+def _settle(
+    search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate, ladder: list[Step]
+) -> tuple[tuple[str, ...], Candidate, list[Step]]:
     """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
     wider = Search(search.workshop.widened(generic), search.say)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
@@ -205,8 +246,14 @@ def _settle(search: Search, generic: Mapping[str, Effect], effects: tuple[str, .
     return kept, settled, steps
 
 
-def _verdict(effects: Sequence[str], ties: Sequence[Sequence[str]], rounds: Sequence[Round], proposal: Candidate | None,
-             ladder: Sequence[Step], left: Evidence) -> str:  # fmt: skip
+def _verdict(
+    effects: Sequence[str],
+    ties: Sequence[Sequence[str]],
+    rounds: Sequence[Round],
+    proposal: Candidate | None,
+    ladder: Sequence[Step],
+    left: Evidence,
+) -> str:
     if proposal is not None or ladder[-1].left > UNEXPLAINED:
         return "outside"
     if effects and insufficient(ladder) and correlation_time(left) > LASTING:
@@ -240,5 +287,8 @@ def _small(rounds: Sequence[Round], verdict: str) -> tuple[str, ...]:
     """Effects that are surely there, surely smaller than interesting, and just visible."""
     if verdict != "small":
         return ()
-    return tuple(c.effect for c in rounds[0].candidates if c.small and c.lawful and c.p < 0.05 and c.visible > SMALL_VISIBLE
-                 and (c.gain is None or c.gain[1] > 0))  # fmt: skip
+    return tuple(
+        c.effect
+        for c in rounds[0].candidates
+        if c.small and c.lawful and c.p < 0.05 and c.visible > SMALL_VISIBLE and (c.gain is None or c.gain[1] > 0)
+    )

@@ -49,8 +49,10 @@ def _exchanged_pushes(factors: Mapping[str, float]) -> Wiring | None:
     odd = [k for c, k in factors.items() if c == DIFFERENCE or BY_NAME[c].iso_sign < 0]
     if DIFFERENCE not in factors or len(odd) < 2 or not all(_near(k, -1.0) for k in odd):
         return None
-    note = ("the chair turns the other way than its pushes have it, so no verdict can be trusted; see whether the "
-            "columns of F_rl and F_rr are exchanged")  # fmt: skip
+    note = (
+        "the chair turns the other way than its pushes have it, so no verdict can be trusted; see whether the "
+        "columns of F_rl and F_rr are exchanged"
+    )
     return Wiring((), (note,), False)
 
 
@@ -59,8 +61,9 @@ def _channels(factors: Mapping[str, float]) -> Wiring:
     notes, wrong = [], [c for c, k in factors.items() if c != DIFFERENCE and _near(k, -1.0)]
     odd = {c for c in factors if c != DIFFERENCE and BY_NAME[c].iso_sign < 0}
     if len(odd) > 1 and odd == set(wrong):
-        notes.append(f"{', '.join(wrong)} have the other sign than the model's, and are left out; check `axes` in "
-                     "campaign.toml")  # fmt: skip
+        notes.append(
+            f"{', '.join(wrong)} have the other sign than the model's, and are left out; check `axes` in campaign.toml"
+        )
     else:
         notes += [f"{c} has the other sign than the model's, and is left out; turn its column round" for c in wrong]
     if _near(factors.get(DIFFERENCE, 1.0), -1.0):

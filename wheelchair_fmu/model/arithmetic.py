@@ -28,11 +28,29 @@ MOST_COMPONENTS = 16
 FUNCTIONS: dict[str, tuple[Callable[..., Any], int]] = {
     **{name: (getattr(cs, name), 1) for name in ("sin", "cos", "tan", "atan", "exp", "log", "sqrt", "tanh", "fabs", "sum1")},
     **{name: (getattr(cs, name), 2) for name in ("atan2", "fmin", "fmax")},
-    "vertcat": (cs.vertcat, 0), "magnitude": (magnitude, 2), "direction": (direction, 2), "grip": (grip, 3),
-}  # fmt: skip
+    "vertcat": (cs.vertcat, 0),
+    "magnitude": (magnitude, 2),
+    "direction": (direction, 2),
+    "grip": (grip, 3),
+}
 """Each with how many values it takes; 0 stands for one or more."""
-ALLOWED = (ast.Expression, ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Load, ast.Constant, ast.Subscript, ast.Add,
-           ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd)  # fmt: skip
+ALLOWED = (
+    ast.Expression,
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.Call,
+    ast.Name,
+    ast.Load,
+    ast.Constant,
+    ast.Subscript,
+    ast.Add,
+    ast.Sub,
+    ast.Mult,
+    ast.Div,
+    ast.Pow,
+    ast.USub,
+    ast.UAdd,
+)
 NUMBER = r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.]))"
 TOKEN = re.compile(rf"{NUMBER}|[A-Za-z_]\w*|\*\*|[-+*/(),.\[\]]|[ \t]+", re.ASCII)
 BRACKET = re.compile(r"[ \t]*\[([^\[\]]*)\]")
@@ -133,8 +151,10 @@ def _without_units(text: str) -> tuple[str, Numbers]:
     while at < len(text):
         token = TOKEN.match(text, at)
         if not token:
-            raise UsageError(f"{shown(text)} is no expression: {text[at]!r} at place {at + 1} is not allowed; use numbers, "
-                             f"+ − * / **, quantities and {', '.join(FUNCTIONS)}")  # fmt: skip
+            raise UsageError(
+                f"{shown(text)} is no expression: {text[at]!r} at place {at + 1} is not allowed; use numbers, "
+                f"+ − * / **, quantities and {', '.join(FUNCTIONS)}"
+            )
         end = token.end()
         plain.append(token[0])
         if token["number"] and (bracket := BRACKET.match(text, end)):
@@ -176,8 +196,10 @@ def _too_deep(text: str) -> UsageError:
 
 def _check(node: ast.AST, text: str) -> None:
     if not isinstance(node, ALLOWED):
-        raise UsageError(f"{shown(text)}: {type(node).__name__} is not allowed; use numbers, + − * / **, "
-                         f"quantities and {', '.join(FUNCTIONS)}")  # fmt: skip
+        raise UsageError(
+            f"{shown(text)}: {type(node).__name__} is not allowed; use numbers, + − * / **, "
+            f"quantities and {', '.join(FUNCTIONS)}"
+        )
     match node:
         case ast.Call():
             _check_call(node, text)

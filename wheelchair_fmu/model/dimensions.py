@@ -86,14 +86,23 @@ def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]
     spread = np.array(found)
     whole_numbers = np.round(spread[0])
     if not np.all(abs(spread - whole_numbers) < NEAR):
-        raise UsageError("the units do not fit: unlike quantities are added, or a plain number stands where a quantity "
-                         "with a unit belongs (write its unit behind it, as in 0.1 [m/s])")  # fmt: skip
+        raise UsageError(
+            "the units do not fit: unlike quantities are added, or a plain number stands where a quantity "
+            "with a unit belongs (write its unit behind it, as in 0.1 [m/s])"
+        )
     kg, m, s = (int(e) for e in whole_numbers)
     return kg, m, s
 
 
-def _power(law: Callable[..., Any], place: Mapping[str, np.ndarray], units: Mapping[str, Unit], whole: np.ndarray,
-           kg: float = 1.0, m: float = 1.0, s: float = 1.0) -> float:  # fmt: skip
+def _power(
+    law: Callable[..., Any],
+    place: Mapping[str, np.ndarray],
+    units: Mapping[str, Unit],
+    whole: np.ndarray,
+    kg: float = 1.0,
+    m: float = 1.0,
+    s: float = 1.0,
+) -> float:
     scaled = _value(law, {n: v * units[n].scale(kg, m, s) for n, v in place.items()}, 1.0)
     i = int(np.argmax(abs(whole)))
     ratio = scaled[i] / whole[i] if whole[i] else np.nan

@@ -85,7 +85,7 @@ def _written(expression: str, words: Callable[[arithmetic.Number], str]) -> str:
     return ast.unparse(Worded().visit(tree))
 
 
-FILE = '''{heading!r}
+FILE = """{heading!r}
 
 from wheelchair_fmu.model.expression import law
 from wheelchair_fmu.model.stage import Effect, {kind}
@@ -101,11 +101,22 @@ EFFECT = Effect(
     parameters=(Q,),
     contributions=({kind}({to!r}, law({expression!r})),),
 )
-'''
+"""
 
 
-def effect_file(id: str, title: str, to: str, unit: Unit, expression: str, *, size: float, lower: float, upper: float,
-                source: str = "proposed", factor: bool = False) -> str:  # fmt: skip
+def effect_file(
+    id: str,
+    title: str,
+    to: str,
+    unit: Unit,
+    expression: str,
+    *,
+    size: float,
+    lower: float,
+    upper: float,
+    source: str = "proposed",
+    factor: bool = False,
+) -> str:
     """The text of an effect file that adds `expression`, which has q in it, to the quantity `to` (or scales it).
 
     An effect file is a program, so every word from outside is written as a literal that it cannot leave, and the expression
@@ -115,6 +126,18 @@ def effect_file(id: str, title: str, to: str, unit: Unit, expression: str, *, si
         if not word.isprintable():
             raise UsageError(f"{arithmetic.shown(word)} has characters that cannot be printed; use plain words")
     expression, kind = canonical(expression), "scales" if factor else "adds"
-    return FILE.format(heading=f"{title}:  {to} += {expression}", id=id, title=title, to=to, unit=unit, expression=expression,
-                       size_of=f"size of: {title}", size=float(size), lower=float(lower), upper=float(upper), source=source,
-                       kind=kind, records="DisplayUnit, Parameter, Unit" if unit.display else "Parameter, Unit")  # fmt: skip
+    return FILE.format(
+        heading=f"{title}:  {to} += {expression}",
+        id=id,
+        title=title,
+        to=to,
+        unit=unit,
+        expression=expression,
+        size_of=f"size of: {title}",
+        size=float(size),
+        lower=float(lower),
+        upper=float(upper),
+        source=source,
+        kind=kind,
+        records="DisplayUnit, Parameter, Unit" if unit.display else "Parameter, Unit",
+    )

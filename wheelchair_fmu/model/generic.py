@@ -82,15 +82,32 @@ class Term:
 
     def effect(self) -> Effect:
         lower, upper = self.bounds
-        q = Parameter("q", self.unit, self.words, off=0.0, smallest_interesting=SIZES[self.unit], lower=lower, upper=upper,
-                      source="generic")  # fmt: skip
+        q = Parameter(
+            "q",
+            self.unit,
+            self.words,
+            off=0.0,
+            smallest_interesting=SIZES[self.unit],
+            lower=lower,
+            upper=upper,
+            source="generic",
+        )
         return Effect(self.id, self.words, (q,), ((scales if self.factor else adds)(self.to, law(self.expression)),))
 
     def file(self, id: str) -> str:
         """An effect file under another id, for a user to edit and add."""
         lower, upper = self.bounds
-        return effect_file(id, self.words, self.to, self.unit, self.expression, size=SIZES[self.unit], lower=lower,
-                           upper=upper, factor=self.factor)  # fmt: skip
+        return effect_file(
+            id,
+            self.words,
+            self.to,
+            self.unit,
+            self.expression,
+            size=SIZES[self.unit],
+            lower=lower,
+            upper=upper,
+            factor=self.factor,
+        )
 
 
 def terms() -> dict[str, Term]:
@@ -112,8 +129,10 @@ def terms() -> dict[str, Term]:
 
 
 def _family(to: str, unit: Unit, noun: str, bases: dict[str, tuple[str, str]], suffix: str = "") -> list[Term]:
-    return [Term(f"generic_{to}_{key}{suffix}", f"{noun} {words}", to, unit, f"q * ({expression})")
-            for key, (words, expression) in bases.items()]  # fmt: skip
+    return [
+        Term(f"generic_{to}_{key}{suffix}", f"{noun} {words}", to, unit, f"q * ({expression})")
+        for key, (words, expression) in bases.items()
+    ]
 
 
 def _of_wheel(which: str) -> dict[str, tuple[str, str]]:
@@ -131,9 +150,8 @@ VARIABLES = {
     "yaw_rate": ("yaw rate", "rad/s", "psi_dot", (-2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0)),
     "heading": ("heading", "rad", "atan2(sin(psi), cos(psi))", (-3.1416, -2.0944, -1.0472, 0.0, 1.0472, 2.0944, 3.1416)),
     "push": ("push of both hands", "N", "sum1(F_t)", (-60.0, -20.0, -5.0, 5.0, 20.0, 40.0, 80.0, 140.0)),
-    "caster": ("mean caster angle", "rad", LEFT_OR_RIGHT,
-               (-0.8, -0.4, -0.2, -0.05, 0.05, 0.2, 0.4, 0.8)),
-}  # fmt: skip
+    "caster": ("mean caster angle", "rad", LEFT_OR_RIGHT, (-0.8, -0.4, -0.2, -0.05, 0.05, 0.2, 0.4, 0.8)),
+}
 
 
 def profiles(term: Term) -> dict[str, Effect]:
@@ -143,8 +161,18 @@ def profiles(term: Term) -> dict[str, Effect]:
     for name, (words, _, x, knots) in VARIABLES.items():
         id = f"profile_{term.to}_{name}"
         parameters = tuple(
-            Parameter(f"q{i}", term.unit, f"{words} {knot:g}", off=0.0, smallest_interesting=SIZES[term.unit],
-                      lower=-1e3, upper=1e3, source="generic") for i, knot in enumerate(knots))  # fmt: skip
+            Parameter(
+                f"q{i}",
+                term.unit,
+                f"{words} {knot:g}",
+                off=0.0,
+                smallest_interesting=SIZES[term.unit],
+                lower=-1e3,
+                upper=1e3,
+                source="generic",
+            )
+            for i, knot in enumerate(knots)
+        )
         expression = " + ".join(f"q{i} * {_hat(x, knots, i)}" for i in range(len(knots)))
         found[id] = Effect(id, f"any function of {words}", parameters, (adds(term.to, law(expression + shape)),))
     return found

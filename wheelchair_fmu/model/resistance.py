@@ -9,15 +9,46 @@ from .smooth import grip
 from .stage import define, stage
 
 PARAMETERS = (
-    Parameter("resistance.f_r", ONE, "rolling resistance coefficient f_r of the rear wheels", default=0.012, lower=0.0,
-              upper=1.0, uncertainty=0.6, source="chosen: Hoffman2003 gives 0.012 in total; not in the paper's text"),
-    Parameter("resistance.f_f", ONE, "rolling resistance coefficient f_f of the casters", default=0.020, lower=0.0,
-              upper=1.0, uncertainty=0.6, source="chosen: smaller wheels than the rear; not in the paper's text"),
-    Parameter("brake.F_max", N, "braking force of one fully applied brake", default=300.0, lower=0.0, upper=5000.0,
-              source="chosen: holds 80 kg on a slope of 1 in 1.6 with both"),
-    Parameter("regularisation.drag_speed", M_S, "speed within which dry resistance builds up; a chair it holds creeps "
-              "no faster than about this", default=4e-5, lower=1e-7, upper=0.1, symbol="drag_eps", source="chosen"),
-)  # fmt: skip
+    Parameter(
+        "resistance.f_r",
+        ONE,
+        "rolling resistance coefficient f_r of the rear wheels",
+        default=0.012,
+        lower=0.0,
+        upper=1.0,
+        uncertainty=0.6,
+        source="chosen: Hoffman2003 gives 0.012 in total; not in the paper's text",
+    ),
+    Parameter(
+        "resistance.f_f",
+        ONE,
+        "rolling resistance coefficient f_f of the casters",
+        default=0.020,
+        lower=0.0,
+        upper=1.0,
+        uncertainty=0.6,
+        source="chosen: smaller wheels than the rear; not in the paper's text",
+    ),
+    Parameter(
+        "brake.F_max",
+        N,
+        "braking force of one fully applied brake",
+        default=300.0,
+        lower=0.0,
+        upper=5000.0,
+        source="chosen: holds 80 kg on a slope of 1 in 1.6 with both",
+    ),
+    Parameter(
+        "regularisation.drag_speed",
+        M_S,
+        "speed within which dry resistance builds up; a chair it holds creeps no faster than about this",
+        default=4e-5,
+        lower=1e-7,
+        upper=0.1,
+        symbol="drag_eps",
+        source="chosen",
+    ),
+)
 
 
 @stage(

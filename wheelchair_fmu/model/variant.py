@@ -75,8 +75,11 @@ class Variant:
 
         Raises UsageError for an unknown name, a number out of bounds or a word that is no choice.
         """
-        on = [e for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
-              if e not in self.effects]  # fmt: skip
+        on = [
+            e
+            for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
+            if e not in self.effects
+        ]
         grown = self.with_effects(dict.fromkeys(on))
         records = {p.name: p for p in grown.parameters()}
         numbers = {name: number(records, name, value) for name, value in values.items()}
@@ -120,8 +123,10 @@ def number(records: Mapping[str, Parameter], name: str, value: float | str) -> f
     except (TypeError, ValueError):
         raise UsageError(f"{name} = {value!r} is not a number; give a number in {record.unit.name}") from None
     if not math.isfinite(result) or not record.lower <= result <= record.upper:
-        raise UsageError(f"{name} = {value} is outside its bounds {record.lower:g} to {record.upper:g} "
-                         f"{record.unit.name}; give a value between them")  # fmt: skip
+        raise UsageError(
+            f"{name} = {value} is outside its bounds {record.lower:g} to {record.upper:g} "
+            f"{record.unit.name}; give a value between them"
+        )
     return result
 
 
@@ -163,5 +168,4 @@ def _table(file: Mapping[str, Any], key: str) -> dict[str, Any]:
 def variant_text(variant: Variant) -> str:
     """The variant as TOML that `read_variant` reads."""
     laws = {kind: getattr(variant.choice, kind) for kind in LAWS}
-    return tomli_w.dumps({"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values),
-                          **variant.notes})  # fmt: skip
+    return tomli_w.dumps({"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values), **variant.notes})

@@ -27,40 +27,74 @@ OUTPUTS = (
     Output("chair.v", M_S, "lateral speed v of the CM, to the right", "-", nominal=0.01),
     Output("chair.psi_dot", RAD_S, "yaw rate ψ', clockwise from above", "-", nominal=0.1),
     Output("chair.curvature", PER_M, "curvature 1/R_c of the CM's path, positive to the right", "-", nominal=0.1),
-    Output("slip.rl", RAD, "slip angle λ_rl of the left rear wheel", "-slip.rr", symbol="lam", component=0,
-           nominal=0.01),
-    Output("slip.rr", RAD, "slip angle λ_rr of the right rear wheel", "-slip.rl", symbol="lam", component=1,
-           nominal=0.01),
-    Output("force.F_srl", N, "lateral force F_srl of the left rear tyre, to the right", "-force.F_srr", symbol="F_s",
-           nominal=20.0),
-    Output("force.F_srr", N, "lateral force F_srr of the right rear tyre, to the right", "-force.F_srl", symbol="F_s",
-           component=1, nominal=20.0),
+    Output("slip.rl", RAD, "slip angle λ_rl of the left rear wheel", "-slip.rr", symbol="lam", component=0, nominal=0.01),
+    Output("slip.rr", RAD, "slip angle λ_rr of the right rear wheel", "-slip.rl", symbol="lam", component=1, nominal=0.01),
+    Output(
+        "force.F_srl", N, "lateral force F_srl of the left rear tyre, to the right", "-force.F_srr", symbol="F_s", nominal=20.0
+    ),
+    Output(
+        "force.F_srr",
+        N,
+        "lateral force F_srr of the right rear tyre, to the right",
+        "-force.F_srl",
+        symbol="F_s",
+        component=1,
+        nominal=20.0,
+    ),
     Output("load.rl", N, "vertical load of the left rear wheel", "+load.rr", symbol="N_r", nominal=200.0),
     Output("load.rr", N, "vertical load of the right rear wheel", "+load.rl", symbol="N_r", component=1, nominal=200.0),
     Output("load.fl", N, "vertical load of the left caster", "+load.fr", symbol="N_f", nominal=150.0),
     Output("load.fr", N, "vertical load of the right caster", "+load.fl", symbol="N_f", component=1, nominal=150.0),
-    Output("load.lifted", ONE, "true where a wheel has left the ground; the model then no longer holds",
-           symbol="lifted", boolean=True, margin=N, limit="a wheel has left the ground"),
-    Output("caster.fl", RAD, "angle δ_fl of the left caster from straight trailing", "-caster.fr", symbol="delta",
-           nominal=0.1),
-    Output("caster.fr", RAD, "angle δ_fr of the right caster from straight trailing", "-caster.fl", symbol="delta",
-           component=1, nominal=0.1),
-    Output("push.total_needed", N, "total push F_rl + F_rr that keeps u constant, by (20)", symbol="needed",
-           nominal=10.0),
+    Output(
+        "load.lifted",
+        ONE,
+        "true where a wheel has left the ground; the model then no longer holds",
+        symbol="lifted",
+        boolean=True,
+        margin=N,
+        limit="a wheel has left the ground",
+    ),
+    Output("caster.fl", RAD, "angle δ_fl of the left caster from straight trailing", "-caster.fr", symbol="delta", nominal=0.1),
+    Output(
+        "caster.fr",
+        RAD,
+        "angle δ_fr of the right caster from straight trailing",
+        "-caster.fl",
+        symbol="delta",
+        component=1,
+        nominal=0.1,
+    ),
+    Output("push.total_needed", N, "total push F_rl + F_rr that keeps u constant, by (20)", symbol="needed", nominal=10.0),
     Output("push.rim_needed", N, "the same as the hands at both rims feel it", symbol="rim_needed", nominal=10.0),
-    Output("sensor.wheel_speed_l", M_S, "left wheel speed: angular speed times R", "+sensor.wheel_speed_r",
-           symbol="read_wheel_speed"),
-    Output("sensor.wheel_speed_r", M_S, "right wheel speed: angular speed times R", "+sensor.wheel_speed_l",
-           symbol="read_wheel_speed", component=1),
-    Output("sensor.yaw_rate", RAD_S, "yaw rate as a gyroscope reads it, clockwise from above", "-",
-           symbol="read_yaw_rate", nominal=0.1),
+    Output(
+        "sensor.wheel_speed_l",
+        M_S,
+        "left wheel speed: angular speed times R",
+        "+sensor.wheel_speed_r",
+        symbol="read_wheel_speed",
+    ),
+    Output(
+        "sensor.wheel_speed_r",
+        M_S,
+        "right wheel speed: angular speed times R",
+        "+sensor.wheel_speed_l",
+        symbol="read_wheel_speed",
+        component=1,
+    ),
+    Output(
+        "sensor.yaw_rate",
+        RAD_S,
+        "yaw rate as a gyroscope reads it, clockwise from above",
+        "-",
+        symbol="read_yaw_rate",
+        nominal=0.1,
+    ),
     Output("sensor.a_x", M_S2, "specific force along x_m as an accelerometer reads it", symbol="read_a_x", nominal=0.5),
-    Output("sensor.a_y", M_S2, "specific force along y_m as an accelerometer reads it", "-", symbol="read_a_y",
-           nominal=0.5),
+    Output("sensor.a_y", M_S2, "specific force along y_m as an accelerometer reads it", "-", symbol="read_a_y", nominal=0.5),
     Output("sensor.x", M, "x as a tracking system reads it", symbol="read_x"),
     Output("sensor.y", M, "y as a tracking system reads it", "-", symbol="read_y"),
     Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw", nominal=0.5),
-)  # fmt: skip
+)
 
 REGIMES = {  # what to sort errors by: name -> result
     "speed": "chair.u",
@@ -193,8 +227,10 @@ class _Assembly:
     def _refuse_misfit(self, effect: Effect) -> None:
         for kind, name in effect.needs.items():
             if getattr(self.choice, kind) != name:
-                raise ModelError(f"effect {effect.id} needs the {kind} law {name!r}; this model has "
-                                 f"{getattr(self.choice, kind)!r}: set {kind} = \"{name}\"")  # fmt: skip
+                raise ModelError(
+                    f"effect {effect.id} needs the {kind} law {name!r}; this model has "
+                    f'{getattr(self.choice, kind)!r}: set {kind} = "{name}"'
+                )
 
     def _add_row(self, row: Row, scope: dict[str, cs.SX], owner: str = "") -> None:
         scope[row.state.symbol] = cs.SX.sym(row.state.symbol, row.state.size)
@@ -244,8 +280,7 @@ class _Assembly:
                     continue
                 term = cs.SX(self.call(contribution.law, self.own[effect.id], f"effect {effect.id}"))
                 if term.shape not in ((1, 1), base.shape):
-                    raise ModelError(f"effect {effect.id} gives {record.symbol} a term of shape {term.shape}, "
-                                     f"not {base.shape}")  # fmt: skip
+                    raise ModelError(f"effect {effect.id} gives {record.symbol} a term of shape {term.shape}, not {base.shape}")
                 if contribution.factor:
                     factor = factor * term
                 else:
@@ -262,8 +297,10 @@ class _Assembly:
         self._walk()
         self._refuse_lost()
         parameters = (*self.parameters, *(p for e in self.effects for p in e.owned))
-        p = cs.vertcat(*(self.known[q.symbol] for q in self.parameters), *(s for e in self.effects
-                         for s in (self.own[e.id][q.symbol] for q in (*e.parameters, *e.constants))))  # fmt: skip
+        p = cs.vertcat(
+            *(self.known[q.symbol] for q in self.parameters),
+            *(s for e in self.effects for s in (self.own[e.id][q.symbol] for q in (*e.parameters, *e.constants))),
+        )
         x = cs.vertcat(*(scope[row.state.symbol] for row, scope in self.rows), *(g for _, g in self.foreseen))
         w = cs.vertcat(*(self.known[q.symbol] for q in chassis.INPUTS))
         rows = [*map(self._row, self.rows), *map(self._foreseen_row, self.foreseen)]
@@ -272,11 +309,28 @@ class _Assembly:
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
         states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
         extra = self._state_outputs()
-        y = cs.vertcat(*(self.known[o.symbol][o.component] for o in OUTPUTS),
-                       *(scope[row.state.symbol] for row, scope in self.rows[len(chassis.ROWS) :]))  # fmt: skip
+        y = cs.vertcat(
+            *(self.known[o.symbol][o.component] for o in OUTPUTS),
+            *(scope[row.state.symbol] for row, scope in self.rows[len(chassis.ROWS) :]),
+        )
         Table((*parameters, *chassis.INPUTS, *OUTPUTS, *extra))  # one name, one meaning
-        return Model(self.choice, self.effects, parameters, chassis.INPUTS, states, (*OUTPUTS, *extra), x, w, p,
-                     mass, f, y, start, self.known, self.records)  # fmt: skip
+        return Model(
+            self.choice,
+            self.effects,
+            parameters,
+            chassis.INPUTS,
+            states,
+            (*OUTPUTS, *extra),
+            x,
+            w,
+            p,
+            mass,
+            f,
+            y,
+            start,
+            self.known,
+            self.records,
+        )
 
     def _row(self, entry: tuple[Row, Mapping[str, cs.SX]]) -> tuple[cs.SX, cs.SX, cs.SX]:
         row, scope = entry
@@ -292,11 +346,18 @@ class _Assembly:
     def _state_outputs(self) -> tuple[Output, ...]:
         """States beyond the chair's own six are results too."""
         return tuple(
-            Output(name, row.state.unit, row.state.meaning, _component_mirror(row.state, i),
-                   symbol=row.state.symbol, component=i, nominal=row.state.usual or row.state.nominal)
+            Output(
+                name,
+                row.state.unit,
+                row.state.meaning,
+                _component_mirror(row.state, i),
+                symbol=row.state.symbol,
+                component=i,
+                nominal=row.state.usual or row.state.nominal,
+            )
             for row, _ in self.rows[len(chassis.ROWS) :]
             for i, name in enumerate(row.state.names)
-        )  # fmt: skip
+        )
 
 
 def _component_mirror(pair: State, i: int) -> str:

@@ -27,8 +27,9 @@ TUNING = 2  # how often a run's start is moved to where its readings want it, as
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
 
 
-def content(campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any],
-            fixed: Sequence[str] = ()) -> dict[str, Any]:  # fmt: skip
+def content(
+    campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any], fixed: Sequence[str] = ()
+) -> dict[str, Any]:
     """Everything that `page.html` shows, as JSON; series are base64 of little-endian doubles under the key "f64".
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
@@ -110,8 +111,14 @@ def _effect(effect: Effect) -> dict[str, Any]:
 
 
 def _parameter(p: Parameter) -> dict[str, Any]:
-    return {**_quantity(p.name, p.unit, p.meaning), "lower": finite(p.lower), "upper": finite(p.upper),
-            "default": p.default, "delta": p.smallest_interesting, "source": p.source}  # fmt: skip
+    return {
+        **_quantity(p.name, p.unit, p.meaning),
+        "lower": finite(p.lower),
+        "upper": finite(p.upper),
+        "default": p.default,
+        "delta": p.smallest_interesting,
+        "source": p.source,
+    }
 
 
 def _quantity(name: str, unit: Unit, meaning: str) -> dict[str, Any]:

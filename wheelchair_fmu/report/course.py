@@ -149,7 +149,14 @@ def _pushes(course: Course, i: int) -> list[Polygon]:
         if abs(length) > 0.03:
             y, x = side * (course.size["t_r"] / 2 + 0.13), -course.size["b"]
             head = np.sign(length) * min(abs(length), 0.18)
-            points = [(x, y - 0.03), (x + length - head, y - 0.03), (x + length - head, y - 0.09), (x + length, y),
-                      (x + length - head, y + 0.09), (x + length - head, y + 0.03), (x, y + 0.03)]  # fmt: skip
+            points = [
+                (x, y - 0.03),
+                (x + length - head, y - 0.03),
+                (x + length - head, y - 0.09),
+                (x + length, y),
+                (x + length - head, y + 0.09),
+                (x + length - head, y + 0.03),
+                (x, y + 0.03),
+            ]
             made.append(Polygon(_placed(course, i, points), fc=ORANGE, ec="none", zorder=5))
     return made

@@ -79,8 +79,15 @@ def _radius(ax: Axes, time: np.ndarray, curvature: np.ndarray) -> None:
     turning = np.abs(curvature) > 1 / STRAIGHT
     ax.set_ylabel("radius $R_c$ [m]")
     if not turning.any():
-        ax.text(0.5, 0.5, f"straight: $|R_c|$ > {STRAIGHT:g} m throughout", ha="center", va="center",
-                transform=ax.transAxes, color=GREY)  # fmt: skip
+        ax.text(
+            0.5,
+            0.5,
+            f"straight: $|R_c|$ > {STRAIGHT:g} m throughout",
+            ha="center",
+            va="center",
+            transform=ax.transAxes,
+            color=GREY,
+        )
         ax.set_yticks([])
         ax.set_ylim(0, 1)
         return
@@ -150,8 +157,15 @@ def staircase_figure(ladder: Sequence[Mapping[str, Any]]) -> Figure:
         bars = ax.bar(place + side * width / 2, heights, width, color=colour, hatch=hatch, ec="white", label=text)
         ax.bar_label(bars, ["" if np.isnan(h) else f"{h:.2f}" for h in heights], padding=2, fontsize=9)
     ax.axhline(FLOOR, color=BLACK, ls="--", lw=1)
-    ax.annotate("noise floor", (1, FLOOR), xycoords=("axes fraction", "data"), xytext=(4, 0), textcoords="offset points",
-                va="center", annotation_clip=False)  # fmt: skip
+    ax.annotate(
+        "noise floor",
+        (1, FLOOR),
+        xycoords=("axes fraction", "data"),
+        xytext=(4, 0),
+        textcoords="offset points",
+        va="center",
+        annotation_clip=False,
+    )
     ax.set_xticks(place, [str(step["step"]).replace("_", "_\n") for step in ladder])
     ax.set_ylabel("whitened RMS error [1]")
     ax.set_ylim(0, 1.15 * max([FLOOR, *ax.get_ylim()]))
@@ -222,7 +236,7 @@ def missing_figure(words: str, unit: str, panels: Sequence[Mapping[str, Any]]) -
         ax.plot(knots[seen], estimate[seen], "o-", color=BLUE, ms=3)
         ax.set_xlabel(f"{panel['variable']} [{panel['unit']}]")
         tidy(ax)
-    for ax in axes[len(panels):]:
+    for ax in axes[len(panels) :]:
         ax.set_axis_off()
     for row in axes[:: min(3, len(panels))]:
         row.set_ylabel(f"[{unit}]")

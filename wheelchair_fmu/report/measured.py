@@ -25,8 +25,17 @@ def carried_figure(
     figure = blank(8, 5)
     ax = figure.subplots()
     figure.suptitle(title)
-    ax.errorbar(slip[1], carried[1], xerr=np.abs(slip[[0, 2]] - slip[1]), yerr=np.abs(carried[[0, 2]] - carried[1]), fmt="o-",
-                ms=4, color=BLACK, ecolor=BAND, label="measured, with 90 % intervals")  # fmt: skip
+    ax.errorbar(
+        slip[1],
+        carried[1],
+        xerr=np.abs(slip[[0, 2]] - slip[1]),
+        yerr=np.abs(carried[[0, 2]] - carried[1]),
+        fmt="o-",
+        ms=4,
+        color=BLACK,
+        ecolor=BAND,
+        label="measured, with 90 % intervals",
+    )
     for (label, (x, y)), (colour, style) in zip(lines.items(), ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-.")), strict=False):
         ax.plot(x, y, style, color=colour, label=label)
     ax.set_xlabel("slip angle, mean of both wheels by load [deg]")

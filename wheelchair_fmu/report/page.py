@@ -11,8 +11,10 @@ from typing import Any
 
 ASSETS = files(__package__) / "page"
 MODULES = ("app", "charts", "controls", "dom", "errors", "evidence", "figure", "numbers", "pool", "trajectory")
-POLICY = ("default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
-          "img-src data: blob:; worker-src blob:")  # fmt: skip
+POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
+    "img-src data: blob:; worker-src blob:"
+)
 
 
 def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str]) -> str:

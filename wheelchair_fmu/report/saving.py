@@ -41,6 +41,9 @@ def save_film(frames: Iterable[np.ndarray], path: Path, pause: float) -> None:
     pictures: list[Image.Image] = []
     for frame in frames:
         picture = Image.fromarray(frame)
-        pictures.append(picture.quantize(COLOURS, dither=Image.Dither.NONE) if not pictures else
-                        picture.quantize(palette=pictures[0], dither=Image.Dither.NONE))  # fmt: skip
+        pictures.append(
+            picture.quantize(COLOURS, dither=Image.Dither.NONE)
+            if not pictures
+            else picture.quantize(palette=pictures[0], dither=Image.Dither.NONE)
+        )
     pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=round(1000 * pause), loop=0, optimize=True)

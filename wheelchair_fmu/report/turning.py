@@ -31,8 +31,11 @@ def turning_figure(title: str, curves: Mapping[float, Columns], locus: Columns, 
     figure.suptitle(title)
     for (speed, curve), (colour, style) in zip(curves.items(), LINES, strict=False):
         drawn = np.where(curve["radius"] <= WIDEST, curve["radius"], np.nan)
-        for name, x, y in (("radius", curve["delta_force"], drawn), ("slip", curve["delta_force"], curve["slip"]),
-                           ("force", curve["a_y"], curve["delta_force"])):  # fmt: skip
+        for name, x, y in (
+            ("radius", curve["delta_force"], drawn),
+            ("slip", curve["delta_force"], curve["slip"]),
+            ("force", curve["a_y"], curve["delta_force"]),
+        ):
             axes[name].plot(x, y, style, color=colour, label=f"{speed:g} m/s")
             axes[name].plot(x[-1], y[-1], "x", color=colour, ms=7)
     axes["slip"].axhline(slip_limit, color=GREY, lw=0.8)

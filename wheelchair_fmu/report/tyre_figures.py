@@ -35,8 +35,10 @@ def paper_figures(found: Identified) -> Iterator[tuple[str, Figure]]:
     """Figs. 4 to 9, as far as the conditions allow: a name and a figure each."""
     references = {tyre: chosen(found, tyre, None, None, None) for tyre in found.tyres}
     at = [f"tyre {tyre}: {_at(fit)}" for tyre, fit in references.items()]
-    yield "reference", comparison_figure("Forces and torques in the reference condition",
-                                         list(zip(at, references.values(), strict=True)))  # fmt: skip
+    yield (
+        "reference",
+        comparison_figure("Forces and torques in the reference condition", list(zip(at, references.values(), strict=True))),
+    )
     for name in ("speed", "pressure", "load"):
         curves = [(f"tyre {tyre}: {_at(f)}", f) for tyre, fit in references.items() for f in _varied(found, fit, name)]
         if name == "speed":
@@ -98,9 +100,7 @@ def single_figure(title: str, curves: Sequence[tuple[str, ConditionFit]]) -> Fig
     return figure
 
 
-def laws_figure(
-    title: str, channel: str, curves: Sequence[tuple[str, ConditionFit]], tolerance: float
-) -> Figure:
+def laws_figure(title: str, channel: str, curves: Sequence[tuple[str, ConditionFit]], tolerance: float) -> Figure:
     """Measured points of each condition, and what the linear, Dugoff's and Pacejka's law make of them: Figs. 8 and 9.
 
     The band is where the linear law is within `tolerance` [1] of the Magic Formula.
@@ -114,8 +114,7 @@ def laws_figure(
             continue
         ax.set_title(label, fontsize="medium")
         x = np.linspace(0, curve.curve.angle[-1], 300)
-        ax.axvspan(0, np.degrees(curve.linear_to), color=BAND, lw=0, zorder=0,
-                   label=f"linear within {100 * tolerance:g} %")  # fmt: skip
+        ax.axvspan(0, np.degrees(curve.linear_to), color=BAND, lw=0, zorder=0, label=f"linear within {100 * tolerance:g} %")
         ax.plot(np.degrees(x), curve.K.value * x, ":", color=GREY, label="linear")
         if fit.dugoff is not None and (channel == FORCE or fit.dugoff.c_p is not None):
             y = fit.dugoff.force(x) if channel == FORCE else fit.dugoff.torque(x)
@@ -133,9 +132,7 @@ def laws_figure(
     return figure
 
 
-def _normalised(
-    ax: Axes, fit: ConditionFit, kind: str, channel: str, label: str, look: tuple[str, str, str]
-) -> None:
+def _normalised(ax: Axes, fit: ConditionFit, kind: str, channel: str, label: str, look: tuple[str, str, str]) -> None:
     curve = fit.fits.get((kind, channel))
     if curve is None:
         return

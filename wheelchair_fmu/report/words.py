@@ -25,8 +25,8 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
         "outside": "Something is left that no effect in the catalogue explains"
-                   + (f"; what helps but does not suffice: {helping}." if helping else "."),
-    }[diagnosis["verdict"]]  # fmt: skip
+        + (f"; what helps but does not suffice: {helping}." if helping else "."),
+    }[diagnosis["verdict"]]
 
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
@@ -64,8 +64,10 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
 
 def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
-    parts = [f"{record.meaning} = {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
-             for name, record in known.items()]  # fmt: skip
+    parts = [
+        f"{record.meaning} = {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
+        for name, record in known.items()
+    ]
     return f"{effect.replace('_', ' ').capitalize()}: {', '.join(parts)}."
 
 
@@ -87,7 +89,7 @@ def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
 
 
 def value_text(value: float, se: float | None, unit: Unit) -> str:
-    """"1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
+    """ "1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
     shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
     name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ')}"
     value, se = value * shown.factor, se * shown.factor if se else None
@@ -99,7 +101,7 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
 
 
 def probability(p: float) -> str:
-    """"3e-138"; what floats cannot hold is smaller than anything they can."""
+    """ "3e-138"; what floats cannot hold is smaller than anything they can."""
     return f"{p:.1g}" if p > LEAST else f"<{LEAST:.0e}"
 
 

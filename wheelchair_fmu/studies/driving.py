@@ -196,8 +196,9 @@ def _description(path: Path) -> ModelDescription:
     except Exception as error:  # fmpy raises whatever its parsers raise
         raise Failure(f"{path}: not an FMU: {_one_line(error)}; give a file that `fmpy validate` accepts") from error
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise Failure(f"{path}: FMI {description.fmiVersion} without co-simulation by FMI 2.0; give an FMU 2.0 for "
-                      "co-simulation")  # fmt: skip
+        raise Failure(
+            f"{path}: FMI {description.fmiVersion} without co-simulation by FMI 2.0; give an FMU 2.0 for co-simulation"
+        )
     platforms = fmpy.supported_platforms(str(path))
     if fmpy.platform not in platforms:
         raise Failure(f"{path}: built for {', '.join(platforms) or 'no platform'}, not for {fmpy.platform}; build it here")

@@ -29,30 +29,72 @@ def _rectangle(patch: str, meaning: str) -> tuple[Parameter, ...]:
 
 
 PARAMETERS = (
-    Parameter("ramp.slope", RAD, "slope of the ramp along x, positive where it falls towards +x", lower=-0.5, upper=0.5,
-              nominal=0.05, source="ISO 7176-2 tests up to 10°; 1 in 12 is 0.083"),
+    Parameter(
+        "ramp.slope",
+        RAD,
+        "slope of the ramp along x, positive where it falls towards +x",
+        lower=-0.5,
+        upper=0.5,
+        nominal=0.05,
+        source="ISO 7176-2 tests up to 10°; 1 in 12 is 0.083",
+    ),
     *_rectangle("ramp", "the ramp"),
-    Parameter("cross.slope", RAD, "slope of the corridor along y, positive where it falls towards +y", lower=-0.5,
-              upper=0.5, nominal=0.05, source="Richter2007"),
+    Parameter(
+        "cross.slope",
+        RAD,
+        "slope of the corridor along y, positive where it falls towards +y",
+        lower=-0.5,
+        upper=0.5,
+        nominal=0.05,
+        source="Richter2007",
+    ),
     *_rectangle("cross", "the corridor with a cross slope"),
-    Parameter("carpet.rolling_factor", ONE, "factor on rolling resistance on the carpet: 1 smooth, about 2 carpet",
-              default=1.0, lower=0.0, upper=100.0, source="Hoffman2003: carpet adds 0.0118 to 0.012"),
+    Parameter(
+        "carpet.rolling_factor",
+        ONE,
+        "factor on rolling resistance on the carpet: 1 smooth, about 2 carpet",
+        default=1.0,
+        lower=0.0,
+        upper=100.0,
+        source="Hoffman2003: carpet adds 0.0118 to 0.012",
+    ),
     *_rectangle("carpet", "the carpet"),
-    Parameter("edge.length", M, "length over which the chair passes an edge, about its wheelbase", default=0.45,
-              lower=1e-3, upper=10.0, source="a + b of Doria, Table 1"),
-)  # fmt: skip
+    Parameter(
+        "edge.length",
+        M,
+        "length over which the chair passes an edge, about its wheelbase",
+        default=0.45,
+        lower=1e-3,
+        upper=10.0,
+        source="a + b of Doria, Table 1",
+    ),
+)
 INPUTS = (
     Input("chair.x", M, "x of the chair's CM in the room", lower=-1e6, upper=1e6),
     Input("chair.y", M, "y of the chair's CM in the room, to the right of x", mirror="-", lower=-1e6, upper=1e6),
 )
 OUTPUTS = (
-    Output("floor.slope_x", RAD, "slope along the room's x under the chair, positive where the floor falls towards +x",
-           lower=-1.0, upper=1.0, nominal=0.05),
-    Output("floor.slope_y", RAD, "slope along the room's y under the chair, positive where the floor falls towards +y",
-           "-", lower=-1.0, upper=1.0, nominal=0.05),
-    Output("floor.rolling_factor", ONE, "factor on both rolling resistance coefficients under the chair", lower=0.0,
-           upper=100.0),
-)  # fmt: skip
+    Output(
+        "floor.slope_x",
+        RAD,
+        "slope along the room's x under the chair, positive where the floor falls towards +x",
+        lower=-1.0,
+        upper=1.0,
+        nominal=0.05,
+    ),
+    Output(
+        "floor.slope_y",
+        RAD,
+        "slope along the room's y under the chair, positive where the floor falls towards +y",
+        "-",
+        lower=-1.0,
+        upper=1.0,
+        nominal=0.05,
+    ),
+    Output(
+        "floor.rolling_factor", ONE, "factor on both rolling resistance coefficients under the chair", lower=0.0, upper=100.0
+    ),
+)
 
 
 def floor() -> Model:

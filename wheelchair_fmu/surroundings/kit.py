@@ -32,9 +32,23 @@ def model(
     def column(records: Iterable[Parameter | Input | State | Output], values: Symbols) -> cs.SX:
         return cs.vertcat(cs.SX(0, 1), *(values[r.name] for r in records))
 
-    return Model(Choice(), (), parameters, inputs, states, outputs, column(states, known), column(inputs, known),
-                 column(parameters, known), cs.SX.ones(len(states), 1), column(states, rates or {}),
-                 column(outputs, results), column(states, starts or {}), {}, {})  # fmt: skip
+    return Model(
+        Choice(),
+        (),
+        parameters,
+        inputs,
+        states,
+        outputs,
+        column(states, known),
+        column(inputs, known),
+        column(parameters, known),
+        cs.SX.ones(len(states), 1),
+        column(states, rates or {}),
+        column(outputs, results),
+        column(states, starts or {}),
+        {},
+        {},
+    )
 
 
 def clip(value: cs.SX, lower: cs.SX | float, upper: cs.SX | float) -> cs.SX:

@@ -33,37 +33,113 @@ CHOSEN = "chosen"
 STOPPING = 1.0  # m before the end of the course, over which the wanted speed goes to zero
 
 PARAMETERS = (
-    Parameter("pusher.mode", ONE, "open_loop: strokes that are all the same; follow: a path and a speed; replay: a recording",
-              default=1, lower=1, upper=3, choices=MODES, fixed=True),
+    Parameter(
+        "pusher.mode",
+        ONE,
+        "open_loop: strokes that are all the same; follow: a path and a speed; replay: a recording",
+        default=1,
+        lower=1,
+        upper=3,
+        choices=MODES,
+        fixed=True,
+    ),
     Parameter("stroke.cadence", PER_S, "strokes per second", default=1.0, lower=0.0, upper=5.0, source=CHOSEN),
-    Parameter("stroke.force", N, "peak force of a stroke on each wheel, at the contact patch; in follow the strongest that "
-              "the person can do", default=60.0, lower=0.0, upper=1000.0,
-              source="peak tangential force at the rim 69 to 79 N, two instrumented-wheel recordings"),
-    Parameter("stroke.contact", ONE, "part of the cycle in which the hands are on the rims", default=0.5, lower=0.05,
-              upper=1.0, source=CHOSEN),
-    Parameter("stroke.asymmetry", ONE, "what the left hand is stronger and the right hand weaker than meant", mirror="-",
-              lower=-1.0, upper=1.0, nominal=0.1, source=CHOSEN),
-    Parameter("stroke.delay", S, "time from the start to the first stroke, or to the beginning of the recording",
-              lower=0.0, upper=1000.0, fixed=True, source=CHOSEN),
-    Parameter("follow.delay", S, "reaction time, from what is seen to what the hands do", default=0.15, lower=0.01,
-              upper=10.0, source=CHOSEN),
+    Parameter(
+        "stroke.force",
+        N,
+        "peak force of a stroke on each wheel, at the contact patch; in follow the strongest that the person can do",
+        default=60.0,
+        lower=0.0,
+        upper=1000.0,
+        source="peak tangential force at the rim 69 to 79 N, two instrumented-wheel recordings",
+    ),
+    Parameter(
+        "stroke.contact",
+        ONE,
+        "part of the cycle in which the hands are on the rims",
+        default=0.5,
+        lower=0.05,
+        upper=1.0,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "stroke.asymmetry",
+        ONE,
+        "what the left hand is stronger and the right hand weaker than meant",
+        mirror="-",
+        lower=-1.0,
+        upper=1.0,
+        nominal=0.1,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "stroke.delay",
+        S,
+        "time from the start to the first stroke, or to the beginning of the recording",
+        lower=0.0,
+        upper=1000.0,
+        fixed=True,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "follow.delay",
+        S,
+        "reaction time, from what is seen to what the hands do",
+        default=0.15,
+        lower=0.01,
+        upper=10.0,
+        source=CHOSEN,
+    ),
     Parameter("follow.speed", M_S, "speed that the person wants", default=0.9, lower=-3.0, upper=3.0, source=CHOSEN),
-    Parameter("follow.preview", M, "how far ahead the person looks", default=0.8, lower=0.05, upper=20.0,
-              source="chosen; Coulter1992 calls it the lookahead"),
-    Parameter("follow.speed_gain", N_S_M, "mean push on each wheel per missing speed", default=40.0, lower=0.0,
-              upper=1e4, source=CHOSEN),
-    Parameter("follow.turn_gain", N_S_RAD, "mean push, forward on one wheel and backward on the other, per missing yaw "
-              "rate", default=60.0, lower=0.0, upper=1e4, source=CHOSEN),
-    Parameter("course.cones", ONE, "number of cones; none makes the path straight", lower=0.0, upper=1000.0, fixed=True,
-              source=CHOSEN),
+    Parameter(
+        "follow.preview",
+        M,
+        "how far ahead the person looks",
+        default=0.8,
+        lower=0.05,
+        upper=20.0,
+        source="chosen; Coulter1992 calls it the lookahead",
+    ),
+    Parameter(
+        "follow.speed_gain",
+        N_S_M,
+        "mean push on each wheel per missing speed",
+        default=40.0,
+        lower=0.0,
+        upper=1e4,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "follow.turn_gain",
+        N_S_RAD,
+        "mean push, forward on one wheel and backward on the other, per missing yaw rate",
+        default=60.0,
+        lower=0.0,
+        upper=1e4,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "course.cones", ONE, "number of cones; none makes the path straight", lower=0.0, upper=1000.0, fixed=True, source=CHOSEN
+    ),
     Parameter("course.first", M, "x of the first cone", default=3.0, lower=-1e6, upper=1e6, fixed=True, source=CHOSEN),
-    Parameter("course.spacing", M, "distance from one cone to the next", default=3.0, lower=0.1, upper=1e6, fixed=True,
-              source=CHOSEN),
-    Parameter("course.clearance", M, "how far beside a cone the path goes; negative begins on the cone's left", mirror="-",
-              default=0.6, lower=-100.0, upper=100.0, fixed=True, source=CHOSEN),
-    Parameter("course.end", M, "x where the person stops", default=1e6, lower=-1e6, upper=1e6, nominal=10.0, fixed=True,
-              source=CHOSEN),
-)  # fmt: skip
+    Parameter(
+        "course.spacing", M, "distance from one cone to the next", default=3.0, lower=0.1, upper=1e6, fixed=True, source=CHOSEN
+    ),
+    Parameter(
+        "course.clearance",
+        M,
+        "how far beside a cone the path goes; negative begins on the cone's left",
+        mirror="-",
+        default=0.6,
+        lower=-100.0,
+        upper=100.0,
+        fixed=True,
+        source=CHOSEN,
+    ),
+    Parameter(
+        "course.end", M, "x where the person stops", default=1e6, lower=-1e6, upper=1e6, nominal=10.0, fixed=True, source=CHOSEN
+    ),
+)
 INPUTS = (
     Input("chair.x", M, "x of the chair's CM in the room", lower=-1e6, upper=1e6),
     Input("chair.y", M, "y of the chair's CM in the room, to the right of x", mirror="-", lower=-1e6, upper=1e6),
@@ -78,14 +154,28 @@ STATES = (
     State("meant.rr", N, "mean push that the right hand means to give", "+meant.rl", nominal=10.0),
 )
 OUTPUTS = (
-    Output("push.F_rl", N, "push force on the left wheel, at the contact patch, forward", "+push.F_rr", nominal=50.0,
-           lower=-PUSH_LIMIT, upper=PUSH_LIMIT),
-    Output("push.F_rr", N, "push force on the right wheel, at the contact patch, forward", "+push.F_rl", nominal=50.0,
-           lower=-PUSH_LIMIT, upper=PUSH_LIMIT),
+    Output(
+        "push.F_rl",
+        N,
+        "push force on the left wheel, at the contact patch, forward",
+        "+push.F_rr",
+        nominal=50.0,
+        lower=-PUSH_LIMIT,
+        upper=PUSH_LIMIT,
+    ),
+    Output(
+        "push.F_rr",
+        N,
+        "push force on the right wheel, at the contact patch, forward",
+        "+push.F_rl",
+        nominal=50.0,
+        lower=-PUSH_LIMIT,
+        upper=PUSH_LIMIT,
+    ),
     Output("path.y", M, "y of the path beside the chair", "-"),
     Output("path.deviation", M, "how far the chair is to the right of the path", "-", nominal=0.1),
     Output("stroke.phase", ONE, "strokes since the first, as a number that grows steadily"),
-)  # fmt: skip
+)
 CLOCK = [s.name for s in STATES].index("clock")
 
 
@@ -93,8 +183,11 @@ def pusher(mode: str) -> Model:
     """The pusher in one of MODES. In replay the pushes are zero here; the recording comes in as C (see `fmu.replay`)."""
     known = kit.symbols((*PARAMETERS, *INPUTS, *STATES))
     meant = _wanted(known) if mode == "follow" else (known["stroke.force"] * _mean(known),) * 2
-    hand = {"open_loop": lambda wheel: known["stroke.force"], "follow": lambda wheel: _strength(known, wheel),
-            "replay": lambda wheel: cs.SX(0)}[mode]  # fmt: skip
+    hand = {
+        "open_loop": lambda wheel: known["stroke.force"],
+        "follow": lambda wheel: _strength(known, wheel),
+        "replay": lambda wheel: cs.SX(0),
+    }[mode]
     shape, uneven = _shape(known), known["stroke.asymmetry"]
     results = {
         "push.F_rl": shape * hand("rl") * (1 + uneven),

@@ -98,8 +98,20 @@ def bent(curve: Curve, law: str, starts: Sequence[np.ndarray], prior: Prior, sha
         return np.vstack([f.jacobian(shape.parameters(z)) * shape.slopes(z) / sigma, np.diag(1 / prior.deviation)])
 
     inside = [np.clip(z, prior.lower + 1e-6, prior.upper - 1e-6) for z in starts]
-    found = [least_squares(residual, z, jacobian, bounds=(prior.lower, prior.upper), x_scale="jac", xtol=1e-10,
-                           ftol=1e-10, gtol=1e-10, max_nfev=200) for z in inside]  # fmt: skip
+    found = [
+        least_squares(
+            residual,
+            z,
+            jacobian,
+            bounds=(prior.lower, prior.upper),
+            x_scale="jac",
+            xtol=1e-10,
+            ftol=1e-10,
+            gtol=1e-10,
+            max_nfev=200,
+        )
+        for z in inside
+    ]
     best = min(found, key=lambda each: float(each.cost))
     left = f(shape.parameters(best.x)) - curve.value
     return _judged(curve, left, f.jacobian(shape.parameters(best.x)) * shape.slopes(best.x), best.x, prior.deviation)

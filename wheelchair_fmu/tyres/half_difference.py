@@ -90,5 +90,6 @@ def pooled(curves: Sequence[Curve]) -> tuple[Curve, ...]:
         return tuple(curves)
     common = float(np.sqrt(sum(f * s * s for s, f in known) / freedom))
     noise = [max(common, ROUNDING * c.largest) for c in curves]
-    return tuple(replace(c, sigma=s, freedom=freedom, offset_se=s / np.sqrt(len(c.angle)))
-                 for c, s in zip(curves, noise, strict=True))  # fmt: skip
+    return tuple(
+        replace(c, sigma=s, freedom=freedom, offset_se=s / np.sqrt(len(c.angle))) for c, s in zip(curves, noise, strict=True)
+    )

@@ -80,8 +80,9 @@ def identify(sweeps: Sequence[Sweep], tolerance: float = TOLERANCE) -> Identifie
     """The laws of every condition. Raises Failure where no condition has a slip curve that can be fitted."""
     curves, complaints = _curves(sweeps)
     conditions = tuple(dict.fromkeys(s.condition for s in sweeps))
-    fits = tuple(_condition(c, {k[1:]: v for k, v in curves.items() if k[0] == c}, tolerance,
-                            complaints.get(c, [])) for c in conditions)  # fmt: skip
+    fits = tuple(
+        _condition(c, {k[1:]: v for k, v in curves.items() if k[0] == c}, tolerance, complaints.get(c, [])) for c in conditions
+    )
     if not any(f.fits for f in fits):
         said = "\n".join(f"{f.condition}: {w}" for f in fits for w in f.warnings)
         raise Failure(f"nothing could be fitted:\n{said}")
@@ -99,8 +100,9 @@ def _curves(sweeps: Sequence[Sweep]) -> tuple[Curves, dict[Condition, list[str]]
         paired = pairs(sweep.angle)
         said = complaints.setdefault(sweep.condition, [])
         if not len(paired.angle):
-            said.append(f"{sweep.kind}: {_one_sided(sweep)}; measure every angle with both signs, so that the curvature "
-                        "force cancels")  # fmt: skip
+            said.append(
+                f"{sweep.kind}: {_one_sided(sweep)}; measure every angle with both signs, so that the curvature force cancels"
+            )
             continue
         if paired.alone:
             angles = ", ".join(f"{np.degrees(a):.3g}" for a in paired.alone)
@@ -137,8 +139,10 @@ def _condition(
         said += [doubt] if doubt else []
         magic = magic_formula(curve, slope.K.value, channel) if slope.bends and not doubt else None
         if magic is not None and _odd(magic):
-            said.append(f"{kind} {channel}: the Magic Formula leaves {magic.rms:.3g} {UNITS[channel]} (rms), more than noise "
-                        f"of {curve.sigma:.2g}; look at the curve by `wheelchair tyre plot`")  # fmt: skip
+            said.append(
+                f"{kind} {channel}: the Magic Formula leaves {magic.rms:.3g} {UNITS[channel]} (rms), more than noise "
+                f"of {curve.sigma:.2g}; look at the curve by `wheelchair tyre plot`"
+            )
         fits[kind, channel] = CurveFit(curve, slope, magic, *_linear_range(curve, magic, tolerance))
     said += list(_signs(fits))
     return ConditionFit(condition, fits, _dugoff(condition, fits), tuple(said))
@@ -149,8 +153,10 @@ def _doubt(kind: str, channel: str, curve: Curve, slope: Slope) -> str | None:
     n, largest = len(curve.angle), float(np.degrees(curve.angle[-1]))
     what = f"{kind} {channel}: the slope only"
     if n < magic_law.FEWEST:
-        return (f"{what}; {n} angle{'s' * (n > 1)} measured with both signs cannot tell how it bends, nor a Magic Formula's "
-                f"four coefficients; measure {magic_law.FEWEST} or more")  # fmt: skip
+        return (
+            f"{what}; {n} angle{'s' * (n > 1)} measured with both signs cannot tell how it bends, nor a Magic Formula's "
+            f"four coefficients; measure {magic_law.FEWEST} or more"
+        )
     ends = slope.K.interval
     if ends is not None and ends[0] * ends[1] <= 0:
         return f"{kind} {channel}: the slope is not told from zero; measure larger angles, or more of them"
@@ -170,8 +176,10 @@ def _signs(fits: Mapping[tuple[str, str], CurveFit]) -> list[str]:
     """Forces that point the wrong way: most likely other axes."""
     fit = fits.get((SLIP, FORCE))
     if fit is not None and fit.slope.K.value < 0:
-        return ["the lateral force falls as the slip angle rises; the file's axes are not the paper's (y to the right): "
-                "try --axes iso"]  # fmt: skip
+        return [
+            "the lateral force falls as the slip angle rises; the file's axes are not the paper's (y to the right): "
+            "try --axes iso"
+        ]
     return []
 
 

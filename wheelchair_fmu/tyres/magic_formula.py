@@ -50,8 +50,10 @@ def magic_formula(curve: Curve, slope: float, kind: str) -> MagicFormula:
     sign = 1.0 if slope >= 0 else -1.0
     upright = Curve(curve.angle, sign * curve.value, curve.sigma, curve.freedom, curve.offset, curve.offset_se)
     prior = _prior(upright, abs(slope), kind)
-    starts = [np.array([prior.mean[0], np.log(C), prior.mean[2] + up, E])
-              for C, up, E in ((1.3, 0.0, 0.0), (2.0, -0.1, 0.0), (1.0, 0.4, -2.0), (2.0, 0.2, 0.5))]  # fmt: skip
+    starts = [
+        np.array([prior.mean[0], np.log(C), prior.mean[2] + up, E])
+        for C, up, E in ((1.3, 0.0, 0.0), (2.0, -0.1, 0.0), (1.0, 0.4, -2.0), (2.0, 0.2, 0.5))
+    ]
     return _told(bent(upright, "magic", starts, prior, _SHAPE), prior, sign)
 
 
@@ -73,13 +75,18 @@ def _told(fit: Fit, prior: Prior, sign: float) -> MagicFormula:
     v = dict(zip(names, (None,) * 4 if S is None else np.diag(S), strict=True))
     z = dict(zip(names, fit.numbers, strict=True))
     of_B = np.array([1.0, -1.0, -1.0, 0.0])  # B = K / (C D)
-    untold = tuple(n for n, d in zip(names[1:], prior.deviation[1:], strict=True)
-                   if (variance := v[n]) is None or variance > (TOLD * d) ** 2)  # fmt: skip
+    untold = tuple(
+        n
+        for n, d in zip(names[1:], prior.deviation[1:], strict=True)
+        if (variance := v[n]) is None or variance > (TOLD * d) ** 2
+    )
     return MagicFormula(
         B=positive(float(of_B @ fit.numbers), None if S is None else float(of_B @ S @ of_B), fit.freedom),
         C=positive(z["C"], v["C"], fit.freedom),
         D=positive(z["D"], v["D"], fit.freedom).scaled(sign),
         E=estimate(float(z["E"]), v["E"], fit.freedom),
         K=positive(z["K"], v["K"], fit.freedom).scaled(sign),
-        rms=fit.rms, misfit=fit.misfit, untold=untold,
-    )  # fmt: skip
+        rms=fit.rms,
+        misfit=fit.misfit,
+        untold=untold,
+    )

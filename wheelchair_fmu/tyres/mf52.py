@@ -61,9 +61,7 @@ class Mf52:
         E = (self["QEZ1"] + self["QEZ2"] * d + self["QEZ3"] * d**2) * skew
         return D * np.cos(C * np.arctan(_bent(B * a, np.minimum(E, 1)))) * np.cos(alpha)
 
-    def _residual(
-        self, a: np.ndarray, gamma: np.ndarray, Fz: np.ndarray, d: np.ndarray, BC: np.ndarray
-    ) -> np.ndarray:
+    def _residual(self, a: np.ndarray, gamma: np.ndarray, Fz: np.ndarray, d: np.ndarray, BC: np.ndarray) -> np.ndarray:
         leaned = gamma * self["LGAZ"]
         D = (self["QDZ6"] + self["QDZ7"] * d) * self["LRES"] + (self["QDZ8"] + self["QDZ9"] * d) * leaned
         B = self["QBZ9"] * self["LKY"] / self["LMUY"] + self["QBZ10"] * BC

@@ -42,8 +42,10 @@ def chosen(
         target = REFERENCES[name] if wanted is None else wanted
         least = float(np.abs(values - target).min())
         if wanted is not None and least > CLOSE * abs(target):
-            raise UsageError(f"no test at {_shown(name, wanted)} among those that fit the rest; there are "
-                             f"{', '.join(sorted({_shown(name, v) for v in values}))}")  # fmt: skip
+            raise UsageError(
+                f"no test at {_shown(name, wanted)} among those that fit the rest; there are "
+                f"{', '.join(sorted({_shown(name, v) for v in values}))}"
+            )
         fits = [f for f, v in zip(fits, values, strict=True) if abs(v - target) <= least + 1e-9]
     return fits[0]
 
@@ -100,11 +102,19 @@ def _magic(fit: ConditionFit) -> dict[str, float]:
     force, torque = fit.magic(SLIP, FORCE), fit.magic(SLIP, TORQUE)
     if force is None:
         raise _unsupported(fit, "Magic Formula")
-    values = {"tyre.C_lambda": force.K.value, "tyre.mu": force.D.value / fit.condition.load,
-              "tyre.force.C": force.C.value, "tyre.force.E": force.E.value}  # fmt: skip
+    values = {
+        "tyre.C_lambda": force.K.value,
+        "tyre.mu": force.D.value / fit.condition.load,
+        "tyre.force.C": force.C.value,
+        "tyre.force.E": force.E.value,
+    }
     if torque is not None:
-        values |= {"tyre.C_m_lambda": -torque.K.value, "tyre.torque.C": torque.C.value,
-                   "tyre.torque.D": -torque.D.value, "tyre.torque.E": torque.E.value}  # fmt: skip
+        values |= {
+            "tyre.C_m_lambda": -torque.K.value,
+            "tyre.torque.C": torque.C.value,
+            "tyre.torque.D": -torque.D.value,
+            "tyre.torque.E": torque.E.value,
+        }
     return values
 
 
@@ -121,5 +131,13 @@ def _unsupported(fit: ConditionFit, law: str) -> Failure:
 
 def _notes(fit: ConditionFit, law: str) -> Mapping[str, Any]:
     c = fit.condition
-    return {"origin": {"tyre": c.tyre, "law": law, "pressure_bar": c.pressure, "load_N": c.load,
-                       "speed_m_s": c.speed, "warnings": list(fit.warnings)}}  # fmt: skip
+    return {
+        "origin": {
+            "tyre": c.tyre,
+            "law": law,
+            "pressure_bar": c.pressure,
+            "load_N": c.load,
+            "speed_m_s": c.speed,
+            "warnings": list(fit.warnings),
+        }
+    }

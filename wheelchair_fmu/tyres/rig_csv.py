@@ -17,9 +17,14 @@ from .records import KINDS, KM_H
 from .rows import NEEDED, USUAL_SPEED, Rows
 
 UNITS = {
-    "pressure": BAR, "load": N, "disc_speed": M_S, "slip_angle": RAD, "camber_angle": RAD, "lateral_force": N,
+    "pressure": BAR,
+    "load": N,
+    "disc_speed": M_S,
+    "slip_angle": RAD,
+    "camber_angle": RAD,
+    "lateral_force": N,
     "yaw_torque": N_M,
-}  # fmt: skip
+}
 WORDS = ("tyre", "test")
 
 
@@ -39,8 +44,16 @@ def read_rig(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
     n = len(next(iter(columns.values())))
     if "disc_speed" not in columns:
         columns["disc_speed"] = np.full(n, USUAL_SPEED)
-        faults.append(Fault(path.name, table.header_line, None, f"no column 'disc_speed', {USUAL_SPEED / KM_H:g} km/h assumed",
-                            "add one named 'disc_speed [km/h]'", WARNING))  # fmt: skip
+        faults.append(
+            Fault(
+                path.name,
+                table.header_line,
+                None,
+                f"no column 'disc_speed', {USUAL_SPEED / KM_H:g} km/h assumed",
+                "add one named 'disc_speed [km/h]'",
+                WARNING,
+            )
+        )
     line = np.zeros(n, int) if read.lines is None else read.lines
     headers = {name: table.headers[i] for name, (i, _) in places.items()}
     words = {w: table.words(table.headers.index(w)) if w in table.headers else None for w in WORDS}
@@ -58,8 +71,9 @@ def _places(table: CsvTable) -> tuple[dict[str, tuple[int, float]], list[Fault]]
     for name, unit in UNITS.items():
         places = [i for i, own in enumerate(names) if own == name]
         if len(places) > 1:
-            faults.append(Fault(table.file, table.header_line, name, "the column stands there more than once",
-                                "remove all but one"))  # fmt: skip
+            faults.append(
+                Fault(table.file, table.header_line, name, "the column stands there more than once", "remove all but one")
+            )
         if places:
             header = table.headers[places[0]]
             written = split(header)[1]
@@ -71,19 +85,37 @@ def _places(table: CsvTable) -> tuple[dict[str, tuple[int, float]], list[Fault]]
             except UnitError as error:
                 faults.append(Fault(table.file, table.header_line, header, error.fact, error.cure))
         elif name in NEEDED:
-            faults.append(Fault(table.file, table.header_line, None, f"no column {name!r}",
-                                f"add one named '{name} [{unit.name}]'; this file has {', '.join(table.headers)}"))
+            faults.append(
+                Fault(
+                    table.file,
+                    table.header_line,
+                    None,
+                    f"no column {name!r}",
+                    f"add one named '{name} [{unit.name}]'; this file has {', '.join(table.headers)}",
+                )
+            )
     unused = [h for h, own in zip(table.headers, names, strict=True) if own not in (*UNITS, *WORDS)]
     for header in unused:
-        faults.append(Fault(table.file, table.header_line, header, "the column is not used",
-                            suggestion(split(header)[0], (*UNITS, *WORDS)), WARNING))  # fmt: skip
+        faults.append(
+            Fault(
+                table.file,
+                table.header_line,
+                header,
+                "the column is not used",
+                suggestion(split(header)[0], (*UNITS, *WORDS)),
+                WARNING,
+            )
+        )
     return found, faults
 
 
 def _tests(file: str, tests: list[str] | None, line: np.ndarray) -> list[Fault]:
     """Words in the column `test` that name no test."""
-    return [Fault(file, int(i) or None, "test", f"{word!r} is no test", f"write {' or '.join(map(repr, KINDS))}")
-            for word, i in zip(tests or (), line, strict=tests is not None) if word.replace("_", " ").lower() not in KINDS]
+    return [
+        Fault(file, int(i) or None, "test", f"{word!r} is no test", f"write {' or '.join(map(repr, KINDS))}")
+        for word, i in zip(tests or (), line, strict=tests is not None)
+        if word.replace("_", " ").lower() not in KINDS
+    ]
 
 
 def _plain(fault: Fault) -> Fault:

@@ -104,8 +104,14 @@ def sweeps(rows: Rows) -> tuple[tuple[Sweep, ...], tuple[Fault, ...]]:
 def _both(rows: Rows, where: np.ndarray) -> Iterator[Fault]:
     if where.any():
         first = int(rows.line[np.flatnonzero(where)[0]]) or None
-        yield Fault(rows.file, first, None, f"{int(where.sum())} rows have slip and camber at once and are left out",
-                    "measure one angle with the other at zero", WARNING)  # fmt: skip
+        yield Fault(
+            rows.file,
+            first,
+            None,
+            f"{int(where.sum())} rows have slip and camber at once and are left out",
+            "measure one angle with the other at zero",
+            WARNING,
+        )
 
 
 def _grouped(values: np.ndarray) -> np.ndarray:

@@ -13,10 +13,24 @@ from .records import CAMBER, SLIP
 
 PA = 1e5  # in a bar
 UNITS = {
-    "pressure": "Pa", "load": "N", "speed": "m/s", "angle": "rad", "C_lambda": "N/rad", "C_m_lambda": "N.m/rad",
-    "C_phi": "N/rad", "C_m_phi": "N.m/rad", "c_p": "m", "mu": "1", "B": "1/rad", "force.D": "N", "torque.D": "N.m",
-    "rms_force": "N", "rms_torque": "N.m", "force.rms": "N", "torque.rms": "N.m",
-}  # fmt: skip
+    "pressure": "Pa",
+    "load": "N",
+    "speed": "m/s",
+    "angle": "rad",
+    "C_lambda": "N/rad",
+    "C_m_lambda": "N.m/rad",
+    "C_phi": "N/rad",
+    "C_m_phi": "N.m/rad",
+    "c_p": "m",
+    "mu": "1",
+    "B": "1/rad",
+    "force.D": "N",
+    "torque.D": "N.m",
+    "rms_force": "N",
+    "rms_torque": "N.m",
+    "force.rms": "N",
+    "torque.rms": "N.m",
+}
 LINEAR = {"force": "F = C_lambda λ + C_phi φ", "torque": "M = −C_m_lambda λ + C_m_phi φ"}
 
 
@@ -24,25 +38,38 @@ def summary(found: Identified) -> dict[str, Any]:
     """Everything `wheelchair tyre fit --json` prints, but for the file's own warnings."""
     return {
         "conditions": [condition(fit, found.tolerance) for fit in found.conditions],
-        "across": {tyre: {"laws": {name: {"K": _told(law.K), "exponents": _all_told(law.exponents), "at": _at(law)}
-                                   for name, law in own.laws.items()},
-                          "speed_exponents": _all_told(own.speed)} for tyre, own in found.across.items()},
-        "confidence": CONFIDENCE, "units": UNITS, "laws": LINEAR,
-    }  # fmt: skip
+        "across": {
+            tyre: {
+                "laws": {
+                    name: {"K": _told(law.K), "exponents": _all_told(law.exponents), "at": _at(law)}
+                    for name, law in own.laws.items()
+                },
+                "speed_exponents": _all_told(own.speed),
+            }
+            for tyre, own in found.across.items()
+        },
+        "confidence": CONFIDENCE,
+        "units": UNITS,
+        "laws": LINEAR,
+    }
 
 
 def condition(fit: ConditionFit, tolerance: float) -> dict[str, Any]:
     """One condition; what the data do not support is null, and `warnings` say why."""
     c = fit.condition
     return {
-        "tyre": c.tyre, "pressure": c.pressure * PA, "load": c.load, "speed": c.speed,
-        "linear": _linear(fit, tolerance), "dugoff": _dugoff(fit),
+        "tyre": c.tyre,
+        "pressure": c.pressure * PA,
+        "load": c.load,
+        "speed": c.speed,
+        "linear": _linear(fit, tolerance),
+        "dugoff": _dugoff(fit),
         "magic_formula": {channel: _magic(fit.magic(SLIP, channel)) for channel in (FORCE, TORQUE)},
         "camber": {channel: _magic(fit.magic(CAMBER, channel)) for channel in (FORCE, TORQUE)},
         "curvature_force": {kind: _offset(fit.fits.get((kind, FORCE))) for kind in (SLIP, CAMBER)},
         "angles": {kind: len(f.curve.angle) for (kind, channel), f in fit.fits.items() if channel == FORCE},
         "warnings": list(fit.warnings),
-    }  # fmt: skip
+    }
 
 
 def _linear(fit: ConditionFit, tolerance: float) -> dict[str, Any]:
@@ -65,10 +92,11 @@ def _dugoff(fit: ConditionFit) -> dict[str, Any] | None:
     estimates = {"C_lambda": law.C_lambda, "mu": law.mu, "c_p": law.c_p}
     return {
         **{name: e and e.value for name, e in estimates.items()},
-        "rms_force": law.rms_force, "rms_torque": law.rms_torque,
+        "rms_force": law.rms_force,
+        "rms_torque": law.rms_torque,
         "interval": {name: e and e.interval for name, e in estimates.items()},
         "off": {"of_peak": OF_PEAK, **{channel: dugoff_off(fit, channel) for channel in (FORCE, TORQUE)}},
-    }  # fmt: skip
+    }
 
 
 def _magic(law: MagicFormula | None) -> dict[str, Any] | None:
@@ -76,10 +104,13 @@ def _magic(law: MagicFormula | None) -> dict[str, Any] | None:
         return None
     estimates = {"B": law.B, "C": law.C, "D": law.D, "E": law.E}
     return {
-        **{name: e.value for name, e in estimates.items()}, "rms": law.rms, "BCD": law.K.value,
+        **{name: e.value for name, e in estimates.items()},
+        "rms": law.rms,
+        "BCD": law.K.value,
         "interval": {**{name: e.interval for name, e in estimates.items()}, "BCD": law.K.interval},
-        "misfit_p": law.misfit, "rests_on_prior": list(law.untold),
-    }  # fmt: skip
+        "misfit_p": law.misfit,
+        "rests_on_prior": list(law.untold),
+    }
 
 
 def _offset(fit: CurveFit | None) -> dict[str, Any] | None:

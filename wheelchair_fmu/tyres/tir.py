@@ -57,8 +57,16 @@ def read_tir(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
         return None, faults
     pressure = next((numbers[k] / PA for k in ("INFLPRES", "INFLATION_PRESSURE", "NOMPRES") if k in numbers), None)
     if pressure is None:
-        faults.append(Fault(path.name, None, "INFLPRES", f"no inflation pressure given, {RATED:g} bar assumed",
-                            "add INFLPRES, in Pa", WARNING))  # fmt: skip
+        faults.append(
+            Fault(
+                path.name,
+                None,
+                "INFLPRES",
+                f"no inflation pressure given, {RATED:g} bar assumed",
+                "add INFLPRES, in Pa",
+                WARNING,
+            )
+        )
     return _curves(path, numbers, pressure or RATED), faults
 
 
@@ -96,9 +104,7 @@ def _numbers(file: str, words: Mapping[str, str], lines: Mapping[str, int]) -> t
     return numbers, faults
 
 
-def _unsupported(
-    file: str, words: Mapping[str, str], numbers: Mapping[str, float], lines: Mapping[str, int]
-) -> list[Fault]:
+def _unsupported(file: str, words: Mapping[str, str], numbers: Mapping[str, float], lines: Mapping[str, int]) -> list[Fault]:
     faults = []
     for key, known in UNITS.items():
         if key in words and words[key].lower() not in known:
@@ -120,8 +126,14 @@ def _curves(path: Path, numbers: Mapping[str, float], pressure: float) -> Rows:
     Fy, Mz = tyre.forces(alpha, gamma, Fz)
     sign = -1.0 if numbers["PKY1"] < 0 else 1.0  # ISO's axes, or y to the right already
     n = len(alpha)
-    columns = {"pressure": np.full(n, pressure), "load": Fz, "disc_speed": np.full(n, numbers.get("LONGVL", USUAL_SPEED)),
-               "slip_angle": alpha, "camber_angle": gamma, "lateral_force": sign * Fy}  # fmt: skip
+    columns = {
+        "pressure": np.full(n, pressure),
+        "load": Fz,
+        "disc_speed": np.full(n, numbers.get("LONGVL", USUAL_SPEED)),
+        "slip_angle": alpha,
+        "camber_angle": gamma,
+        "lateral_force": sign * Fy,
+    }
     if all(key in numbers for key in ALIGNING):
         columns["yaw_torque"] = sign * Mz
     return Rows(path.name, [path.stem] * n, columns, np.zeros(n, int))
@@ -131,14 +143,21 @@ def tir_text(found: Identified, fit: ConditionFit) -> str:
     """The .tir file of one condition. Raises Failure where the data do not support a Magic Formula for the force."""
     force = fit.magic(SLIP, FORCE)
     if force is None:
-        raise Failure(f"{fit.condition}: the data do not support the Magic Formula, which a .tir file is made of; "
-                      "export TOML with --law linear")  # fmt: skip
+        raise Failure(
+            f"{fit.condition}: the data do not support the Magic Formula, which a .tir file is made of; "
+            "export TOML with --law linear"
+        )
     c, laws = fit.condition, found.across[fit.condition.tyre].laws
     by_load = {name: law.exponents["load"].value for name, law in laws.items() if "load" in law.exponents}
     m = float(np.clip(by_load.get("C_lambda", 0.0), -0.98, 0.98))
     bend = np.sqrt((1 - m) / (1 + m))  # d ln K / d ln F_z = m at the nominal load
-    lateral = {"PCY1": force.C.value, "PDY1": force.D.value / c.load, "PEY1": force.E.value,
-               "PKY1": -force.K.value / c.load / np.sin(2 * np.arctan(bend)), "PKY2": 1 / bend}  # fmt: skip
+    lateral = {
+        "PCY1": force.C.value,
+        "PDY1": force.D.value / c.load,
+        "PEY1": force.E.value,
+        "PKY1": -force.K.value / c.load / np.sin(2 * np.arctan(bend)),
+        "PKY2": 1 / bend,
+    }
     camber, twist = fit.K(CAMBER, FORCE), fit.K(CAMBER, TORQUE)
     if camber is not None:
         lateral["PVY3"] = -camber.value / c.load
@@ -169,14 +188,22 @@ def _trail(fit: ConditionFit) -> dict[str, float]:
     start = -torque.K.value / force.K.value
 
     def law(z: np.ndarray) -> Mf52:
-        return Mf52({"FNOMIN": 1.0, "UNLOADED_RADIUS": 1.0, "QBZ1": np.exp(z[0]), "QCZ1": z[1], "QDZ1": z[2] * start,
-                     "QEZ1": z[3]})  # fmt: skip
+        return Mf52(
+            {"FNOMIN": 1.0, "UNLOADED_RADIUS": 1.0, "QBZ1": np.exp(z[0]), "QCZ1": z[1], "QDZ1": z[2] * start, "QEZ1": z[3]}
+        )
 
     def left(z: np.ndarray) -> np.ndarray:
         return (law(z).trail(x, 0 * x, np.ones_like(x)) * F + M) / np.abs(M).max()
 
-    found = min((least_squares(left, [np.log(B), C, 1.0, E], bounds=([0, 0.5, 0.2, -20], [6, 2.5, 3, 1]))
-                 for B in (5.0, 15.0) for C in (1.0, 1.5) for E in (-2.0, 0.0)), key=lambda each: float(each.cost))  # fmt: skip
+    found = min(
+        (
+            least_squares(left, [np.log(B), C, 1.0, E], bounds=([0, 0.5, 0.2, -20], [6, 2.5, 3, 1]))
+            for B in (5.0, 15.0)
+            for C in (1.0, 1.5)
+            for E in (-2.0, 0.0)
+        ),
+        key=lambda each: float(each.cost),
+    )
     c = law(found.x)
     return {"QBZ1": c["QBZ1"], "QCZ1": c["QCZ1"], "QDZ1": c["QDZ1"] / RADIUS, "QEZ1": c["QEZ1"]}
 

@@ -61,8 +61,11 @@ def read_tydex(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
     except UnicodeDecodeError as error:
         return None, [not_utf8(path.name, raw, error)]
     blocks = _blocks(text)
-    faults = [Fault(path.name, None, None, f"no block **{name}", "is it a TYDEX 1.3 file with measurements?")
-              for name in ("MEASURCHANNELS", "MEASURDATA") if not blocks.get(name)]  # fmt: skip
+    faults = [
+        Fault(path.name, None, None, f"no block **{name}", "is it a TYDEX 1.3 file with measurements?")
+        for name in ("MEASURCHANNELS", "MEASURDATA")
+        if not blocks.get(name)
+    ]
     if faults:
         return None, faults
     constants, channels = ([_entry(i, line) for i, line in blocks.get(name, ())] for name in ("CONSTANTS", "MEASURCHANNELS"))
@@ -112,8 +115,15 @@ def _data(file: str, rows: Sequence[tuple[int, str]], width: int) -> tuple[np.nd
     for i, line in rows:
         words = line.split()
         if len(words) != width:
-            faults.append(Fault(file, i, None, f"{len(words)} numbers, but {width} channels are defined",
-                                "write one number for each channel"))  # fmt: skip
+            faults.append(
+                Fault(
+                    file,
+                    i,
+                    None,
+                    f"{len(words)} numbers, but {width} channels are defined",
+                    "write one number for each channel",
+                )
+            )
             continue
         try:
             table.append([float(word) for word in words])
@@ -168,8 +178,9 @@ def _numbers(file: str, entry: Entry) -> list[float]:
     try:
         return [float(word) for word in entry.rest.split()]
     except ValueError:
-        raise _Trouble(Fault(file, entry.line, entry.name, f"{entry.rest.strip()!r} is no number",
-                             "write numbers from column 53 on")) from None  # fmt: skip
+        raise _Trouble(
+            Fault(file, entry.line, entry.name, f"{entry.rest.strip()!r} is no number", "write numbers from column 53 on")
+        ) from None
 
 
 def _factor(file: str, entry: Entry, unit: Unit) -> float:

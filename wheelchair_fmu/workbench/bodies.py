@@ -63,8 +63,12 @@ def refuse_unusual(content: Any, what: str) -> None:
         texts += [key for value in level if isinstance(value, dict) for key in value]
         if odd := next((t for t in texts if any(category(c) in ("Cc", "Cs") and c not in "\n\r\t" for c in t)), None):
             raise UsageError(f"{odd[:40]!r} in {what} has characters that cannot be printed; take them out")
-        level = [inner for value in level if isinstance(value, dict | list)
-                 for inner in (value.values() if isinstance(value, dict) else value)]  # fmt: skip
+        level = [
+            inner
+            for value in level
+            if isinstance(value, dict | list)
+            for inner in (value.values() if isinstance(value, dict) else value)
+        ]
         if not level:
             return
     raise too_deep(what)

@@ -21,8 +21,12 @@ HOSTS = ("127.0.0.1", "localhost")
 OUR_OWN = ("same-origin", "none")  # what browsers say of requests by our page, and of addresses that somebody typed
 READING = ("GET", "HEAD")
 MOST_JSON = 1_000_000  # bytes of a request that is no upload
-HEADERS = {b"referrer-policy": b"same-origin", b"x-content-type-options": b"nosniff", b"x-frame-options": b"SAMEORIGIN",
-           b"cross-origin-resource-policy": b"same-origin"}  # fmt: skip
+HEADERS = {
+    b"referrer-policy": b"same-origin",
+    b"x-content-type-options": b"nosniff",
+    b"x-frame-options": b"SAMEORIGIN",
+    b"cross-origin-resource-policy": b"same-origin",
+}
 
 
 class Guard:
@@ -71,8 +75,10 @@ class Guard:
     def _too_much(self, request: Request) -> str:
         if self._most(request) == MOST_JSON:
             return f"a request of more than {MOST_JSON / 1e6:g} MB is too much for the workbench"
-        return (f"recordings of more than {self.most_upload / 1e6:g} MB at once are too much for the workbench; add fewer at a "
-                "time, raise --upload-limit, or use `wheelchair diagnose`")  # fmt: skip
+        return (
+            f"recordings of more than {self.most_upload / 1e6:g} MB at once are too much for the workbench; add fewer at a "
+            "time, raise --upload-limit, or use `wheelchair diagnose`"
+        )
 
     async def _counting(self, scope: Scope, receive: Receive, send: Send) -> None:
         request, read = Request(scope), 0

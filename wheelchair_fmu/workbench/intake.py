@@ -27,8 +27,10 @@ def safe_path(name: str) -> PurePosixPath:
     if len(path.parts) > MOST_PARTS or any(len(p.encode(errors="replace")) > LONGEST_PART for p in path.parts):
         raise UsageError(f"{shown} is too long for a file of a campaign; give each part at most {LONGEST_PART} characters")
     if path.suffix.lower() in PROGRAMS:
-        raise UsageError(f"{shown} is a program, and the workbench runs none that is dropped into it; where you trust it, give "
-                         "its folder to `wheelchair diagnose --effects DIR`")  # fmt: skip
+        raise UsageError(
+            f"{shown} is a program, and the workbench runs none that is dropped into it; where you trust it, give "
+            "its folder to `wheelchair diagnose --effects DIR`"
+        )
     if path.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{path}: {path.suffix or 'no ending'} is no recording; give one of {', '.join(SUFFIXES)}")
     return path
@@ -45,8 +47,9 @@ def refuse_bomb(file: BinaryIO, name: str, most: int) -> None:
             while piece := unpacked.read(PIECE):
                 grown += len(piece)
                 if grown > most:
-                    raise UsageError(f"{name} unpacks to more than {most / 1e6:g} MB; raise --upload-limit, or use "
-                                     "`wheelchair diagnose`")  # fmt: skip
+                    raise UsageError(
+                        f"{name} unpacks to more than {most / 1e6:g} MB; raise --upload-limit, or use `wheelchair diagnose`"
+                    )
     except (EOFError, OSError, zlib.error):
         return
 

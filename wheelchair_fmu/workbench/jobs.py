@@ -59,9 +59,15 @@ class Job:
             with self.lock:
                 if self.state != "running":
                     return None
-                process = stack.enter_context(child([*COMMAND, *words], cwd=folder, stdout=subprocess.PIPE,
-                                                    stderr=subprocess.PIPE,
-                                                    env={**os.environ, "PYTHONPATH": SEARCHED}))  # fmt: skip
+                process = stack.enter_context(
+                    child(
+                        [*COMMAND, *words],
+                        cwd=folder,
+                        stdout=subprocess.PIPE,
+                        stderr=subprocess.PIPE,
+                        env={**os.environ, "PYTHONPATH": SEARCHED},
+                    )
+                )
                 self.process = process
             said = threading.Thread(target=self._listen, args=(process.stderr,), daemon=True)
             said.start()

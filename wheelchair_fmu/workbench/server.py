@@ -46,8 +46,10 @@ EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
 LONGEST_TITLE = 200
 EARLIER = 12  # pieces of work that are listed
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
-POLICY = ("default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-          "frame-ancestors 'self'")  # fmt: skip
+POLICY = (
+    "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+    "frame-ancestors 'self'"
+)
 TYPES = {".js": "text/javascript", ".css": "text/css", ".html": "text/html"}
 
 Answer = Callable[[Request, Session], Awaitable[Response]]
@@ -63,9 +65,18 @@ class Workbench:
         self.assets = {p.relative_to(ASSETS).as_posix() for p in Path(str(ASSETS)).rglob("*") if p.suffix in TYPES}
         chair = Variant()
         self.bounds = known_parameters()
-        self.parameters = [{"name": p.name, "unit": p.unit.name, "meaning": p.meaning, "default": p.default,
-                            "uncertainty": p.uncertainty, "calibrated": p.name in CALIBRATED}
-                           for p in chair.parameters() if p.name.startswith(KNOWN)]  # fmt: skip
+        self.parameters = [
+            {
+                "name": p.name,
+                "unit": p.unit.name,
+                "meaning": p.meaning,
+                "default": p.default,
+                "uncertainty": p.uncertainty,
+                "calibrated": p.name in CALIBRATED,
+            }
+            for p in chair.parameters()
+            if p.name.startswith(KNOWN)
+        ]
         model = assemble()
         self.words = {
             "targets": [{"name": n, "unit": q.unit.name, "meaning": q.meaning} for n, q in targets(model).items()],
@@ -114,8 +125,10 @@ class Workbench:
                 return Json({"error": str(error)}, 400)
             except OSError as error:
                 what = error.strerror or type(error).__name__
-                return Json({"error": f"the workbench's folder cannot be read or written ({what}); see that it is there and "
-                                      "has room"}, 507)  # fmt: skip
+                return Json(
+                    {"error": f"the workbench's folder cannot be read or written ({what}); see that it is there and has room"},
+                    507,
+                )
 
         return respond
 
@@ -285,7 +298,7 @@ class Workbench:
             raise UsageError(f"{cut(id)} is no name for an effect; use small letters, digits and underscores, like my_drag")
         if id in bundled():
             raise UsageError(f"there is an effect {id!r} already; choose another name")
-        if not title.isprintable() or set(title) & set("\"\\{}") or not 0 < len(title) <= LONGEST_TITLE:
+        if not title.isprintable() or set(title) & set('"\\{}') or not 0 < len(title) <= LONGEST_TITLE:
             raise UsageError("say in a few plain words what the effect is")
         size, lower, upper = (number(asked, key) for key in ("size", "lower", "upper"))
         if not lower <= 0 < size < upper:
@@ -327,6 +340,8 @@ def _attached(name: str) -> dict[str, str]:
 async def _refused(request: Request, error: Exception) -> Response:
     """What the framework refuses, as a sentence."""
     status = error.status_code if isinstance(error, HTTPException) else 500
-    told = {404: "there is nothing at this address; open the workbench's first page",
-            405: f"{request.method} is not what this address answers"}  # fmt: skip
+    told = {
+        404: "there is nothing at this address; open the workbench's first page",
+        405: f"{request.method} is not what this address answers",
+    }
     return Json({"error": told.get(status) or str(getattr(error, "detail", error))}, status)

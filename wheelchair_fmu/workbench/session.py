@@ -54,7 +54,8 @@ class Session:
             raise UsageError(f"{id!r} is no session; open the workbench's first page")
         self.id, self.folder = id, root / id
         self.campaign, self.effects, self.variants, self.campaigns = (
-            self.folder / n for n in ("campaign", "effects", "variants", "campaigns"))  # fmt: skip
+            self.folder / n for n in ("campaign", "effects", "variants", "campaigns")
+        )
 
     @classmethod
     def begin(cls, root: Path, campaign: Path | None = None) -> Session:

@@ -44,9 +44,7 @@ def run(
 
 
 def snapshot(
-    values: Mapping[str, float | str],
-    inputs: Mapping[str, float] | None = None,
-    states: Mapping[str, float] | None = None,
+    values: Mapping[str, float | str], inputs: Mapping[str, float] | None = None, states: Mapping[str, float] | None = None
 ) -> dict:
     """Everything about a chair in one moment.
 

@@ -30,8 +30,10 @@ def carried(now: dict) -> float:
 @pytest.mark.effect("lateral_load_transfer")
 def test_lateral_load_transfer_balances_the_overturning_moment():
     h = 0.5
-    now = snapshot({"effect.lateral_load_transfer.h": h, "start.u": 1.5, "start.v": 0.18, "start.psi_dot": 1.0,
-                    "start.psi": 0.7}, {"floor.slope_x": 0.05})  # fmt: skip
+    now = snapshot(
+        {"effect.lateral_load_transfer.h": h, "start.u": 1.5, "start.v": 0.18, "start.psi_dot": 1.0, "start.psi": 0.7},
+        {"floor.slope_x": 0.05},
+    )
     assert abs(now["sensor.a_y"]) > 0.1
     assert overturning(now) == pytest.approx(MASS * now["sensor.a_y"] * h, rel=1e-9)
     assert carried(now) == pytest.approx(MASS * G)
@@ -122,8 +124,12 @@ def test_the_frame_stays_rigid_while_the_trunk_leans():
 
 @pytest.mark.effect("trunk_motion")
 def test_an_accelerometer_on_the_frame_adds_up_to_the_frames_speed():
-    result = run({**SMOOTH, "effect.trunk_motion.amplitude": 0.02},
-                 dict.fromkeys(PUSH, lambda t: 40 * np.sin(np.pi * t) ** 2), T=2.0, n=4001)  # fmt: skip
+    result = run(
+        {**SMOOTH, "effect.trunk_motion.amplitude": 0.02},
+        dict.fromkeys(PUSH, lambda t: 40 * np.sin(np.pi * t) ** 2),
+        T=2.0,
+        n=4001,
+    )
     assert np.ptp(result["sensor.wheel_speed_l"] - result["chair.u"]) > 0.02
     added = cumulative_simpson(result["sensor.a_x"], x=result.time, initial=0)
     np.testing.assert_allclose(result["sensor.wheel_speed_l"] - result["sensor.wheel_speed_l"][0], added, atol=5e-6)

@@ -40,9 +40,11 @@ def test_on_the_spot_the_casters_count_with_their_inertia():
     now = snapshot(
         {**TOP, **REAL, "start.psi_dot": spin, "effect.caster_inertia.I": I, "effect.caster_inertia.filter": T_filter},
         {"push.F_rl": F, "push.F_rr": -F},
-        {**dict(zip(("swivel.fl", "swivel.fr"), angles, strict=True)),
-         **dict.fromkeys(("effect.caster_inertia.smoothed_rate.fl", "effect.caster_inertia.smoothed_rate.fr"), smoothed)},
-    )  # fmt: skip
+        {
+            **dict(zip(("swivel.fl", "swivel.fr"), angles, strict=True)),
+            **dict.fromkeys(("effect.caster_inertia.smoothed_rate.fl", "effect.caster_inertia.smoothed_rate.fr"), smoothed),
+        },
+    )
     np.testing.assert_allclose(now["swivel_rate"], 0, atol=1e-12)
     assert now["psi_dot'"] == pytest.approx(expected, rel=1e-9)
 
@@ -52,8 +54,9 @@ def test_what_the_casters_rotation_gains_the_chair_loses():
     """Power = −d/dt Σ ½ I (δ' + ψ')² in any motion: swivel inertia keeps energy."""
     I = 0.03  # noqa: E741
     smoothed = {"effect.caster_inertia.smoothed_rate.fl": 2.0, "effect.caster_inertia.smoothed_rate.fr": -5.0}
-    on, off = (snapshot({**REAL, **SWINGING, "effect.caster_inertia.I": value}, states={**ANGLES, **smoothed})
-               for value in (I, 0.0))  # fmt: skip
+    on, off = (
+        snapshot({**REAL, **SWINGING, "effect.caster_inertia.I": value}, states={**ANGLES, **smoothed}) for value in (I, 0.0)
+    )
     turning = on["swivel_rate"] + on["psi_dot"]
     gained = sum(I * rate * on[f"{name}'"] for rate, name in zip(turning, smoothed, strict=True))
     assert abs(gained) > 1
@@ -72,14 +75,19 @@ def test_the_chair_loses_what_the_bearings_rub():
 @pytest.mark.effect("caster_friction")
 def test_caster_friction_pushes_the_swinging_caster_with_its_lever():
     """Casters straight while the chair begins to turn: they swing to the right, and their patches are pushed to the left."""
-    now = snapshot({**SMOOTH, "effect.caster_friction.M": 0.2, "start.psi_dot": 0.1},
-                   states={"swivel.fl": 0.0, "swivel.fr": 0.0})  # fmt: skip
+    now = snapshot(
+        {**SMOOTH, "effect.caster_friction.M": 0.2, "start.psi_dot": 0.1}, states={"swivel.fl": 0.0, "swivel.fr": 0.0}
+    )
     assert np.all(now["swivel_rate"] > 1)
     np.testing.assert_allclose(now["F_yf"], -0.2 / TRAIL, rtol=1e-6)
 
 
 def test_casters_swing_round_when_the_chair_backs_up():
-    result = run({"effect.caster_friction.M": 0.0, "start.u": -0.3},
-                 {"push.F_rl": lambda t: -10 - (t < 0.2), "push.F_rr": -10.0}, T=4, n=401)  # fmt: skip
+    result = run(
+        {"effect.caster_friction.M": 0.0, "start.u": -0.3},
+        {"push.F_rl": lambda t: -10 - (t < 0.2), "push.F_rr": -10.0},
+        T=4,
+        n=401,
+    )
     assert np.abs(np.abs(result["caster.fl"][-1]) - np.pi) < 0.3
     assert np.isfinite(result.results).all()

@@ -16,17 +16,28 @@ from wheelchair_fmu.engine.simulate import Trajectory
 from wheelchair_fmu.loop.evidence import Bench
 from wheelchair_fmu.model.variant import Variant
 
-ALL = ("accelerometer_bias", "accelerometer_offset", "accelerometer_tilt", "gyro_bias", "gyro_scale", "push_force_gain",
-       "wheel_radius_error")  # fmt: skip
+ALL = (
+    "accelerometer_bias",
+    "accelerometer_offset",
+    "accelerometer_tilt",
+    "gyro_bias",
+    "gyro_scale",
+    "push_force_gain",
+    "wheel_radius_error",
+)
 SLOPE = 0.02
 SETTLED = slice(100, -5)  # tyres take some 0.05 s to their force; differences are worse at the end
 
 
 def lively(errors: Mapping[str, float]) -> Trajectory:
     """Pushes that speed up, turn, and turn back, on a slope."""
-    return run({**effects(errors), "start.psi": 0.3},
-               {"push.F_rl": lambda t: 15 + 10 * np.sin(3 * t), "push.F_rr": lambda t: 12 - 9 * np.sin(3 * t),
-                "floor.slope_x": SLOPE}, T=2.0, n=2001, among=ALL)  # fmt: skip
+    return run(
+        {**effects(errors), "start.psi": 0.3},
+        {"push.F_rl": lambda t: 15 + 10 * np.sin(3 * t), "push.F_rr": lambda t: 12 - 9 * np.sin(3 * t), "floor.slope_x": SLOPE},
+        T=2.0,
+        n=2001,
+        among=ALL,
+    )
 
 
 def whole_turn(errors: Mapping[str, float]) -> Trajectory:
@@ -78,8 +89,9 @@ def test_a_tilted_accelerometer_reads_along_its_own_axes(roll, pitch):
 
 @pytest.mark.effect("accelerometer_tilt")
 def test_a_tilted_accelerometer_at_rest_tells_its_tilt():
-    up, right_down = (run({"start.u": 0.0, f"effect.accelerometer_tilt.{axis}": 0.1}, T=0.1, n=2, among=ALL)
-                      for axis in ("pitch", "roll"))  # fmt: skip
+    up, right_down = (
+        run({"start.u": 0.0, f"effect.accelerometer_tilt.{axis}": 0.1}, T=0.1, n=2, among=ALL) for axis in ("pitch", "roll")
+    )
     assert up["sensor.a_x"][-1] == pytest.approx(G * np.sin(0.1))
     assert right_down["sensor.a_y"][-1] == pytest.approx(-G * np.sin(0.1))
 
@@ -109,16 +121,22 @@ def test_wheels_of_another_radius_count_too_much_of_a_turn():
 
 @pytest.mark.effect("push_force_gain")
 def test_push_force_gain_divides_the_record():
-    result = run({**SMOOTH, "effect.push_force_gain.r": 0.25, "effect.push_force_gain.l": 0.25, "start.u": 0.0},
-                 {"push.F_rl": 10.0, "push.F_rr": 10.0}, among=ALL)  # fmt: skip
+    result = run(
+        {**SMOOTH, "effect.push_force_gain.r": 0.25, "effect.push_force_gain.l": 0.25, "start.u": 0.0},
+        {"push.F_rl": 10.0, "push.F_rr": 10.0},
+        among=ALL,
+    )
     np.testing.assert_allclose(result["chair.u"], 16.0 / MASS * result.time, rtol=1e-8, atol=1e-12)
 
 
 @pytest.mark.effect("push_force_gain")
 def test_a_sensor_that_reads_too_much_is_behind_a_turn_to_its_side():
     """Records alike with the right sensor reading a quarter too much: on the spot the left pushes 10 N, the right −8 N."""
-    result = run({**TOP, "effect.push_force_gain.r": 0.25, "speed.mode": "prescribed", "speed.u": 0.0},
-                 {"push.F_rl": 10.0, "push.F_rr": -10.0}, among=ALL)  # fmt: skip
+    result = run(
+        {**TOP, "effect.push_force_gain.r": 0.25, "speed.mode": "prescribed", "speed.u": 0.0},
+        {"push.F_rl": 10.0, "push.F_rr": -10.0},
+        among=ALL,
+    )
     np.testing.assert_allclose(result["chair.psi_dot"], T_R / 2 * 18.0 / I_Z * result.time, rtol=1e-7, atol=1e-12)
 
 
@@ -135,8 +153,19 @@ def test_a_record_that_is_early_by_tau_is_read_that_much_later(tau):
     speed = 2 * F / MASS * (since - np.sin(2 * np.pi * since) / (2 * np.pi))
     early = {name: stroke(t + tau) for name in ("push.F_rl", "push.F_rr")}
     recorded = Run("stroke", Path("stroke.csv"), "push", "fit", 0.0, {}, t, early, {"wheel_speed_l": speed})
-    campaign = Campaign("stroke", Path(), "SAE-J670", dict(SMOOTH), {}, {"F_rl": 0.0, "F_rr": 0.0, "wheel_speed_l": 0.01},
-                        frozenset(), (), {}, (recorded,), "")  # fmt: skip
+    campaign = Campaign(
+        "stroke",
+        Path(),
+        "SAE-J670",
+        dict(SMOOTH),
+        {},
+        {"F_rl": 0.0, "F_rr": 0.0, "wheel_speed_l": 0.01},
+        frozenset(),
+        (),
+        {},
+        (recorded,),
+        "",
+    )
     bench = Bench(campaign, Variant().with_effects(["push_force_delay"]))
     seen = bench.evidence(campaign.runs, {"effect.push_force_delay.tau": tau}).runs[0].predicted[:, 0]
     np.testing.assert_allclose(seen, speed, atol=2e-5)

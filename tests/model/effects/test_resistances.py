@@ -7,8 +7,15 @@ import pytest
 
 from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, I_Z, MASS, SMOOTH, T_R, TOP, B, G, run
 
-ALL = ("aerodynamic_drag", "floor_cross_slope", "floor_slope", "rolling_resistance_asymmetry", "rolling_resistance_speed",
-       "scrub_torque", "scrub_torque_viscous")  # fmt: skip
+ALL = (
+    "aerodynamic_drag",
+    "floor_cross_slope",
+    "floor_slope",
+    "rolling_resistance_asymmetry",
+    "rolling_resistance_speed",
+    "scrub_torque",
+    "scrub_torque_viscous",
+)
 
 
 def drive(values, inputs=None, **how):
@@ -58,8 +65,7 @@ def test_dry_scrub_holds_a_chair_against_a_weaker_torque():
     M = 1.0
     for share, turns in ((0.99, False), (1.5, True)):
         F = share * M / T_R
-        result = drive({**TOP, "effect.scrub_torque.M": M, "effect.scrub_torque.rate": 1e-5},
-                       {"push.F_rl": F, "push.F_rr": -F})  # fmt: skip
+        result = drive({**TOP, "effect.scrub_torque.M": M, "effect.scrub_torque.rate": 1e-5}, {"push.F_rl": F, "push.F_rr": -F})
         expected = (share - 1) * M / I_Z * result.time[-1] if turns else 0.0
         assert result["chair.psi_dot"][-1] == pytest.approx(expected, rel=1e-4, abs=2e-5)
 
@@ -103,8 +109,10 @@ def test_a_floor_that_falls_along_its_diagonal_is_rolled_down_and_up():
 def test_across_a_slope_a_free_chair_turns_downhill_in_a_circle():
     """Without self-aligning torque the rear tyres can carry no force, so u ψ' = g sin θ, whatever the heading by then."""
     theta, u = 0.02, 1.0
-    result = drive({**SMOOTH, "tyre.C_m_lambda": 0.0, "speed.mode": "prescribed", "speed.u": u,
-                    "effect.floor_cross_slope.theta": theta}, T=30)  # fmt: skip
+    result = drive(
+        {**SMOOTH, "tyre.C_m_lambda": 0.0, "speed.mode": "prescribed", "speed.u": u, "effect.floor_cross_slope.theta": theta},
+        T=30,
+    )
     late = result.time > 15
     np.testing.assert_allclose(result["chair.psi_dot"][late], G * np.sin(theta) / u, rtol=1e-6)
     np.testing.assert_allclose(result["sensor.a_y"][late], 0, atol=1e-6)
@@ -116,8 +124,10 @@ def test_across_a_slope_a_chair_is_kept_straight_by_the_arm_of_its_tyres():
     """The rear tyres carry m g sin θ at b and the pneumatic trail behind the CM, which the pushes must balance."""
     weight, slip = MASS * G * np.sin(0.02), -MASS * G * np.sin(0.02) / (2 * C_LAMBDA)
     difference = -weight * (B + C_M_LAMBDA / C_LAMBDA) / T_R
-    result = drive({**SMOOTH, "speed.mode": "prescribed", "effect.floor_cross_slope.theta": 0.02},
-                   {"push.F_rl": difference, "push.F_rr": -difference})  # fmt: skip
+    result = drive(
+        {**SMOOTH, "speed.mode": "prescribed", "effect.floor_cross_slope.theta": 0.02},
+        {"push.F_rl": difference, "push.F_rr": -difference},
+    )
     assert result["chair.psi_dot"][-1] == pytest.approx(0, abs=1e-5)
     assert result["slip.rl"][-1] == pytest.approx(slip, rel=1e-4)
     assert result["sensor.a_y"][-1] == pytest.approx(-G * np.sin(0.02), rel=1e-4)

@@ -58,10 +58,17 @@ def test_forces_grow_with_the_load_as_the_exponent_says(exponent):
 @pytest.mark.effect("load_sensitivity")
 def test_stiffness_in_proportion_to_load_makes_the_mass_drop_out():
     """Similarity: when all forces grow like the mass, twice the chair under twice the pushes moves alike."""
-    motion = {"start.u": 1.2, "start.v": 0.05, "start.psi_dot": 0.4,
-              "effect.load_sensitivity.exponent": 1.0, "effect.load_sensitivity.exponent_M": 1.0}  # fmt: skip
-    one, two = (snapshot({**motion, "chair.m": k * MASS, "chair.I_z": k * I_Z}, {"push.F_rl": k * 9.0, "push.F_rr": k * 4.0})
-                for k in (1, 2))  # fmt: skip
+    motion = {
+        "start.u": 1.2,
+        "start.v": 0.05,
+        "start.psi_dot": 0.4,
+        "effect.load_sensitivity.exponent": 1.0,
+        "effect.load_sensitivity.exponent_M": 1.0,
+    }
+    one, two = (
+        snapshot({**motion, "chair.m": k * MASS, "chair.I_z": k * I_Z}, {"push.F_rl": k * 9.0, "push.F_rr": k * 4.0})
+        for k in (1, 2)
+    )
     for rate in ("u'", "v'", "psi_dot'"):
         assert two[rate] == pytest.approx(one[rate], rel=1e-12)
 
@@ -127,8 +134,13 @@ def test_the_trail_halves_at_the_slip_named_and_the_torque_levels_off():
 
 
 def leaning(right: float, left: float) -> dict:
-    return {**SMOOTH, "effect.camber_misalignment.phi_r": right, "effect.camber_misalignment.phi_l": left,
-            "speed.mode": "prescribed", "speed.u": 1.0}  # fmt: skip
+    return {
+        **SMOOTH,
+        "effect.camber_misalignment.phi_r": right,
+        "effect.camber_misalignment.phi_l": left,
+        "speed.mode": "prescribed",
+        "speed.u": 1.0,
+    }
 
 
 @pytest.mark.effect("camber_misalignment")
@@ -190,8 +202,7 @@ def test_toe_drags_like_its_square_and_as_much_as_was_measured():
 def test_wheels_turn_further_than_they_roll_by_compliance_times_work(u):
     """∫ F |v| compliance dt: pushing from rest, and braking a chair that rolls back with the same pushes."""
     compliance, F = 1e-3, 20.0
-    result = run({**SMOOTH, "start.u": u, "effect.longitudinal_slip.compliance": compliance},
-                 {"push.F_rl": F, "push.F_rr": F})  # fmt: skip
+    result = run({**SMOOTH, "start.u": u, "effect.longitudinal_slip.compliance": compliance}, {"push.F_rl": F, "push.F_rr": F})
     work = F * abs(result["chair.x"][-1])  # of one wheel's push, whichever its sign
     turned = trapezoid(result["sensor.wheel_speed_l"], result.time)
     assert turned - result["chair.x"][-1] == pytest.approx(compliance * work, rel=1e-6)
@@ -202,7 +213,9 @@ def test_wheels_turn_further_than_they_roll_by_compliance_times_work(u):
 def test_a_braked_wheel_turns_less_far_than_it_rolls(u):
     """By compliance times the brake's force all the way: 0.1 of 100 N, both ways."""
     compliance, brake = 1e-3, 0.1
-    result = run({**SMOOTH, "start.u": u, "brake.F_max": 100.0, "effect.longitudinal_slip.compliance": compliance},
-                 {"brake.rl": brake, "brake.rr": brake})  # fmt: skip
+    result = run(
+        {**SMOOTH, "start.u": u, "brake.F_max": 100.0, "effect.longitudinal_slip.compliance": compliance},
+        {"brake.rl": brake, "brake.rr": brake},
+    )
     turned = trapezoid(result["sensor.wheel_speed_l"], result.time)
     assert turned / result["chair.x"][-1] == pytest.approx(1 - compliance * brake * 100.0, rel=1e-4)

@@ -38,21 +38,26 @@ def test_a_plan_is_a_product(tmp_path):
 
 def test_an_effect_that_is_named_is_on_in_every_variant(tmp_path):
     (tmp_path / "v.toml").write_text('[laws]\ntyre = "dugoff"\n[values]\n"chair.m" = 90\n')
-    plan = plan_of(tmp_path, """
+    plan = plan_of(
+        tmp_path,
+        """
 [parameters]
 "effect.relaxation_length.sigma" = [0, 0.1]
 [[manoeuvre]]
 name = "spin"
 [[variant]]
 file = "v.toml"
-""")  # fmt: skip
+""",
+    )
     (chair,) = plan.chairs
     assert chair.label == "v" and chair.effects == ("relaxation_length",) and chair.variant().choice.tyre == "dugoff"
 
 
 def test_all_faults_come_together_with_line_and_cure(tmp_path):
     with pytest.raises(PlanError) as refused:
-        plan_of(tmp_path, """[sweep]
+        plan_of(
+            tmp_path,
+            """[sweep]
 method = "sobol"
 samples = 1000
 sed = 1
@@ -85,7 +90,8 @@ name = "better"
 [[variant]]
 file = "none.toml"
 [extra]
-""")  # fmt: skip
+""",
+        )
     said = {fault.line: str(fault) for fault in refused.value.faults}
     for line, words in {
         3: "samples = 1000 is no power of two, and Sobol' points are even only then; give 512 or 1024",
@@ -113,18 +119,24 @@ file = "none.toml"
     assert len(refused.value.faults) == 20
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ("[sweep", "line 1: not valid TOML"),
-    ("[sweep]\n", "there is nothing to run"),
-    ('[sweep]\nmethod = "morris"\nsamples = 4\n[[manoeuvre]]\nname = "spin"\n', "morris needs parameters to vary"),
-    ('[sweep]\nmethod = "morris"\nsamples = 4\n[parameters]\n"chair.m" = [60, 80]\n', "sensitivity indices need a range"),
-    ('[sweep]\nmethod = "random"\n[parameters]\n"chair.m" = [60, 80]\n', "samples is missing; write for example samples = 64"),
-    ('[sweep]\nmethod = "sobel"\n', "line 2: no method 'sobel'; did you mean 'sobol'?"),
-    ('[parameters]\n"chair.m" = { from = 60, to = 80 }\n', "a grid needs steps"),
-    ('[parameters]\n"tyre.law" = { from = 1, to = 3 }\n', "named choices have no range"),
-    ('[parameters]\n"chair.m" = []\n', "is no list of values"),
-    ('manoeuvre = "spin"\n', "write [[manoeuvre]] on a line of its own"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[sweep", "line 1: not valid TOML"),
+        ("[sweep]\n", "there is nothing to run"),
+        ('[sweep]\nmethod = "morris"\nsamples = 4\n[[manoeuvre]]\nname = "spin"\n', "morris needs parameters to vary"),
+        ('[sweep]\nmethod = "morris"\nsamples = 4\n[parameters]\n"chair.m" = [60, 80]\n', "sensitivity indices need a range"),
+        (
+            '[sweep]\nmethod = "random"\n[parameters]\n"chair.m" = [60, 80]\n',
+            "samples is missing; write for example samples = 64",
+        ),
+        ('[sweep]\nmethod = "sobel"\n', "line 2: no method 'sobel'; did you mean 'sobol'?"),
+        ('[parameters]\n"chair.m" = { from = 60, to = 80 }\n', "a grid needs steps"),
+        ('[parameters]\n"tyre.law" = { from = 1, to = 3 }\n', "named choices have no range"),
+        ('[parameters]\n"chair.m" = []\n', "is no list of values"),
+        ('manoeuvre = "spin"\n', "write [[manoeuvre]] on a line of its own"),
+    ],
+)
 def test_what_cannot_be_is_refused(tmp_path, text, words):
     with pytest.raises(PlanError) as refused:
         plan_of(tmp_path, text)

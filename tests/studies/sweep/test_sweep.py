@@ -56,7 +56,9 @@ def test_a_steady_turn_has_the_radius_of_the_trim(tmp_path):
 
 
 def test_without_resistance_the_pushes_work_becomes_motion(tmp_path):
-    job = job_of(tmp_path, """
+    job = job_of(
+        tmp_path,
+        """
 [parameters]
 "resistance.f_r" = [0]
 "resistance.f_f" = [0]
@@ -64,10 +66,12 @@ def test_without_resistance_the_pushes_work_becomes_motion(tmp_path):
 [[manoeuvre]]
 name = "start-stop"
 time = 4
-""")  # fmt: skip
+""",
+    )
     rows = job.table(0).to_pylist()
-    assert [row["push_work"] for row in rows] == pytest.approx([row["chair.m"] * row["speed_end"] ** 2 / 2 for row in rows],
-                                                               rel=1e-4)  # fmt: skip
+    assert [row["push_work"] for row in rows] == pytest.approx(
+        [row["chair.m"] * row["speed_end"] ** 2 / 2 for row in rows], rel=1e-4
+    )
     assert rows[0]["push_work"] > rows[1]["push_work"] > 10
 
 
@@ -132,7 +136,9 @@ def test_parts_of_another_plan_are_not_mixed_in(tmp_path):
 
 def test_bad_chairs_are_told_and_not_fatal(tmp_path):
     (tmp_path / "paper.toml").write_text('[laws]\nequations = "paper"\n')
-    job = job_of(tmp_path, """
+    job = job_of(
+        tmp_path,
+        """
 [parameters]
 "chair.m" = [60, 80]
 [[manoeuvre]]
@@ -141,7 +147,8 @@ name = "slalom"
 name = "start-stop"
 [[variant]]
 file = "paper.toml"
-""")  # fmt: skip
+""",
+    )
     complete(job, tmp_path / "out.parquet", in_order)
     table = pd.read_parquet(tmp_path / "out.parquet")
     failed = table.manoeuvre == "start-stop"  # the paper divides by the forward speed
@@ -209,8 +216,9 @@ def test_a_dask_cluster_with_a_worker_killed_does_the_same(tmp_path):
         assert cluster.workers[0].pid != killed[0]
     chairs = pd.read_parquet(out)
     assert len(chairs) == job.plan.runs and not chairs.duplicated(["chair", "manoeuvre"]).any()
-    pd.testing.assert_frame_equal(job.table(job.chunks - 1).to_pandas(), chairs.iloc[-job.rows(job.chunks - 1):]
-                                  .reset_index(drop=True))  # fmt: skip
+    pd.testing.assert_frame_equal(
+        job.table(job.chunks - 1).to_pandas(), chairs.iloc[-job.rows(job.chunks - 1) :].reset_index(drop=True)
+    )
 
 
 def test_no_cluster_at_the_address(tmp_path):

@@ -39,8 +39,10 @@ def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
 
 def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
     """Runs that say nothing are left out, and that may leave none of a role."""
-    for role, severity, lack in (("fit", ERROR, "there is nothing to learn from"),
-                                 ("holdout", WARNING, "no effect can be proven on data it has not seen")):  # fmt: skip
+    for role, severity, lack in (
+        ("fit", ERROR, "there is nothing to learn from"),
+        ("holdout", WARNING, "no effect can be proven on data it has not seen"),
+    ):
         entries = [entry for entry in all_.doc.entries if entry.text("role") == role]
         silent = [run for run in all_.runs if run.silent and run.entry.text("role") == role]
         if entries and len(silent) == len(entries):
@@ -98,5 +100,11 @@ def glitches(all_: Assembly) -> Iterator[Fault]:
 
 
 CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
-    column_in_no_run, nobody_speaks, glitches, bad_noise, noise_unknown, noise_estimated, noise_against_data,
-)  # fmt: skip
+    column_in_no_run,
+    nobody_speaks,
+    glitches,
+    bad_noise,
+    noise_unknown,
+    noise_estimated,
+    noise_against_data,
+)

@@ -32,18 +32,17 @@ def time_goes_back(draft: Draft) -> Iterator[Fault]:
     time, rows = _finite(draft)
     steps = np.flatnonzero(np.diff(time) < 0) + 1
     yield from _listed(
-        draft, rows[steps],
+        draft,
+        rows[steps],
         lambda i: f"time goes back from {_before(draft, i):.10g} to {_time(draft, i):.10g} s",
         "remove or sort the rows",
-    )  # fmt: skip
+    )
 
 
 def time_twice(draft: Draft) -> Iterator[Fault]:
     time, rows = _finite(draft)
     steps = np.flatnonzero(np.diff(time) == 0) + 1
-    yield from _listed(
-        draft, rows[steps], lambda i: f"time {_time(draft, i):.10g} s is there twice", "remove one of the rows"
-    )
+    yield from _listed(draft, rows[steps], lambda i: f"time {_time(draft, i):.10g} s is there twice", "remove one of the rows")
 
 
 def uneven(draft: Draft) -> Iterator[Fault]:
@@ -71,9 +70,7 @@ def coarse(draft: Draft) -> Iterator[Fault]:
     steps = steps[steps > 0]
     if steps.size and (usual := float(np.median(steps))) > COARSE:
         fact = f"one sample each {usual:.4g} s is too coarse for the chair's yaw motion"
-        yield run_fault(
-            draft.file, fact, "log at 50 Hz or more; check the unit of time", 1, draft.header("time"), WARNING
-        )
+        yield run_fault(draft.file, fact, "log at 50 Hz or more; check the unit of time", 1, draft.header("time"), WARNING)
 
 
 def _finite(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
@@ -103,6 +100,4 @@ def _listed(draft: Draft, places: np.ndarray, fact: Callable[[int], str], cure: 
         yield run_fault(draft.file, f"{len(places) - SHOWN} more rows like these", cure, line)
 
 
-CLOCK_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    no_time, empty_time, time_goes_back, time_twice, uneven, coarse,
-)  # fmt: skip
+CLOCK_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (no_time, empty_time, time_goes_back, time_twice, uneven, coarse)

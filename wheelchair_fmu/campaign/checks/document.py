@@ -34,8 +34,10 @@ def crowded(doc: Document) -> list[Fault]:
     tables = {"the file": doc.data, **{f"[{name}]": value for name, value in doc.data.items() if isinstance(value, Mapping)}}
     tables |= {entry.title: entry.data for entry in doc.entries}
     found = [(name, len(value)) for name, value in tables.items() if len(value) > MOST_KEYS]
-    return [doc.fault("", f"{name} has {count} keys, but at most {MOST_KEYS} make sense", "is this the right file?")
-            for name, count in found[:SHOWN]]  # fmt: skip
+    return [
+        doc.fault("", f"{name} has {count} keys, but at most {MOST_KEYS} make sense", "is this the right file?")
+        for name, count in found[:SHOWN]
+    ]
 
 
 def unknown_table(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -102,8 +104,13 @@ def bad_recording(doc: Document, known: Known | None) -> Iterator[Fault]:
             seen[name] = place
     used = {name for entry in doc.entries for name in entry.table("files")}
     for name in seen.keys() - used:
-        yield doc.fault("recording.device", f"no run has a file of the device {name!r}", suggestion(name, used) if used
-                        else 'write files = { ' + name + ' = "..." } in a run', seen[name], WARNING)  # fmt: skip
+        yield doc.fault(
+            "recording.device",
+            f"no run has a file of the device {name!r}",
+            suggestion(name, used) if used else "write files = { " + name + ' = "..." } in a run',
+            seen[name],
+            WARNING,
+        )
 
 
 def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -117,8 +124,9 @@ def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
                 cure = suggestion(name, there) if there else f'describe it by [[recording]] device = "{name}"'
                 yield doc.fault("run.files", fact, cure, entry.place)
             if not isinstance(file, str):
-                yield doc.fault("run.files", f"{entry.title}: the file of {name} is {file!r}", "put its name in quotes",
-                                entry.place)  # fmt: skip
+                yield doc.fault(
+                    "run.files", f"{entry.title}: the file of {name} is {file!r}", "put its name in quotes", entry.place
+                )
         clocks = entry.table("files") or {PUSHES_CLOCK: ""}
         for name, stands in entry.table("clocks").items():
             if name not in clocks:
@@ -127,11 +135,19 @@ def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
             values = stands.items() if isinstance(stands, Mapping) else [("offset", stands)]
             for key, value in values:
                 if key not in ("offset", "sd", "drift"):
-                    yield doc.fault("run.clocks", f"{entry.title}: the clock of {name} has no key {key!r}",
-                                    suggestion(key, ("offset", "sd", "drift")), entry.place)  # fmt: skip
+                    yield doc.fault(
+                        "run.clocks",
+                        f"{entry.title}: the clock of {name} has no key {key!r}",
+                        suggestion(key, ("offset", "sd", "drift")),
+                        entry.place,
+                    )
                 elif number(value) is None or (key == "sd" and (number(value) or 0) < 0):
-                    yield doc.fault("run.clocks", f"{entry.title}: the clock of {name} has {key} = {value!r}",
-                                    "give a number in s" if key != "drift" else "give a number", entry.place)  # fmt: skip
+                    yield doc.fault(
+                        "run.clocks",
+                        f"{entry.title}: the clock of {name} has {key} = {value!r}",
+                        "give a number in s" if key != "drift" else "give a number",
+                        entry.place,
+                    )
 
 
 def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -353,7 +369,28 @@ def unknown_noise(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 
 DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...] = (
-    unknown_table, unknown_key, wrong_type, no_runs, bad_recording, bad_files, bad_point, no_file, missing_file, bad_role,
-    no_fit_run, no_holdout_run, no_manoeuvre, unknown_format, own_formats, empty_cut, shared_samples, bad_axes, bad_parameter,
-    bad_set, bad_prior, bad_column, bad_constant, unknown_noise,
-)  # fmt: skip
+    unknown_table,
+    unknown_key,
+    wrong_type,
+    no_runs,
+    bad_recording,
+    bad_files,
+    bad_point,
+    no_file,
+    missing_file,
+    bad_role,
+    no_fit_run,
+    no_holdout_run,
+    no_manoeuvre,
+    unknown_format,
+    own_formats,
+    empty_cut,
+    shared_samples,
+    bad_axes,
+    bad_parameter,
+    bad_set,
+    bad_prior,
+    bad_column,
+    bad_constant,
+    unknown_noise,
+)

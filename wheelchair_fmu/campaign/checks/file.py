@@ -124,5 +124,12 @@ def absent_column(draft: Draft) -> Iterator[Fault]:
 
 
 FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
-    too_short, input_gap, empty_column, stuck, implausible, resampled, spike, absent_column,
-)  # fmt: skip
+    too_short,
+    input_gap,
+    empty_column,
+    stuck,
+    implausible,
+    resampled,
+    spike,
+    absent_column,
+)

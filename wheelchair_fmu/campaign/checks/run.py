@@ -57,7 +57,7 @@ def measured_twice(run: Recorded) -> Iterator[Fault]:
             of.setdefault(name, []).append(draft.part.device.name)
     for name, devices in of.items():
         if len(devices) > 1:
-            cure = f"keep it in one of them; in the other [[recording]] write columns.{name} = \"\""
+            cure = f'keep it in one of them; in the other [[recording]] write columns.{name} = ""'
             yield run_fault(run.file, f"{name} comes from {' and '.join(devices)}", cure)
 
 
@@ -101,6 +101,13 @@ def start_speed_differs(run: Recorded) -> Iterator[Fault]:
 
 
 RUN_CHECKS: tuple[Callable[[Recorded], Iterator[Fault]], ...] = (
-    no_push, nothing_measured, silent, constant_replaces, implausible_constant, measured_twice, no_common_time, no_start_speed,
+    no_push,
+    nothing_measured,
+    silent,
+    constant_replaces,
+    implausible_constant,
+    measured_twice,
+    no_common_time,
+    no_start_speed,
     start_speed_differs,
-)  # fmt: skip
+)

@@ -67,12 +67,23 @@ def find(equations: Sequence[Equation]) -> Lag | None:
         fine = drifting
     thin = 1 / float(np.mean([memory(p.rest) for p in fine.parts]))
     rival, ahead = _rival(support, better, best)
-    rest, whole = (sum(w * x for w, x in zip(fine.weights, xs, strict=True))
-                   for xs in ([p.rest_power for p in fine.parts], [p.power for p in fine.parts]))  # fmt: skip
-    return Lag(fine.seconds, fine.se, thin * ahead > SURE,
-               float(np.sqrt(max(0.0, 1 - rest / whole))), tuple(p.gains for p in fine.parts), thin * ahead,
-               None if rival is None else float(lags[rival]), fine.drift, fine.drift_se, fine.middle,
-               float(support[best]))  # fmt: skip
+    rest, whole = (
+        sum(w * x for w, x in zip(fine.weights, xs, strict=True))
+        for xs in ([p.rest_power for p in fine.parts], [p.power for p in fine.parts])
+    )
+    return Lag(
+        fine.seconds,
+        fine.se,
+        thin * ahead > SURE,
+        float(np.sqrt(max(0.0, 1 - rest / whole))),
+        tuple(p.gains for p in fine.parts),
+        thin * ahead,
+        None if rival is None else float(lags[rival]),
+        fine.drift,
+        fine.drift_se,
+        fine.middle,
+        float(support[best]),
+    )
 
 
 def _rival(support: np.ndarray, better: np.ndarray, best: int) -> tuple[int | None, float]:

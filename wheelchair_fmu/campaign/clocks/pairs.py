@@ -69,8 +69,20 @@ def _one_way(a: Device, b: Device, kind: str) -> Pair | None:
     seconds, se = lag.at_zero()
     se = float(np.hypot(se, BODY_LAG if kind == PUSHES else 0.0))
     gains = tuple(tuple(float(g) for g in of) for of in lag.gains)
-    return Pair(a.name, b.name, kind, chosen[0].words, seconds, se, *_drift(lag), gains, lag.correlation, lag.unique,
-                lag.ahead, lag.rival)  # fmt: skip
+    return Pair(
+        a.name,
+        b.name,
+        kind,
+        chosen[0].words,
+        seconds,
+        se,
+        *_drift(lag),
+        gains,
+        lag.correlation,
+        lag.unique,
+        lag.ahead,
+        lag.rival,
+    )
 
 
 def _drift(lag: Lag) -> tuple[float, float]:
@@ -98,4 +110,3 @@ def alike(a: Signal, b: Signal, width: float | None = None) -> Match | None:
         return None
     gain = float(lag.gains[0][0])
     return Match(*lag.at_zero(), gain, float(np.copysign(lag.correlation, gain)), lag.unique)
-

@@ -116,8 +116,7 @@ def _together(found: Sequence[Shift]) -> Shift:
     weights = np.array([1 / s.se**2 for s in telling])
     mean = float(weights @ [s.seconds for s in telling] / weights.sum())
     agree = all(abs(s.seconds - mean) < ALIKE * s.se for s in telling)
-    return Shift(mean, float(weights.sum() ** -0.5), agree, " and ".join(s.way for s in telling),
-                 min(s.left for s in telling))  # fmt: skip
+    return Shift(mean, float(weights.sum() ** -0.5), agree, " and ".join(s.way for s in telling), min(s.left for s in telling))
 
 
 def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, tuple[Lag, list[Equation]]]:

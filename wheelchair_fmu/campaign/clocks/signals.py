@@ -16,8 +16,17 @@ PUSH_L, PUSH_R = "left push", "right push"
 APART, TURN2 = "difference of the wheels", "square of the yaw rate"
 SWAY, SWAYING = "body behind the pushes", "speed of the body behind the pushes"
 BODY, DAMPING = 2 * np.pi * 1.25, 0.4  # rad/s and 1: how a trunk swings on a chair that is pushed, about
-NAMES = {"wheel_speed_l": LEFT, "wheel_speed_r": RIGHT, "u": ALONG, "yaw_rate": TURN, "a_x": FORWARD, "F_rl": PUSH_L,
-         "F_rr": PUSH_R, "M_rl": PUSH_L, "M_rr": PUSH_R}  # fmt: skip
+NAMES = {
+    "wheel_speed_l": LEFT,
+    "wheel_speed_r": RIGHT,
+    "u": ALONG,
+    "yaw_rate": TURN,
+    "a_x": FORWARD,
+    "F_rl": PUSH_L,
+    "F_rr": PUSH_R,
+    "M_rl": PUSH_L,
+    "M_rr": PUSH_R,
+}
 
 SLOWEST = 2.0  # sampling intervals in the Gaussian's width, at least
 

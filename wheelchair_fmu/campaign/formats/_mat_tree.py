@@ -31,9 +31,11 @@ def _plain_5(value: Any) -> Any:
     if isinstance(value, np.ndarray) and value.dtype.names:
         return Opaque("an object")
     if isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
-        return [_plain_5(child) for child in np.asarray(value, dtype=object).ravel()] if not isinstance(value, list) else [
-            _plain_5(child) for child in value
-        ]  # fmt: skip
+        return (
+            [_plain_5(child) for child in np.asarray(value, dtype=object).ravel()]
+            if not isinstance(value, list)
+            else [_plain_5(child) for child in value]
+        )
     if isinstance(value, np.ndarray) and value.dtype.kind == "U":
         return [str(text).strip() for text in value.ravel()]
     return value.strip() if isinstance(value, str) else np.asarray(value)

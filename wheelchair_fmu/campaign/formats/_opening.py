@@ -22,7 +22,7 @@ _BINARIES = (
     (b"GIF8", "a GIF picture", "name the recording instead"),
     (b"%PDF-", "a PDF document", "export the numbers as CSV"),
     (b"SQLite format 3\x00", "an SQLite database", "export the table as CSV"),
-    (b"\x89HDF\r\n\x1a\n", "an HDF5 file", "if MATLAB wrote it, write format = \"mat\"; else export it as CSV"),
+    (b"\x89HDF\r\n\x1a\n", "an HDF5 file", 'if MATLAB wrote it, write format = "mat"; else export it as CSV'),
     (b"\x1f\x8b", "compressed by gzip", "let its name end in .gz, as in run.csv.gz"),
     (b"BZh", "compressed by bzip2", "unpack it"),
     (b"\xfd7zXZ\x00", "compressed by xz", "unpack it"),
@@ -31,7 +31,7 @@ _BINARIES = (
     (b"TDSm", "a TDMS file of LabVIEW", "export it as CSV"),
     (b"ARROW1", "an Arrow file (Feather)", "save it as Parquet"),
     (b"\x93NUMPY", "a NumPy array", "save it as CSV or Parquet with names of the columns"),
-)  # fmt: skip
+)
 
 
 def open_recording(path: Path, file: str, options: Mapping[str, Any]) -> tuple[Table | None, list[Fault]]:

@@ -54,4 +54,4 @@ TEXT = (
     Option("skip", "number", "", "found by looking", "lines before the header"),
     DATES,
     RATE,
-)  # fmt: skip
+)

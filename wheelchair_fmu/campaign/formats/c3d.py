@@ -74,7 +74,12 @@ def _analogs(file: str, parameters: Any, analogs: np.ndarray) -> Read:
 
 
 FORMAT = Format(
-    "c3d", "C3D (motion capture)", (".c3d",),
+    "c3d",
+    "C3D (motion capture)",
+    (".c3d",),
     "Markers as columns NAME.x, NAME.y, NAME.z in the file's unit, or the analogue channels; a hidden marker is a gap.",
-    (PART,), "ezc3d", _recognises, _read,
-)  # fmt: skip
+    (PART,),
+    "ezc3d",
+    _recognises,
+    _read,
+)

@@ -22,8 +22,13 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "csv", "Text in columns (CSV, TSV)", (".csv", ".tsv", ".txt", ".dat", ".asc", ".data"),
+    "csv",
+    "Text in columns (CSV, TSV)",
+    (".csv", ".tsv", ".txt", ".dat", ".asc", ".data"),
     "Text with a header and rows of numbers. Encoding, separator, decimal comma, lines before the header and a row of units "
     "are found by looking, and said; so are ISO 8601 and local stamps, times since 1970 and since midnight.",
-    TEXT, None, _recognises, _read,
-)  # fmt: skip
+    TEXT,
+    None,
+    _recognises,
+    _read,
+)

@@ -36,8 +36,13 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "mat", "MATLAB", (".mat",),
+    "mat",
+    "MATLAB",
+    (".mat",),
     "Vectors of one length become columns named as the path to them, such as rec.left.omega; a matrix with `names` beside it "
     "becomes rec.data.NAME, and `units` beside it gives their units.",
-    (VARIABLE, DATES, RATE), "h5py", _recognises, _read,
-)  # fmt: skip
+    (VARIABLE, DATES, RATE),
+    "h5py",
+    _recognises,
+    _read,
+)

@@ -43,7 +43,12 @@ def _unit(mdf: Any, name: str) -> str:
 
 
 FORMAT = Format(
-    "mdf", "MDF 3 and 4", (".mf4", ".mdf"),
+    "mdf",
+    "MDF 3 and 4",
+    (".mf4", ".mdf"),
     "All channels on one axis of time, each with the unit that the file gives it.",
-    (), "asammdf", _recognises, _read,
-)  # fmt: skip
+    (),
+    "asammdf",
+    _recognises,
+    _read,
+)

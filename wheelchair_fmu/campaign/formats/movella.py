@@ -15,8 +15,9 @@ _UNITS = {
     **{f"{name}_{axis}": "m/s2" for name in ("acc", "freeacc") for axis in _XYZ},
     **{f"{name}_{axis}": "deg/s" for name in ("gyr",) for axis in _XYZ},
     **{f"euler_{axis}": "deg" for axis in _XYZ},
-    **{f"dv[{i}]": "m/s" for i in (1, 2, 3)}, "packetcounter": "counts",
-}  # fmt: skip
+    **{f"dv[{i}]": "m/s" for i in (1, 2, 3)},
+    "packetcounter": "counts",
+}
 _MICROSECOND, _ROUND = 1e-6, 2.0**32  # of SampleTimeFine
 
 
@@ -38,7 +39,12 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "movella", "Movella DOT", (),
+    "movella",
+    "Movella DOT",
+    (),
     "CSV with PacketCounter, SampleTimeFine [µs], Acc_X [m/s2], Gyr_X [deg/s], Euler_X [deg] and so on.",
-    TEXT, None, _recognises, _read,
-)  # fmt: skip
+    TEXT,
+    None,
+    _recognises,
+    _read,
+)

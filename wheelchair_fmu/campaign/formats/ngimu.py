@@ -20,7 +20,12 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "ngimu", "NGIMU", (),
+    "ngimu",
+    "NGIMU",
+    (),
     "sensors.csv of an NGIMU: Time (s), Gyroscope X (deg/s), Accelerometer X (g) and so on.",
-    TEXT, None, _recognises, _read,
-)  # fmt: skip
+    TEXT,
+    None,
+    _recognises,
+    _read,
+)

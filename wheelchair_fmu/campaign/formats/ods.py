@@ -41,7 +41,12 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "ods", "OpenDocument spreadsheet", (".ods",),
+    "ods",
+    "OpenDocument spreadsheet",
+    (".ods",),
     "One sheet: a header, perhaps a row of units, rows of numbers or dates.",
-    OPTIONS, "odfpy", _recognises, _read,
-)  # fmt: skip
+    OPTIONS,
+    "odfpy",
+    _recognises,
+    _read,
+)

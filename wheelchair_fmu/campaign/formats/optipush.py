@@ -11,9 +11,12 @@ from ._defined import first_lines, read_defined
 from ._record import TEXT, Format, Read
 
 _UNITS = {
-    **dict.fromkeys(("fx", "fy", "fz"), "N"), **dict.fromkeys(("tx", "ty", "tz"), "N.m"), "angle": "deg", "push start": "-",
+    **dict.fromkeys(("fx", "fy", "fz"), "N"),
+    **dict.fromkeys(("tx", "ty", "tz"), "N.m"),
+    "angle": "deg",
+    "push start": "-",
     "push end": "-",
-}  # fmt: skip
+}
 
 
 def _recognises(path: Path, head: bytes) -> bool:
@@ -25,7 +28,12 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "optipush", "OptiPush", (),
+    "optipush",
+    "OptiPush",
+    (),
     "Tab separated text below lines that begin with %: Fx Fy Fz [N], Tx Ty Tz [N.m], Angle [deg], at 200 Hz.",
-    TEXT, None, _recognises, _read,
-)  # fmt: skip
+    TEXT,
+    None,
+    _recognises,
+    _read,
+)

@@ -91,25 +91,44 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
     given = [(f.metadata or {}).get(b"unit") or (f.metadata or {}).get(b"units") or b"" for f in fields]
     units = [stated(h, unit.decode(errors="replace")) for h, unit in zip(headers, given, strict=True)]
     if frame.empty:
-        return ParquetTable(file, headers, tuple(units), (), None, None, frozenset(), {},
-                            tuple(f.name for f in fields), opened), []  # fmt: skip
+        return ParquetTable(
+            file, headers, tuple(units), (), None, None, frozenset(), {}, tuple(f.name for f in fields), opened
+        ), []
     found, faults = framed(file, frame, options, [units[i] for i in places] if places else [None])
     if not isinstance(found, FrameTable):
         return found, faults
     made = len(found.headers) - len(frame.columns)  # a time that was made from a rate stands first
-    columns = {(places[k - made] if k >= made else len(fields)): found.frame.iloc[:, k]
-               for k in range(len(found.headers)) if k < made or places}  # fmt: skip
+    columns = {
+        (places[k - made] if k >= made else len(fields)): found.frame.iloc[:, k]
+        for k in range(len(found.headers))
+        if k < made or places
+    }
     for k, i in enumerate(places):
         units[i] = found.units[k + made]
     time = None if found.time is None else len(fields) if found.time < made else places[found.time - made]
     more = (("time [s]",), ("s",)) if made else ((), ())
     moments = frozenset(places[i - made] for i in found.moments if i >= made)
-    return ParquetTable(file, headers + more[0], (*units, *more[1]), found.notes, found.started, time, moments, columns,
-                        tuple(f.name for f in fields), opened), faults  # fmt: skip
+    return ParquetTable(
+        file,
+        headers + more[0],
+        (*units, *more[1]),
+        found.notes,
+        found.started,
+        time,
+        moments,
+        columns,
+        tuple(f.name for f in fields),
+        opened,
+    ), faults
 
 
 FORMAT = Format(
-    "parquet", "Parquet", (".parquet", ".pq"),
+    "parquet",
+    "Parquet",
+    (".parquet", ".pq"),
     "Columns with timestamps, durations or numbers. A unit is taken from the header, or from `unit` in the field's metadata.",
-    (DATES, RATE), None, _recognises, _read,
-)  # fmt: skip
+    (DATES, RATE),
+    None,
+    _recognises,
+    _read,
+)

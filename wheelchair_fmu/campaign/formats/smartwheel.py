@@ -18,8 +18,15 @@ from ._record import Format, Option, Read
 
 RATE = 240.0  # Hz
 _COLUMNS = {
-    0: "counter", 3: "angle [deg]", 18: "Fx [N]", 19: "Fy [N]", 20: "Fz [N]", 21: "Mx [N.m]", 22: "My [N.m]", 23: "Mz [N.m]",
-}  # fmt: skip
+    0: "counter",
+    3: "angle [deg]",
+    18: "Fx [N]",
+    19: "Fy [N]",
+    20: "Fz [N]",
+    21: "Mx [N.m]",
+    22: "My [N.m]",
+    23: "Mz [N.m]",
+}
 _MOMENT_Z = 23
 _FEWEST = 24  # columns
 
@@ -63,11 +70,9 @@ def read_smartwheel(path: str | Path, side: str, radius: float) -> pd.DataFrame:
         raise UsageError(f"radius {radius} m is not positive; give the radius of the wheel in m")
     data = _fields(path, [_MOMENT_Z])
     moment = (1.0 if side == "l" else -1.0) * data[_MOMENT_Z].to_numpy()
-    return pd.DataFrame({
-        "time [s]": np.arange(len(data)) / RATE,
-        f"M_r{side} [N.m]": moment,
-        f"F_r{side} [N]": moment / radius,
-    })  # fmt: skip
+    return pd.DataFrame(
+        {"time [s]": np.arange(len(data)) / RATE, f"M_r{side} [N.m]": moment, f"F_r{side} [N]": moment / radius}
+    )
 
 
 def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
@@ -108,11 +113,17 @@ def _raw(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "smartwheel", "SMARTWheel", (),
+    "smartwheel",
+    "SMARTWheel",
+    (),
     "Text without a header: counter, angle [deg] (4th field), Fx Fy Fz [N] (19th to 21st), Mx My Mz [N.m] (22nd to 24th) at "
     "240 Hz, as the wheel gives them. With side and radius, the push force alone: M = Mz on the left, -Mz on the right.",
-    (Option("rate", "number", "Hz", "240", "samples per second"),
-     Option("side", "text", "", "none: the fields as they are", 'where the wheel was mounted, "l" or "r"'),
-     Option("radius", "number", "m", "none: the fields as they are", "radius of the wheel, by which its moment is a force")),
-    None, _recognises, _read,
-)  # fmt: skip
+    (
+        Option("rate", "number", "Hz", "240", "samples per second"),
+        Option("side", "text", "", "none: the fields as they are", 'where the wheel was mounted, "l" or "r"'),
+        Option("radius", "number", "m", "none: the fields as they are", "radius of the wheel, by which its moment is a force"),
+    ),
+    None,
+    _recognises,
+    _read,
+)

@@ -84,7 +84,12 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, about: Mapp
 
 
 FORMAT = Format(
-    "trc", "TRC (motion capture)", (".trc",),
+    "trc",
+    "TRC (motion capture)",
+    (".trc",),
     "Markers as columns NAME.x, NAME.y, NAME.z in the unit of the file's header; a hidden marker is a gap.",
-    (), None, _recognises, _read,
-)  # fmt: skip
+    (),
+    None,
+    _recognises,
+    _read,
+)

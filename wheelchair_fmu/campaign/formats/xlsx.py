@@ -43,7 +43,12 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "xlsx", "Excel workbook", (".xlsx", ".xlsm"),
+    "xlsx",
+    "Excel workbook",
+    (".xlsx", ".xlsm"),
     "One sheet: a header, perhaps a row of units, rows of numbers or dates.",
-    OPTIONS, "openpyxl", _recognises, _read,
-)  # fmt: skip
+    OPTIONS,
+    "openpyxl",
+    _recognises,
+    _read,
+)

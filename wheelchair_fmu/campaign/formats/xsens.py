@@ -15,8 +15,10 @@ _UNITS = {
     **{f"{name}_{axis}": "m/s2" for name in ("acc", "freeacc") for axis in (*_XYZ, "e", "n", "u")},
     **{f"gyr_{axis}": "rad/s" for axis in _XYZ},
     **{f"velinc_{axis}": "m/s" for axis in _XYZ},
-    **dict.fromkeys(("roll", "pitch", "yaw"), "deg"), "pressure": "Pa", "packetcounter": "counts",
-}  # fmt: skip
+    **dict.fromkeys(("roll", "pitch", "yaw"), "deg"),
+    "pressure": "Pa",
+    "packetcounter": "counts",
+}
 _RATE = re.compile(r"^//\s*Update\s*Rate\s*:\s*([\d.]+)\s*Hz", re.MULTILINE | re.IGNORECASE)
 
 
@@ -33,8 +35,13 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
 
 
 FORMAT = Format(
-    "xsens", "Xsens MTw, MTi", (),
+    "xsens",
+    "Xsens MTw, MTi",
+    (),
     "Text below lines that begin with //: Acc_X [m/s2], Gyr_X [rad/s], Roll [deg] and so on; time from PacketCounter and the "
     "update rate in the file.",
-    TEXT, None, _recognises, _read,
-)  # fmt: skip
+    TEXT,
+    None,
+    _recognises,
+    _read,
+)

@@ -29,9 +29,20 @@ from .taking import taken
 from .writing import Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
-    "AXES_CURE", "RADIUS", "Choice", "Found", "Plan", "Wanted", "axes_of", "find", "held_out", "needs_radius", "open_axes",
-    "still", "text",
-]  # fmt: skip
+    "AXES_CURE",
+    "RADIUS",
+    "Choice",
+    "Found",
+    "Plan",
+    "Wanted",
+    "axes_of",
+    "find",
+    "held_out",
+    "needs_radius",
+    "open_axes",
+    "still",
+    "text",
+]
 
 HOLDOUT = "holdout"
 SHARE = 5  # of so many runs one is kept for checking,

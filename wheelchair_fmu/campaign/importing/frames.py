@@ -204,8 +204,14 @@ def _put(plan: Plan, channel: str, column: Column, sign: float, why: str, fit: F
         found, said = unit, f"the file gives no unit; {unit} as for a_x"
     choice = Choice(channel, column.header, why, found, sign, found != "?", column=column, si="m/s2")
     if found == "?" and fit is not None:
-        choice = _by_gain(choice, plan, fit, {"m/s2": 1.0, "g": 1 / 9.80665, "mg": 1000 / 9.80665}, replace(choice, unit=""),
-                          "the change of speed")  # fmt: skip
+        choice = _by_gain(
+            choice,
+            plan,
+            fit,
+            {"m/s2": 1.0, "g": 1 / 9.80665, "mg": 1000 / 9.80665},
+            replace(choice, unit=""),
+            "the change of speed",
+        )
     elif said:
         choice = choice.because(said)
     plan.put(choice)

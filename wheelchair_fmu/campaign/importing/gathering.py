@@ -167,8 +167,10 @@ def _source(name: str, side: str, files: Mapping[str, Opened]) -> Source:
     files = dict(sorted(files.items(), key=lambda item: _natural(item[0])))
     first = next(iter(files.values()))
     table = first.table
-    columns = tuple(Column(i, header, unit, guess(header, unit) if header else None)
-                    for i, (header, unit) in enumerate(zip(table.headers, table.units, strict=True)))  # fmt: skip
+    columns = tuple(
+        Column(i, header, unit, guess(header, unit) if header else None)
+        for i, (header, unit) in enumerate(zip(table.headers, table.units, strict=True))
+    )
     time = next((c for c in columns if c.index == table.time), None)
     time = time or next((c for c in columns if c.quantity == "time" and (c.unit is None or c.unit not in ("1", "-"))), None)
     unit, by_size = _time_unit(table, time)

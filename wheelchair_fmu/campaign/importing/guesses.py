@@ -42,30 +42,64 @@ class Quantity:
 
 
 QUANTITIES = (
-    Quantity("time", ("s",), r"""(elapsed |relative |sample |abs(olute)? )?
-        (time|zeit|t|temps|tiempo|timestamp|zeitstempel|messzeit)( stamp)?"""),
+    Quantity(
+        "time",
+        ("s",),
+        r"""(elapsed |relative |sample |abs(olute)? )?
+        (time|zeit|t|temps|tiempo|timestamp|zeitstempel|messzeit)( stamp)?""",
+    ),
     Quantity("counter", ("1",), r"(counter|frame|sample|index|nr|packet ?counter|zaehler|record)( nr| number| no)?"),
-    Quantity("yaw_rate", ("rad/s",), r"""yaw ?(rate|speed|vel(ocity)?)|gier ?(rate|geschwindigkeit)|vitesse de lacet|
-        psi ?(dot|p)"""),
+    Quantity(
+        "yaw_rate",
+        ("rad/s",),
+        r"""yaw ?(rate|speed|vel(ocity)?)|gier ?(rate|geschwindigkeit)|vitesse de lacet|
+        psi ?(dot|p)""",
+    ),
     Quantity("yaw", ("rad",), r"yaw( angle)?|heading|gierwinkel|kurs(winkel)?|angle de lacet|lacet|cap|psi"),
-    Quantity("gyro", ("rad/s",), r"""gyr(o(scope|skop)?)?( data)?|g|omega|w|ang(ular)? ?(vel(ocity)?|rate|speed)|rate|
-        dreh ?rate|winkel ?geschwindigkeit|vitesse angulaire|rot(ation)? ?rate""", axial=True),
-    Quantity("acc", ("m/s2",), r"""(lin(ear)? ?)?acc?(el(eration|erometer|erometre)?)?( data)?|a|beschl(eunigung)?|
-        fahr ?beschleunigung|acceleration lineaire""", axial=True),
-    Quantity("torque", ("N.m",), r"""(m|t|moment|torque|couple|dreh ?moment)( z)?|
+    Quantity(
+        "gyro",
+        ("rad/s",),
+        r"""gyr(o(scope|skop)?)?( data)?|g|omega|w|ang(ular)? ?(vel(ocity)?|rate|speed)|rate|
+        dreh ?rate|winkel ?geschwindigkeit|vitesse angulaire|rot(ation)? ?rate""",
+        axial=True,
+    ),
+    Quantity(
+        "acc",
+        ("m/s2",),
+        r"""(lin(ear)? ?)?acc?(el(eration|erometer|erometre)?)?( data)?|a|beschl(eunigung)?|
+        fahr ?beschleunigung|acceleration lineaire""",
+        axial=True,
+    ),
+    Quantity(
+        "torque",
+        ("N.m",),
+        r"""(m|t|moment|torque|couple|dreh ?moment)( z)?|
         (antriebs|rad|greifreifen|propulsion|wheel|axle|pushrim|rim) ?(dreh ?)?(moment|torque)|
-        couple( de)? propulsion|moment (propulsif|moteur)|(push )?torque|hand ?rim ?(moment|torque)"""),
-    Quantity("force", ("N",), r"""(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|
+        couple( de)? propulsion|moment (propulsif|moteur)|(push )?torque|hand ?rim ?(moment|torque)""",
+    ),
+    Quantity(
+        "force",
+        ("N",),
+        r"""(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|
         f ?(tan|tang|t|push)?|force|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
-        force( de)?( poussee| tangentielle| propulsion)?"""),
-    Quantity("wheel_angle", ("rad",), r"""(wheel |rear wheel |rad ?|rim )?
-        (angle|winkel|position angulaire|encoder|rotation|phi|theta)|angle( de)?( la)? roue|rad ?winkel|dreh ?winkel"""),
-    Quantity("speed", ("m/s", "rad/s"), r"""(wheel |rear wheel |rad ?|rim |ground |encoder )?
+        force( de)?( poussee| tangentielle| propulsion)?""",
+    ),
+    Quantity(
+        "wheel_angle",
+        ("rad",),
+        r"""(wheel |rear wheel |rad ?|rim )?
+        (angle|winkel|position angulaire|encoder|rotation|phi|theta)|angle( de)?( la)? roue|rad ?winkel|dreh ?winkel""",
+    ),
+    Quantity(
+        "speed",
+        ("m/s", "rad/s"),
+        r"""(wheel |rear wheel |rad ?|rim |ground |encoder )?
         (speed|velocity|vel|v|geschwindigkeit|vitesse|tempo|dreh ?zahl|rpm|omega|w|n)|wheel( rate)?|roue|
-        rad ?(geschwindigkeit|drehzahl)|vitesse( de)?( la)? roue|fahr ?geschwindigkeit"""),
+        rad ?(geschwindigkeit|drehzahl)|vitesse( de)?( la)? roue|fahr ?geschwindigkeit""",
+    ),
     Quantity("x", ("m",), r"(pos(ition)? ?)?x( pos(ition)?)?"),
     Quantity("y", ("m",), r"(pos(ition)? ?)?y( pos(ition)?)?"),
-)  # fmt: skip
+)
 PUSHED = ("torque", "force")
 BESIDE = ("x", "y")  # axes of a rim across its axle: what it measures there pushes nobody
 

@@ -16,8 +16,25 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
-RUN_WORDS = ("run", "trial", "take", "test", "m", "messung", "versuch", "fahrt", "lauf", "essai", "mesure", "passage", "rec",
-             "recording", "aufnahme", "r", "t")  # fmt: skip
+RUN_WORDS = (
+    "run",
+    "trial",
+    "take",
+    "test",
+    "m",
+    "messung",
+    "versuch",
+    "fahrt",
+    "lauf",
+    "essai",
+    "mesure",
+    "passage",
+    "rec",
+    "recording",
+    "aufnahme",
+    "r",
+    "t",
+)
 # words that say who recorded, or where: never the name of a run
 _WHO = """
     left right links rechts gauche droite l r lh rh frame rahmen cadre seat sitz imu gyro wheel wheels rad raeder roue roues
@@ -155,8 +172,10 @@ def _devices(rests: Sequence[tuple[Name, tuple[str, ...]]], kind: Mapping[str, H
     endings: dict[str, set[str]] = defaultdict(set)
     for (name, _), device in zip(rests, plain, strict=True):
         endings[device].add(name.ending)
-    return [slug(name.ending) or "file" if not device else f"{device}_{name.ending}" if len(endings[device]) > 1 else device
-            for (name, _), device in zip(rests, plain, strict=True)]  # fmt: skip
+    return [
+        slug(name.ending) or "file" if not device else f"{device}_{name.ending}" if len(endings[device]) > 1 else device
+        for (name, _), device in zip(rests, plain, strict=True)
+    ]
 
 
 def _apart(names: Sequence[Name], kind: Mapping[str, Hashable]) -> list[Placed]:
@@ -170,6 +189,9 @@ def _apart(names: Sequence[Name], kind: Mapping[str, Hashable]) -> list[Placed]:
         return [Placed(name.file, "run", device) for name, device in zip(names, own, strict=True)]
     kinds = list(dict.fromkeys(kind.get(name.file) for name in names))
     devices = [next(slug("_".join(n.words)) or "file" for n in names if kind.get(n.file) == one) for one in kinds]
-    return [Placed(name.file, stem if stems.count(stem) == 1 else f"{stem}_{name.ending}",
-                   devices[kinds.index(kind.get(name.file))])
-            for name, stem in zip(names, stems, strict=True)]  # fmt: skip
+    return [
+        Placed(
+            name.file, stem if stems.count(stem) == 1 else f"{stem}_{name.ending}", devices[kinds.index(kind.get(name.file))]
+        )
+        for name, stem in zip(names, stems, strict=True)
+    ]

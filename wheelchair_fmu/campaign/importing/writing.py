@@ -79,11 +79,16 @@ def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted:
     count = sum(map(len, files.values()))
     why = _why_axes(plans, wanted)
     other = next((a for a in AXES if a != axes_of(plans, wanted)), "")
-    return "\n".join([
-        f"# Written by `wheelchair import` from {count} files. Behind each column stands what told it; see also preview.html.",
-        "", "[campaign]", f"name = {quoted(wanted.name)}",
-        _line(f"axes = {quoted(axes_of(plans, wanted))}", f"{why}; the other ones are {other}" if why else ""),
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"# Written by `wheelchair import` from {count} files. Behind each column stands what told it; "
+            "see also preview.html.",
+            "",
+            "[campaign]",
+            f"name = {quoted(wanted.name)}",
+            _line(f"axes = {quoted(axes_of(plans, wanted))}", f"{why}; the other ones are {other}" if why else ""),
+        ]
+    )
 
 
 def _why_axes(plans: Sequence[Plan], wanted: Wanted) -> str:
@@ -133,8 +138,12 @@ def _recording(plan: Plan, wanted: Wanted) -> str:
     if plan.markers:
         ends = ", ".join(f"{end} = {quoted(name)}" for end, name in plan.markers.items())
         lines.append(_line(f"markers = {{ {ends} }}", plan.why_axes))
-        lines.append(_line("axes = { " + ", ".join(f"{k} = {quoted(v)}" for k, v in plan.marker_axes.items()) + " }",
-                           "x along the way, y to the right of it"))  # fmt: skip
+        lines.append(
+            _line(
+                "axes = { " + ", ".join(f"{k} = {quoted(v)}" for k, v in plan.marker_axes.items()) + " }",
+                "x along the way, y to the right of it",
+            )
+        )
     elif plan.place == "on the frame":
         lines += [_line(f"axes = {quoted(plan.axes)}", plan.why_axes)] if plan.axes else []
         lines += [PLACE] if plan.find("a_x") or plan.find("a_y") else []
@@ -172,11 +181,16 @@ def _entry(before: str, choice: Choice) -> str:
 def _run(run: str, files: Mapping[str, str], wanted: Wanted, alone: bool) -> str:
     named = next((word for word in MANOEUVRES if word in run.lower().replace("_", "-")), "")
     listed = ", ".join(f"{device} = {quoted(file)}" for device, file in files.items())
-    lines = ["[[run]]", f"name = {quoted(run)}",
-             f"file = {quoted(next(iter(files.values())))}" if alone else f"files = {{ {listed} }}",
-             _line(f"manoeuvre = {quoted(named or run)}", "" if named else "say what was done"),
-             _line(f"role = {quoted('holdout' if run in wanted.holdout else 'fit')}",
-                   "kept to prove what was learnt" if run in wanted.holdout else "")]  # fmt: skip
+    lines = [
+        "[[run]]",
+        f"name = {quoted(run)}",
+        f"file = {quoted(next(iter(files.values())))}" if alone else f"files = {{ {listed} }}",
+        _line(f"manoeuvre = {quoted(named or run)}", "" if named else "say what was done"),
+        _line(
+            f"role = {quoted('holdout' if run in wanted.holdout else 'fit')}",
+            "kept to prove what was learnt" if run in wanted.holdout else "",
+        ),
+    ]
     lines += _clocks(wanted.clocks.get(run, {}), list(files)[1:]) if wanted.clocks is not None else []
     lines += [_line("u0 = 0.0", "by its signals: the wheels stand still at first")] if wanted.at_rest.get(run) else []
     return "\n".join(lines)

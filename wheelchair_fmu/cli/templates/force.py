@@ -17,13 +17,17 @@ from wheelchair_fmu.model.expression import law
 from wheelchair_fmu.model.stage import Effect, adds
 from wheelchair_fmu.quantities import N_S_M, Parameter
 
-Q = Parameter("q", N_S_M, "drag at a speed of 1 m/s", off=0.0, smallest_interesting=0.5, lower=0.0, upper=100.0,
-              mirror="+", source="say where its size comes from")  # fmt: skip
+Q = Parameter(
+    "q",
+    N_S_M,
+    "drag at a speed of 1 m/s",
+    off=0.0,
+    smallest_interesting=0.5,
+    lower=0.0,
+    upper=100.0,
+    mirror="+",
+    source="say where its size comes from",
+)
 LAW = law("-q * u")
 
-EFFECT = Effect(
-    "my_effect",
-    "a drag in proportion to speed",
-    parameters=(Q,),
-    contributions=(adds("F_x", LAW, opposes="u"),),
-)
+EFFECT = Effect("my_effect", "a drag in proportion to speed", parameters=(Q,), contributions=(adds("F_x", LAW, opposes="u"),))

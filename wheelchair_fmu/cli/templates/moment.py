@@ -16,13 +16,17 @@ from wheelchair_fmu.model.expression import law
 from wheelchair_fmu.model.stage import Effect, adds
 from wheelchair_fmu.quantities import N_M, Parameter
 
-Q = Parameter("q", N_M, "moment while it rolls forward, clockwise from above", off=0.0, smallest_interesting=0.2, lower=-20.0,
-              upper=20.0, mirror="-", source="say where its size comes from")  # fmt: skip
+Q = Parameter(
+    "q",
+    N_M,
+    "moment while it rolls forward, clockwise from above",
+    off=0.0,
+    smallest_interesting=0.2,
+    lower=-20.0,
+    upper=20.0,
+    mirror="-",
+    source="say where its size comes from",
+)
 LAW = law("q * direction(u, v_eps)")
 
-EFFECT = Effect(
-    "my_effect",
-    "a moment that turns the chair to one side",
-    parameters=(Q,),
-    contributions=(adds("M_z", LAW),),
-)
+EFFECT = Effect("my_effect", "a moment that turns the chair to one side", parameters=(Q,), contributions=(adds("M_z", LAW),))

@@ -16,8 +16,17 @@ from wheelchair_fmu.model.stage import Effect, scales
 from wheelchair_fmu.quantities import Parameter, Unit
 
 PER_RATE2 = Unit("s2/rad2", s=2, rad=-2)  # one that wheelchair_fmu.quantities does not have: exponents of kg, m, s, rad
-Q = Parameter("q", PER_RATE2, "by how much it reads too much at 1 rad/s", off=0.0, smallest_interesting=0.01, lower=-0.1,
-              upper=1.0, mirror="+", source="say where its size comes from")  # fmt: skip
+Q = Parameter(
+    "q",
+    PER_RATE2,
+    "by how much it reads too much at 1 rad/s",
+    off=0.0,
+    smallest_interesting=0.01,
+    lower=-0.1,
+    upper=1.0,
+    mirror="+",
+    source="say where its size comes from",
+)
 LAW = law("1 + q * psi_dot * psi_dot")
 
 EFFECT = Effect(

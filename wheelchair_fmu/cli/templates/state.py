@@ -16,8 +16,17 @@ This is a whole effect that keeps every contract. To make it yours, change from 
 from wheelchair_fmu.model.stage import Effect, Row, adds
 from wheelchair_fmu.quantities import N_S_M, N, Parameter, S, State
 
-Q = Parameter("q", N_S_M, "drag at a steady speed of 1 m/s", off=0.0, smallest_interesting=0.5, lower=0.0, upper=100.0,
-              mirror="+", source="say where its size comes from")  # fmt: skip
+Q = Parameter(
+    "q",
+    N_S_M,
+    "drag at a steady speed of 1 m/s",
+    off=0.0,
+    smallest_interesting=0.5,
+    lower=0.0,
+    upper=100.0,
+    mirror="+",
+    source="say where its size comes from",
+)
 T = Parameter("T", S, "time by which the drag follows the speed", default=0.5, lower=0.01, upper=10.0, source="chosen")
 LAGGED = State("lagged", N, "drag that acts", nominal=1.0)
 

@@ -12,9 +12,16 @@ from ..smooth import grip
 from ..stage import Alternative, define, stage
 
 PARAMETERS = (
-    Parameter("caster.trail", M, "caster trail c in (8): the lever between a torque on the caster and its lateral force",
-              default=0.05, lower=1e-3, upper=0.5, source="chosen: common casters, 30 to 60 mm"),
-)  # fmt: skip
+    Parameter(
+        "caster.trail",
+        M,
+        "caster trail c in (8): the lever between a torque on the caster and its lateral force",
+        default=0.05,
+        lower=1e-3,
+        upper=0.5,
+        source="chosen: common casters, 30 to 60 mm",
+    ),
+)
 
 
 @stage(define("delta", RAD, "caster angles", "-swap", FRONT))

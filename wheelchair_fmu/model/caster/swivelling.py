@@ -25,12 +25,27 @@ SLOWEST = 1e-9  # m/s; a chair that starts at rest has its casters trailing
 
 PARAMETERS = (
     *ideal.PARAMETERS,
-    Parameter("regularisation.trail", M, "kinematic trail of a caster without the effect caster_trail; shorter is "
-              "too quick to matter and too stiff to solve", default=1e-3, lower=1e-4, upper=0.01,
-              symbol="least_trail", source="chosen"),
-    Parameter("regularisation.swivel_rate", RAD_S, "swivel rate within which dry friction builds up; "
-              "sharper is truer and stiffer", default=0.02, lower=1e-6, upper=10.0, symbol="swivel_eps", source="chosen"),
-)  # fmt: skip
+    Parameter(
+        "regularisation.trail",
+        M,
+        "kinematic trail of a caster without the effect caster_trail; shorter is too quick to matter and too stiff to solve",
+        default=1e-3,
+        lower=1e-4,
+        upper=0.01,
+        symbol="least_trail",
+        source="chosen",
+    ),
+    Parameter(
+        "regularisation.swivel_rate",
+        RAD_S,
+        "swivel rate within which dry friction builds up; sharper is truer and stiffer",
+        default=0.02,
+        lower=1e-6,
+        upper=10.0,
+        symbol="swivel_eps",
+        source="chosen",
+    ),
+)
 
 SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT, usual=0.1)
 

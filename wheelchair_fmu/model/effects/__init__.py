@@ -70,8 +70,9 @@ def _misnamed(file: str, id: object, others: Container[str]) -> Fault | None:
     if id == stem in bundled():
         return Fault(file, None, None, f"there is a bundled effect {id!r} already", "give the file and its effect another name")
     if id == stem and not NAME.fullmatch(stem):
-        return Fault(file, None, None, f"{stem!r} is no name for an effect",
-                     "use small letters, digits and underscores, like my_drag")  # fmt: skip
+        return Fault(
+            file, None, None, f"{stem!r} is no name for an effect", "use small letters, digits and underscores, like my_drag"
+        )
     if id == stem:
         return None
     taken = f", which is that of {id}.py" if isinstance(id, str) and id in others else ""
@@ -106,5 +107,10 @@ def _failed(file: str, error: BaseException) -> Fault:
     if isinstance(error, SystemExit):
         return Fault(file, line, None, "it ends the program instead of defining an effect", "leave out exit() and sys.exit()")
     told = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
-    return Fault(file, line, None, f"cannot be read as an effect: {type(error).__name__}: {told}".removesuffix(": "),
-                 "mend this line, or move the file away")  # fmt: skip
+    return Fault(
+        file,
+        line,
+        None,
+        f"cannot be read as an effect: {type(error).__name__}: {told}".removesuffix(": "),
+        "mend this line, or move the file away",
+    )

@@ -8,10 +8,12 @@ from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.3, upper=0.3, source="Doria, section 6.3")
-RIGHT = Parameter("phi_r", RAD, "camber angle φ_r of the right wheel, positive when it leans to the right",
-                  mirror="-phi_l", **COMMON)  # fmt: skip
-LEFT = Parameter("phi_l", RAD, "camber angle φ_l of the left wheel, positive when it leans to the right",
-                 mirror="-phi_r", **COMMON)  # fmt: skip
+RIGHT = Parameter(
+    "phi_r", RAD, "camber angle φ_r of the right wheel, positive when it leans to the right", mirror="-phi_l", **COMMON
+)
+LEFT = Parameter(
+    "phi_l", RAD, "camber angle φ_l of the left wheel, positive when it leans to the right", mirror="-phi_r", **COMMON
+)
 
 EFFECT = Effect(
     "camber_misalignment",

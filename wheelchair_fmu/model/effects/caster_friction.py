@@ -4,8 +4,17 @@ from ...quantities import N_M, Parameter
 from ..smooth import grip
 from ..stage import Effect, adds
 
-FRICTION = Parameter("M", N_M, "dry friction torque M of each caster's swivel bearing", off=0.0,
-                     smallest_interesting=0.05, lower=0.0, upper=5.0, symbol="M_s", source="chosen")  # fmt: skip
+FRICTION = Parameter(
+    "M",
+    N_M,
+    "dry friction torque M of each caster's swivel bearing",
+    off=0.0,
+    smallest_interesting=0.05,
+    lower=0.0,
+    upper=5.0,
+    symbol="M_s",
+    source="chosen",
+)
 
 
 def friction(M_s, swivel_rate, swivel_eps):

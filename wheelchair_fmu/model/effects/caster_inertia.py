@@ -8,12 +8,35 @@ it takes off the moment M_f. The acceleration is that of the swivel rate through
 from ...quantities import FRONT, KG_M2, RAD_S, Parameter, S, State
 from ..stage import Effect, Row, adds
 
-INERTIA = Parameter("I", KG_M2, "moment of inertia I of each caster about its pivot", off=0.0, smallest_interesting=0.005,
-                    lower=0.0, upper=0.5, source="Doria, (8)")  # fmt: skip
-FILTER = Parameter("filter", S, "time constant that smooths the swivel rate", default=0.02, lower=1e-4, upper=1.0,
-                   symbol="T_filter", source="chosen")  # fmt: skip
-RATE = State("smoothed_rate", RAD_S, "turning rate of each caster in the room, smoothed", mirror="-swap", components=FRONT,
-             nominal=10.0, usual=0.1)  # fmt: skip
+INERTIA = Parameter(
+    "I",
+    KG_M2,
+    "moment of inertia I of each caster about its pivot",
+    off=0.0,
+    smallest_interesting=0.005,
+    lower=0.0,
+    upper=0.5,
+    source="Doria, (8)",
+)
+FILTER = Parameter(
+    "filter",
+    S,
+    "time constant that smooths the swivel rate",
+    default=0.02,
+    lower=1e-4,
+    upper=1.0,
+    symbol="T_filter",
+    source="chosen",
+)
+RATE = State(
+    "smoothed_rate",
+    RAD_S,
+    "turning rate of each caster in the room, smoothed",
+    mirror="-swap",
+    components=FRONT,
+    nominal=10.0,
+    usual=0.1,
+)
 
 
 def acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter):

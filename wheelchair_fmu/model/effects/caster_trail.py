@@ -3,8 +3,17 @@
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
 
-TRAIL = Parameter("c", M, "caster trail c, from the pivot back to the contact patch", off=0.0, smallest_interesting=0.03,
-                  lower=0.0, upper=0.3, symbol="more_trail", source="Doria, (8)")  # fmt: skip
+TRAIL = Parameter(
+    "c",
+    M,
+    "caster trail c, from the pivot back to the contact patch",
+    off=0.0,
+    smallest_interesting=0.03,
+    lower=0.0,
+    upper=0.3,
+    symbol="more_trail",
+    source="Doria, (8)",
+)
 
 EFFECT = Effect(
     "caster_trail",

@@ -5,8 +5,18 @@ import casadi as cs
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
 
-Y = Parameter("y", M, "how far the CM lies to the right of the symmetry plane", off=0.0, smallest_interesting=0.004,
-              lower=-0.2, upper=0.2, mirror="-", symbol="y_cm", source="rigid-body statics")  # fmt: skip
+Y = Parameter(
+    "y",
+    M,
+    "how far the CM lies to the right of the symmetry plane",
+    off=0.0,
+    smallest_interesting=0.004,
+    lower=-0.2,
+    upper=0.2,
+    mirror="-",
+    symbol="y_cm",
+    source="rigid-body statics",
+)
 
 RIGHT_LESS_LEFT = cs.DM([-1.0, 1.0])
 
@@ -23,10 +33,5 @@ EFFECT = Effect(
     "cm_lateral_offset",
     "centre of mass beside the symmetry plane",
     parameters=(Y,),
-    contributions=(
-        adds("y_r", lambda y_cm: -y_cm),
-        adds("y_f", lambda y_cm: -y_cm),
-        adds("N_r", rear),
-        adds("N_f", front),
-    ),
+    contributions=(adds("y_r", lambda y_cm: -y_cm), adds("y_f", lambda y_cm: -y_cm), adds("N_r", rear), adds("N_f", front)),
 )

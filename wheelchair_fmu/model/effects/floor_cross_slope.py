@@ -5,8 +5,17 @@ import casadi as cs
 from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
-THETA = Parameter("theta", RAD, "slope across the chair, positive where the floor falls to the right", off=0.0,
-                  smallest_interesting=0.001, lower=-0.3, upper=0.3, mirror="-", source="Richter2007")  # fmt: skip
+THETA = Parameter(
+    "theta",
+    RAD,
+    "slope across the chair, positive where the floor falls to the right",
+    off=0.0,
+    smallest_interesting=0.001,
+    lower=-0.3,
+    upper=0.3,
+    mirror="-",
+    source="Richter2007",
+)
 
 EFFECT = Effect(
     "floor_cross_slope",

@@ -6,17 +6,14 @@ from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.001, lower=-0.3, upper=0.3, source="Richter2007")
-X = Parameter("x", RAD, "slope along the room's x, positive where the floor falls towards +x", symbol="tilt_x",
-              **COMMON)  # fmt: skip
-Y = Parameter("y", RAD, "slope along the room's y, positive where the floor falls towards +y", symbol="tilt_y",
-              mirror="-", **COMMON)  # fmt: skip
+X = Parameter("x", RAD, "slope along the room's x, positive where the floor falls towards +x", symbol="tilt_x", **COMMON)
+Y = Parameter(
+    "y", RAD, "slope along the room's y, positive where the floor falls towards +y", symbol="tilt_y", mirror="-", **COMMON
+)
 
 EFFECT = Effect(
     "floor_slope",
     "a slope of the floor, fixed in the room",
     parameters=(X, Y),
-    contributions=(
-        adds("fall_x", lambda tilt_x: tilt_x),
-        adds("fall_y", lambda tilt_y: tilt_y),
-    ),
+    contributions=(adds("fall_x", lambda tilt_x: tilt_x), adds("fall_y", lambda tilt_y: tilt_y)),
 )

@@ -3,8 +3,18 @@
 from ...quantities import RAD_S, Parameter
 from ..stage import Effect, adds
 
-B = Parameter("b", RAD_S, "offset of the yaw rate sensor, clockwise", off=0.0, smallest_interesting=0.003, lower=-1.0,
-              upper=1.0, mirror="-", symbol="gyro_b", source="instrument")  # fmt: skip
+B = Parameter(
+    "b",
+    RAD_S,
+    "offset of the yaw rate sensor, clockwise",
+    off=0.0,
+    smallest_interesting=0.003,
+    lower=-1.0,
+    upper=1.0,
+    mirror="-",
+    symbol="gyro_b",
+    source="instrument",
+)
 
 EFFECT = Effect(
     "gyro_bias",

@@ -3,8 +3,17 @@
 from ...quantities import ONE, Parameter
 from ..stage import Effect, scales
 
-K = Parameter("k", ONE, "scale error of the yaw rate sensor: it reads (1 + k) ψ'", off=0.0, smallest_interesting=0.01,
-              lower=-0.5, upper=1.0, symbol="scale", source="instrument")  # fmt: skip
+K = Parameter(
+    "k",
+    ONE,
+    "scale error of the yaw rate sensor: it reads (1 + k) ψ'",
+    off=0.0,
+    smallest_interesting=0.01,
+    lower=-0.5,
+    upper=1.0,
+    symbol="scale",
+    source="instrument",
+)
 
 EFFECT = Effect(
     "gyro_scale",

@@ -5,8 +5,16 @@ import casadi as cs
 from ...quantities import BAR, Parameter
 from ..stage import Effect, scales
 
-DP = Parameter("dp", BAR, "how much the pressure lies above the stated tyre.pressure", off=0.0, smallest_interesting=0.3,
-               lower=-3.0, upper=5.0, source="Doria, Fig. 6")  # fmt: skip
+DP = Parameter(
+    "dp",
+    BAR,
+    "how much the pressure lies above the stated tyre.pressure",
+    off=0.0,
+    smallest_interesting=0.3,
+    lower=-3.0,
+    upper=5.0,
+    source="Doria, Fig. 6",
+)
 FLATTEST = 0.05  # of the stated pressure
 
 

@@ -5,8 +5,16 @@ import casadi as cs
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
 
-H = Parameter("h", M, "height h of the CM that shifts load sideways", off=0.0, smallest_interesting=0.3, lower=0.0,
-              upper=2.0, source="rigid-body statics")  # fmt: skip
+H = Parameter(
+    "h",
+    M,
+    "height h of the CM that shifts load sideways",
+    off=0.0,
+    smallest_interesting=0.3,
+    lower=0.0,
+    upper=2.0,
+    source="rigid-body statics",
+)
 
 LEFT_LESS_RIGHT = cs.DM([1.0, -1.0])  # a_y > 0, a turn to the right, loads the left wheels
 

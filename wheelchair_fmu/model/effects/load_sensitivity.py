@@ -5,12 +5,28 @@ import casadi as cs
 from ...quantities import ONE, N, Parameter
 from ..stage import Effect, scales
 
-EXPONENT = Parameter("exponent", ONE, "exponent of the load in the cornering stiffness: 0 none, 1 in proportion", off=0.0,
-                     smallest_interesting=0.1, lower=-1.0, upper=2.0, source="Doria, Fig. 7")  # fmt: skip
-EXPONENT_M = Parameter("exponent_M", ONE, "exponent of the load in the self-aligning stiffness; a rig tells it, driving hardly",
-                       default=0.0, lower=-1.0, upper=3.0, source="Doria, Fig. 7")  # fmt: skip
-REFERENCE = Parameter("N_ref", N, "load at which C_λ and C_mλ were measured", default=400.0, lower=1.0, upper=1e4,
-                      source="Doria, Table 1")  # fmt: skip
+EXPONENT = Parameter(
+    "exponent",
+    ONE,
+    "exponent of the load in the cornering stiffness: 0 none, 1 in proportion",
+    off=0.0,
+    smallest_interesting=0.1,
+    lower=-1.0,
+    upper=2.0,
+    source="Doria, Fig. 7",
+)
+EXPONENT_M = Parameter(
+    "exponent_M",
+    ONE,
+    "exponent of the load in the self-aligning stiffness; a rig tells it, driving hardly",
+    default=0.0,
+    lower=-1.0,
+    upper=3.0,
+    source="Doria, Fig. 7",
+)
+REFERENCE = Parameter(
+    "N_ref", N, "load at which C_λ and C_mλ were measured", default=400.0, lower=1.0, upper=1e4, source="Doria, Table 1"
+)
 LIGHTEST = 0.01  # of the reference load; a wheel that carries less is off the ground
 
 
@@ -23,8 +39,5 @@ EFFECT = Effect(
     "cornering stiffness that grows less than the load",
     parameters=(EXPONENT,),
     constants=(EXPONENT_M, REFERENCE),
-    contributions=(
-        scales("k_F", power),
-        scales("k_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref)),
-    ),
+    contributions=(scales("k_F", power), scales("k_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref))),
 )

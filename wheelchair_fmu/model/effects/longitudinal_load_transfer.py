@@ -6,8 +6,16 @@ Straight on only rolling resistance feels it, as h (f_f − f_r): h is as sure a
 from ...quantities import M, Parameter
 from ..stage import Effect, adds
 
-H = Parameter("h", M, "height h of the CM that shifts load backward", off=0.0, smallest_interesting=0.3, lower=0.0,
-              upper=2.0, source="rigid-body statics")  # fmt: skip
+H = Parameter(
+    "h",
+    M,
+    "height h of the CM that shifts load backward",
+    off=0.0,
+    smallest_interesting=0.3,
+    lower=0.0,
+    upper=2.0,
+    source="rigid-body statics",
+)
 
 
 def shift(h, m, a_x, g_x, x_f, x_r):
@@ -18,8 +26,5 @@ EFFECT = Effect(
     "longitudinal_load_transfer",
     "load that shifts to the rear wheels under a push",
     parameters=(H,),
-    contributions=(
-        adds("N_r", shift),
-        adds("N_f", lambda h, m, a_x, g_x, x_f, x_r: -shift(h, m, a_x, g_x, x_f, x_r)),
-    ),
+    contributions=(adds("N_r", shift), adds("N_f", lambda h, m, a_x, g_x, x_f, x_r: -shift(h, m, a_x, g_x, x_f, x_r))),
 )

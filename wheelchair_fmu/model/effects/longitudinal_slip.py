@@ -6,8 +6,16 @@ from ...quantities import PER_N, Parameter
 from ..smooth import grip, magnitude
 from ..stage import Effect, adds
 
-COMPLIANCE = Parameter("compliance", PER_N, "longitudinal slip per newton of traction", off=0.0, smallest_interesting=1e-4,
-                       lower=0.0, upper=0.02, source="Pacejka: inverse longitudinal stiffness")  # fmt: skip
+COMPLIANCE = Parameter(
+    "compliance",
+    PER_N,
+    "longitudinal slip per newton of traction",
+    off=0.0,
+    smallest_interesting=1e-4,
+    lower=0.0,
+    upper=0.02,
+    source="Pacejka: inverse longitudinal stiffness",
+)
 
 
 def creep(compliance, F_t, brake_rl, brake_rr, F_max, v_xr, drag_eps, v_eps):
@@ -16,8 +24,5 @@ def creep(compliance, F_t, brake_rl, brake_rr, F_max, v_xr, drag_eps, v_eps):
 
 
 EFFECT = Effect(
-    "longitudinal_slip",
-    "traction that needs slip",
-    parameters=(COMPLIANCE,),
-    contributions=(adds("read_wheel_speed", creep),),
+    "longitudinal_slip", "traction that needs slip", parameters=(COMPLIANCE,), contributions=(adds("read_wheel_speed", creep),)
 )

@@ -4,10 +4,19 @@ from ...quantities import PER_RAD, RAD, Parameter
 from ..smooth import magnitude
 from ..stage import Effect, scales
 
-INV_SLIP = Parameter("inv_slip", PER_RAD, "inverse of the slip angle at which the trail has halved", off=0.0,
-                     smallest_interesting=5.0, lower=0.0, upper=500.0, source="Doria, Fig. 4.2")  # fmt: skip
-ROUNDING = Parameter("rounding", RAD, "slip angle within which |λ| is rounded off", default=1e-4, lower=1e-8, upper=0.1,
-                     source="chosen")  # fmt: skip
+INV_SLIP = Parameter(
+    "inv_slip",
+    PER_RAD,
+    "inverse of the slip angle at which the trail has halved",
+    off=0.0,
+    smallest_interesting=5.0,
+    lower=0.0,
+    upper=500.0,
+    source="Doria, Fig. 4.2",
+)
+ROUNDING = Parameter(
+    "rounding", RAD, "slip angle within which |λ| is rounded off", default=1e-4, lower=1e-8, upper=0.1, source="chosen"
+)
 
 
 def decay(inv_slip, lam_F, rounding):

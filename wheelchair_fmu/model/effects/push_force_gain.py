@@ -8,10 +8,22 @@ from ...quantities import ONE, Parameter
 from ..stage import Effect, scales
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.02, lower=-0.5, upper=1.0, source="instrument")
-RIGHT = Parameter("r", ONE, "scale error of the right force sensor: it reads (1 + r) times the push", symbol="gain_r",
-                  mirror="+gain_l", **COMMON)  # fmt: skip
-LEFT = Parameter("l", ONE, "scale error of the left force sensor: it reads (1 + l) times the push", symbol="gain_l",
-                 mirror="+gain_r", **COMMON)  # fmt: skip
+RIGHT = Parameter(
+    "r",
+    ONE,
+    "scale error of the right force sensor: it reads (1 + r) times the push",
+    symbol="gain_r",
+    mirror="+gain_l",
+    **COMMON,
+)
+LEFT = Parameter(
+    "l",
+    ONE,
+    "scale error of the left force sensor: it reads (1 + l) times the push",
+    symbol="gain_l",
+    mirror="+gain_r",
+    **COMMON,
+)
 
 EFFECT = Effect(
     "push_force_gain",

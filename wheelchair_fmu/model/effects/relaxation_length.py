@@ -5,10 +5,25 @@ from ..chassis import per_wheel
 from ..smooth import magnitude
 from ..stage import Effect, Row, adds
 
-SIGMA = Parameter("sigma", M, "relaxation length σ of the rear tyres", off=0.0, smallest_interesting=0.05, lower=0.0,
-                  upper=1.0, source="DellOrto2023")  # fmt: skip
-LAGGED = State("lagged_slip", RAD, "slip angle that the tyre's deflection has reached", mirror="-swap",
-               components=REAR, nominal=0.1, usual=0.01)  # fmt: skip
+SIGMA = Parameter(
+    "sigma",
+    M,
+    "relaxation length σ of the rear tyres",
+    off=0.0,
+    smallest_interesting=0.05,
+    lower=0.0,
+    upper=1.0,
+    source="DellOrto2023",
+)
+LAGGED = State(
+    "lagged_slip",
+    RAD,
+    "slip angle that the tyre's deflection has reached",
+    mirror="-swap",
+    components=REAR,
+    nominal=0.1,
+    usual=0.01,
+)
 
 
 def rolling(lagged_slip, lam, v_xr, v_eps):

@@ -4,10 +4,20 @@ from ...quantities import N_M, RAD_S, Parameter
 from ..smooth import grip
 from ..stage import Effect, adds
 
-TORQUE = Parameter("M", N_M, "dry torque M that resists turning", off=0.0, smallest_interesting=0.2, lower=0.0, upper=20.0,
-                   symbol="M_scrub", source="Doria, section 3")  # fmt: skip
-RATE = Parameter("rate", RAD_S, "yaw rate within which the dry torque builds up", default=0.01, lower=1e-5, upper=1.0,
-                 source="chosen")  # fmt: skip
+TORQUE = Parameter(
+    "M",
+    N_M,
+    "dry torque M that resists turning",
+    off=0.0,
+    smallest_interesting=0.2,
+    lower=0.0,
+    upper=20.0,
+    symbol="M_scrub",
+    source="Doria, section 3",
+)
+RATE = Parameter(
+    "rate", RAD_S, "yaw rate within which the dry torque builds up", default=0.01, lower=1e-5, upper=1.0, source="chosen"
+)
 
 
 def scrub(M_scrub, psi_dot, rate):

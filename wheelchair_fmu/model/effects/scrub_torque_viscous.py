@@ -3,8 +3,16 @@
 from ...quantities import N_M_S, Parameter
 from ..stage import Effect, adds
 
-D = Parameter("d", N_M_S, "torque per yaw rate d that resists turning", off=0.0, smallest_interesting=0.2, lower=0.0,
-              upper=50.0, source="chosen")  # fmt: skip
+D = Parameter(
+    "d",
+    N_M_S,
+    "torque per yaw rate d that resists turning",
+    off=0.0,
+    smallest_interesting=0.2,
+    lower=0.0,
+    upper=50.0,
+    source="chosen",
+)
 
 EFFECT = Effect(
     "scrub_torque_viscous",

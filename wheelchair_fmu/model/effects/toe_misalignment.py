@@ -8,10 +8,12 @@ from ...quantities import RAD, Parameter
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.2, upper=0.2, source="VanderWiel2016")
-RIGHT = Parameter("tau_r", RAD, "toe angle τ_r of the right wheel, positive when it points to the right",
-                  mirror="-tau_l", **COMMON)  # fmt: skip
-LEFT = Parameter("tau_l", RAD, "toe angle τ_l of the left wheel, positive when it points to the right",
-                 mirror="-tau_r", **COMMON)  # fmt: skip
+RIGHT = Parameter(
+    "tau_r", RAD, "toe angle τ_r of the right wheel, positive when it points to the right", mirror="-tau_l", **COMMON
+)
+LEFT = Parameter(
+    "tau_l", RAD, "toe angle τ_l of the left wheel, positive when it points to the right", mirror="-tau_r", **COMMON
+)
 
 
 def slip(tau_l, tau_r, s):

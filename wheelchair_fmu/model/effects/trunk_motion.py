@@ -10,16 +10,48 @@ import casadi as cs
 from ...quantities import M, N, Parameter, S, State
 from ..stage import Effect, Row, adds
 
-AMPLITUDE = Parameter("amplitude", M, "forward motion of the CM against the frame per 80 N of total push", off=0.0,
-                      smallest_interesting=0.01, lower=0.0, upper=0.3, source="Fuss2024")  # fmt: skip
+AMPLITUDE = Parameter(
+    "amplitude",
+    M,
+    "forward motion of the CM against the frame per 80 N of total push",
+    off=0.0,
+    smallest_interesting=0.01,
+    lower=0.0,
+    upper=0.3,
+    source="Fuss2024",
+)
 CONSTANTS = (
-    Parameter("push", N, "total push that moves the CM by the amplitude", default=80.0, lower=1.0, upper=1e4, symbol="F_lean",
-              source="Fuss2024"),
-    Parameter("lag", S, "time by which the trunk follows the push", default=0.15, lower=0.01, upper=5.0, symbol="T_lag",
-              source="Fuss2024"),
-    Parameter("filter", S, "time constant that smooths the push", default=0.003, lower=1e-4, upper=1.0, symbol="T_filter",
-              source="chosen"),
-)  # fmt: skip
+    Parameter(
+        "push",
+        N,
+        "total push that moves the CM by the amplitude",
+        default=80.0,
+        lower=1.0,
+        upper=1e4,
+        symbol="F_lean",
+        source="Fuss2024",
+    ),
+    Parameter(
+        "lag",
+        S,
+        "time by which the trunk follows the push",
+        default=0.15,
+        lower=0.01,
+        upper=5.0,
+        symbol="T_lag",
+        source="Fuss2024",
+    ),
+    Parameter(
+        "filter",
+        S,
+        "time constant that smooths the push",
+        default=0.003,
+        lower=1e-4,
+        upper=1.0,
+        symbol="T_filter",
+        source="chosen",
+    ),
+)
 
 
 def felt_rate(F_t, felt, T_filter):
@@ -52,8 +84,12 @@ EFFECT = Effect(
         adds("read_a_x", jerk_back),
     ),
     rows=(
-        Row(State("felt_push", N, "total push as the trunk follows it", nominal=80.0, symbol="felt"), lambda: 1.0, felt_rate,
-            lambda F_t: cs.sum1(F_t)),
+        Row(
+            State("felt_push", N, "total push as the trunk follows it", nominal=80.0, symbol="felt"),
+            lambda: 1.0,
+            felt_rate,
+            lambda F_t: cs.sum1(F_t),
+        ),
         Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
     ),
-)  # fmt: skip
+)

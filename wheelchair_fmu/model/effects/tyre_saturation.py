@@ -3,8 +3,17 @@
 from ...quantities import ONE, Parameter
 from ..stage import Effect, adds
 
-INV_MU = Parameter("inv_mu", ONE, "inverse friction coefficient 1/μ of the lateral force", off=0.0,
-                   smallest_interesting=0.8, lower=0.0, upper=20.0, symbol="more_inv_mu", source="Doria, (1)")  # fmt: skip
+INV_MU = Parameter(
+    "inv_mu",
+    ONE,
+    "inverse friction coefficient 1/μ of the lateral force",
+    off=0.0,
+    smallest_interesting=0.8,
+    lower=0.0,
+    upper=20.0,
+    symbol="more_inv_mu",
+    source="Doria, (1)",
+)
 
 EFFECT = Effect(
     "tyre_saturation",

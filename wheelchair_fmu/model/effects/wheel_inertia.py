@@ -3,15 +3,21 @@
 from ...quantities import KG, Parameter
 from ..stage import Effect, adds
 
-MASS = Parameter("m", KG, "equivalent mass 2 I / R² of both wheels' spin inertia", off=0.0, smallest_interesting=1.0,
-                 lower=0.0, upper=50.0, symbol="m_w", source="published wheelchair models: 0.14 kg m²")  # fmt: skip
+MASS = Parameter(
+    "m",
+    KG,
+    "equivalent mass 2 I / R² of both wheels' spin inertia",
+    off=0.0,
+    smallest_interesting=1.0,
+    lower=0.0,
+    upper=50.0,
+    symbol="m_w",
+    source="published wheelchair models: 0.14 kg m²",
+)
 
 EFFECT = Effect(
     "wheel_inertia",
     "spin inertia of the rear wheels",
     parameters=(MASS,),
-    contributions=(
-        adds("mass_u", lambda m_w: m_w),
-        adds("inertia", lambda m_w, t_r: m_w * t_r * t_r / 4),
-    ),
+    contributions=(adds("mass_u", lambda m_w: m_w), adds("inertia", lambda m_w, t_r: m_w * t_r * t_r / 4)),
 )

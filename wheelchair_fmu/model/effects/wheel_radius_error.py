@@ -8,10 +8,22 @@ from ...quantities import ONE, Parameter
 from ..stage import Effect, scales
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.01, lower=-0.5, upper=1.0, source="instrument")
-RIGHT = Parameter("r", ONE, "scale error of the right wheel speed: it reads (1 + r) times the speed", symbol="scale_r",
-                  mirror="+scale_l", **COMMON)  # fmt: skip
-LEFT = Parameter("l", ONE, "scale error of the left wheel speed: it reads (1 + l) times the speed", symbol="scale_l",
-                 mirror="+scale_r", **COMMON)  # fmt: skip
+RIGHT = Parameter(
+    "r",
+    ONE,
+    "scale error of the right wheel speed: it reads (1 + r) times the speed",
+    symbol="scale_r",
+    mirror="+scale_l",
+    **COMMON,
+)
+LEFT = Parameter(
+    "l",
+    ONE,
+    "scale error of the left wheel speed: it reads (1 + l) times the speed",
+    symbol="scale_l",
+    mirror="+scale_r",
+    **COMMON,
+)
 
 EFFECT = Effect(
     "wheel_radius_error",

@@ -12,5 +12,16 @@ from .open_values import OPEN, OpenValue, Range, ranges
 from .runs import Runs, Setting
 from .statements import STATEMENTS, Finding, Statement
 
-__all__ = ["FIGURES", "OPEN", "STATEMENTS", "FamilyFigure", "Finding", "OpenValue", "Range", "Runs", "Setting", "Statement",
-           "ranges"]  # fmt: skip
+__all__ = [
+    "FIGURES",
+    "OPEN",
+    "STATEMENTS",
+    "FamilyFigure",
+    "Finding",
+    "OpenValue",
+    "Range",
+    "Runs",
+    "Setting",
+    "Statement",
+    "ranges",
+]

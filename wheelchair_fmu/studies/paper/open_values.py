@@ -28,7 +28,7 @@ OPEN = (
     OpenValue("resistance.f_r", "f_r", "", (0, 0.006, 0.012, 0.024, 0.05), 0.012),
     OpenValue("resistance.f_f", "f_f", "", (0, 0.01, 0.02, 0.04, 0.08), 0.020),
     OpenValue("tyre.C_m_phi", "C_mφ", "N m/rad", (0, 1, 3, 6, 12, 24), 3),
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

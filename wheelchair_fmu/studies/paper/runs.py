@@ -58,8 +58,9 @@ class Runs:
     def slalom(self, values: Values | None = None) -> Result:
         """Three periods of the slalom."""
         set = self.setting
-        course = manoeuvre("slalom", speed=set.slalom_speed, delta_force=set.delta_force, period=set.period,
-                           time=PERIODS * set.period)  # fmt: skip
+        course = manoeuvre(
+            "slalom", speed=set.slalom_speed, delta_force=set.delta_force, period=set.period, time=PERIODS * set.period
+        )
         return self._run(course, values or {}, 0.0)
 
     def last_period(self, result: Result) -> slice:

@@ -144,8 +144,9 @@ def slip_inverse_to_cornering(runs: Runs) -> Finding:
     ends = np.array([slips(run)[:, -1] for run in _turns(runs, CORNERING)])
     products = ends * np.array(SCALES)[:, None] / ends[1]
     off = float(np.abs(products - 1).max())
-    return Finding(f"λ_rl = {_list(ends[:, 0], '°')}, λ_rr = {_list(ends[:, 1], '°')}: inverse to within {100 * off:.1f} %",
-                   off < LIMITED)  # fmt: skip
+    return Finding(
+        f"λ_rl = {_list(ends[:, 0], '°')}, λ_rr = {_list(ends[:, 1], '°')}: inverse to within {100 * off:.1f} %", off < LIMITED
+    )
 
 
 def slip_below_one_degree(runs: Runs) -> Finding:
@@ -167,14 +168,18 @@ def wider_slaloms_lag(runs: Runs, name: str = CORNERING) -> Finding:
 
 def slip_swing_falls_with_cornering(runs: Runs) -> Finding:
     swings = np.array([slip_swing(runs, run) for run in _slaloms(runs, CORNERING)])
-    return Finding(f"left {_list(swings[:, 0], '°')}, right {_list(swings[:, 1], '°')}",
-                   _falls(swings[:, 0].tolist()) and _falls(swings[:, 1].tolist()))  # fmt: skip
+    return Finding(
+        f"left {_list(swings[:, 0], '°')}, right {_list(swings[:, 1], '°')}",
+        _falls(swings[:, 0].tolist()) and _falls(swings[:, 1].tolist()),
+    )
 
 
 def slalom_slips_are_asymmetric(runs: Runs) -> Finding:
     means = np.array([slip_mean(runs, run) for run in _slaloms(runs, CORNERING)])
-    return Finding(f"mean left {_list(means[:, 0], '°')}, right {_list(means[:, 1], '°')}",
-                   bool((means[:, 0] < -ROUNDING).all() and (means[:, 1] > ROUNDING).all()))  # fmt: skip
+    return Finding(
+        f"mean left {_list(means[:, 0], '°')}, right {_list(means[:, 1], '°')}",
+        bool((means[:, 0] < -ROUNDING).all() and (means[:, 1] > ROUNDING).all()),
+    )
 
 
 def slalom_goes_straight_between(runs: Runs) -> Finding:
@@ -213,10 +218,13 @@ def aligning_lags(runs: Runs) -> Finding:
 
 
 def aligning_hardly_moves_slips(runs: Runs) -> Finding:
-    aligning, cornering = (max(_spread([slip_swing(runs, run)[side] for run in _slaloms(runs, name)]) for side in (0, 1))
-                           for name in (ALIGNING, CORNERING))  # fmt: skip
-    return Finding(f"half to double: {100 * aligning:.1f} % of the swing; C_λ: {100 * cornering:.0f} %",
-                   aligning < VERY_SMALL * cornering)  # fmt: skip
+    aligning, cornering = (
+        max(_spread([slip_swing(runs, run)[side] for run in _slaloms(runs, name)]) for side in (0, 1))
+        for name in (ALIGNING, CORNERING)
+    )
+    return Finding(
+        f"half to double: {100 * aligning:.1f} % of the swing; C_λ: {100 * cornering:.0f} %", aligning < VERY_SMALL * cornering
+    )
 
 
 def slalom_radius_rises_with_aligning(runs: Runs) -> Finding:
@@ -230,8 +238,11 @@ def slalom_radius_rises_with_aligning(runs: Runs) -> Finding:
 def opposite_cambers_cancel(runs: Runs) -> Finding:
     straight, leaning = (runs.turn(values, delta_force=0.0) for values in ({}, camber(-1.0, 1.0)))
     aside = float(leaning["chair.y"][-1] - straight["chair.y"][-1])
-    return Finding(f"±1° straight on: {1000 * aside:.3f} mm aside after 10 m; +1° on both: "
-                   f"{runs.turn(camber(1.0), delta_force=0.0)['chair.y'][-1]:.2f} m", abs(aside) < 1e-6)  # fmt: skip
+    return Finding(
+        f"±1° straight on: {1000 * aside:.3f} mm aside after 10 m; +1° on both: "
+        f"{runs.turn(camber(1.0), delta_force=0.0)['chair.y'][-1]:.2f} m",
+        abs(aside) < 1e-6,
+    )
 
 
 def camber_tightens_the_turn(runs: Runs) -> Finding:
@@ -246,8 +257,10 @@ def camber_is_limited(runs: Runs) -> Finding:
 
 def camber_relieves_slip(runs: Runs) -> Finding:
     ends = np.array([slips(runs.turn(camber(angle)))[:, -1] for angle in (-1.0, 0.0, 1.0)])
-    return Finding(f"−1°, 0°, 1°: λ_rl = {_list(ends[:, 0], '°')}, λ_rr = {_list(ends[:, 1], '°')}",
-                   _falls(ends[:, 0].tolist()) and _falls(ends[:, 1].tolist()))  # fmt: skip
+    return Finding(
+        f"−1°, 0°, 1°: λ_rl = {_list(ends[:, 0], '°')}, λ_rr = {_list(ends[:, 1], '°')}",
+        _falls(ends[:, 0].tolist()) and _falls(ends[:, 1].tolist()),
+    )
 
 
 def _leaning_slaloms(runs: Runs) -> list[Result]:
@@ -262,8 +275,10 @@ def camber_makes_the_slalom_drift(runs: Runs) -> Finding:
 def camber_shifts_slips(runs: Runs) -> Finding:
     means = np.array([slip_mean(runs, run) for run in _leaning_slaloms(runs)])
     uneven = np.abs(means).max(axis=1)
-    return Finding(f"0°, 0.5°, 1°: mean left {_list(means[:, 0], '°')}, right {_list(means[:, 1], '°')}",
-                   _falls(means[:, 0].tolist()) and _falls(means[:, 1].tolist()) and _rises(uneven.tolist()))  # fmt: skip
+    return Finding(
+        f"0°, 0.5°, 1°: mean left {_list(means[:, 0], '°')}, right {_list(means[:, 1], '°')}",
+        _falls(means[:, 0].tolist()) and _falls(means[:, 1].tolist()) and _rises(uneven.tolist()),
+    )
 
 
 # Conclusion
@@ -273,8 +288,10 @@ def seven_per_cent(runs: Runs) -> Finding:
     spreads = {name: _spread([radius(run) for run in _turns(runs, name)]) for name in (CORNERING, ALIGNING)}
     both = [radius(runs.turn({**scaled(CORNERING, c), **scaled(ALIGNING, 1 / c)})) for c in SCALES]
     text = ", ".join(f"{symbol} {100 * s:.1f} %" for symbol, s in zip(("C_λ", "C_mλ"), spreads.values(), strict=True))
-    return Finding(f"half to double: {text}; both at once, opposite ways, {100 * _spread(both):.1f} %",
-                   0.03 < max(spreads.values()) < 0.075)  # fmt: skip
+    return Finding(
+        f"half to double: {text}; both at once, opposite ways, {100 * _spread(both):.1f} %",
+        0.03 < max(spreads.values()) < 0.075,
+    )
 
 
 def stiffness_acts_where_it_is_tight(runs: Runs) -> Finding:
@@ -283,8 +300,10 @@ def stiffness_acts_where_it_is_tight(runs: Runs) -> Finding:
         soft, middle, stiff = (run["chair.curvature"][runs.last_period(run)] for run in _slaloms(runs, name))
         place = int(np.abs(stiff - soft).argmax())
         shares.append(float(abs(middle[place]) / np.abs(middle).max()))
-    return Finding(f"where 1/R differs most it has {100 * shares[0]:.0f} % (C_λ), {100 * shares[1]:.0f} % (C_mλ) of its peak",
-                   min(shares) > 0.7)  # fmt: skip
+    return Finding(
+        f"where 1/R differs most it has {100 * shares[0]:.0f} % (C_λ), {100 * shares[1]:.0f} % (C_mλ) of its peak",
+        min(shares) > 0.7,
+    )
 
 
 def _everything(runs: Runs) -> list[Result]:
@@ -308,23 +327,33 @@ STATEMENTS = (
     Statement("swing-cornering", "6.1, Fig. 13", "more C_λ, less slip in the slalom", slip_swing_falls_with_cornering),
     Statement("asymmetry", "6.1, Fig. 13", "slalom slips: right mean > 0, left mean < 0", slalom_slips_are_asymmetric),
     Statement("infinite-radius", "6.1, Fig. 14", "the radius goes through ±∞ between turns", slalom_goes_straight_between),
-    Statement("slalom-radius-cornering", "6.1, Fig. 14", "more C_λ, a smaller radius in the slalom",
-              slalom_radius_falls_with_cornering),
+    Statement(
+        "slalom-radius-cornering",
+        "6.1, Fig. 14",
+        "more C_λ, a smaller radius in the slalom",
+        slalom_radius_falls_with_cornering,
+    ),
     Statement("radius-aligning", "6.2, Fig. 15", "more C_mλ, a larger radius", radius_rises_with_aligning),
     Statement("slip-aligning", "6.2, Fig. 15", "more C_mλ, slightly less slip", slip_falls_slightly_with_aligning),
     Statement("slalom-aligning", "6.2, Fig. 16", "more C_mλ, a slightly narrower slalom", aligning_narrows_the_slalom),
     Statement("lag-aligning", "6.2, Fig. 16", "a small lag here too", aligning_lags),
     Statement("swing-aligning", "6.2, Fig. 16", "C_mλ hardly moves the slips of the slalom", aligning_hardly_moves_slips),
-    Statement("slalom-radius-aligning", "6.2, Fig. 17", "more C_mλ, a slightly larger radius in the slalom",
-              slalom_radius_rises_with_aligning),
+    Statement(
+        "slalom-radius-aligning",
+        "6.2, Fig. 17",
+        "more C_mλ, a slightly larger radius in the slalom",
+        slalom_radius_rises_with_aligning,
+    ),
     Statement("opposite-cambers", "6.3", "equal and opposite cambers give no net force", opposite_cambers_cancel),
     Statement("camber-limited", "6.3, Fig. 18", "moderate camber has a limited influence", camber_is_limited),
-    Statement("camber-radius", "6.3, Fig. 18", "positive camber tightens the turn, negative widens it",
-              camber_tightens_the_turn),
+    Statement(
+        "camber-radius", "6.3, Fig. 18", "positive camber tightens the turn, negative widens it", camber_tightens_the_turn
+    ),
     Statement("camber-slip", "6.3, Fig. 18", "positive camber relieves the slip", camber_relieves_slip),
     Statement("camber-drift", "6.3, Fig. 19", "positive camber makes the slalom drift to +y", camber_makes_the_slalom_drift),
-    Statement("camber-shift", "6.3, Fig. 19", "more camber shifts the slips and makes them more asymmetric",
-              camber_shifts_slips),
+    Statement(
+        "camber-shift", "6.3, Fig. 19", "more camber shifts the slips and makes them more asymmetric", camber_shifts_slips
+    ),
     Statement("seven-per-cent", "conclusion", "large changes of C_λ or C_mλ move the radius by up to 7 %", seven_per_cent),
     Statement("tight-part", "conclusion", "the stiffnesses act where the slalom is tightest", stiffness_acts_where_it_is_tight),
-)  # fmt: skip
+)

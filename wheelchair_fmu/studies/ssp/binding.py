@@ -41,10 +41,17 @@ def resolve(archive: Archive, file: str, system: System, fmus: Mapping[str, Fmu]
         for name, given in _given(archive, file, binding, "System"):
             target = _target(system, name)
             if target is None:
-                known = [*(c.name for c in system.connectors if c.kind == "parameter"),
-                         *(f"{c}.{v}" for c, fmu in fmus.items() for v in _settable(fmu))]  # fmt: skip
-                archive.blame(given.file, f"Parameter {name}", f"{file} has no such parameter",
-                              suggestion(name, known), given.setting.line)  # fmt: skip
+                known = [
+                    *(c.name for c in system.connectors if c.kind == "parameter"),
+                    *(f"{c}.{v}" for c, fmu in fmus.items() for v in _settable(fmu)),
+                ]
+                archive.blame(
+                    given.file,
+                    f"Parameter {name}",
+                    f"{file} has no such parameter",
+                    suggestion(name, known),
+                    given.setting.line,
+                )
             elif target[0] in fmus:
                 _put(archive, values, fmus, *target, given)
     return values
@@ -69,12 +76,22 @@ def _given(archive: Archive, file: str, binding: Binding, owner: str) -> Iterabl
     for entry in archive.mapping(binding.mapping) or () if binding.mapping else ():
         mapped.setdefault(entry.source, []).append(entry)
         if entry.source not in found.settings:
-            archive.blame(binding.mapping, f"MappingEntry {entry.source}", f"{binding.source} has no such parameter",
-                          suggestion(entry.source, found.settings), entry.line)  # fmt: skip
+            archive.blame(
+                binding.mapping,
+                f"MappingEntry {entry.source}",
+                f"{binding.source} has no such parameter",
+                suggestion(entry.source, found.settings),
+                entry.line,
+            )
     for name, setting in found.settings.items():
         if setting.unit and setting.unit not in units:
-            archive.blame(binding.source, f"Parameter {name}", f"unit {setting.unit!r} is not defined in Units",
-                          suggestion(setting.unit, units) if units else "define it there", setting.line)  # fmt: skip
+            archive.blame(
+                binding.source,
+                f"Parameter {name}",
+                f"unit {setting.unit!r} is not defined in Units",
+                suggestion(setting.unit, units) if units else "define it there",
+                setting.line,
+            )
         unit = units.get(setting.unit)
         entries = mapped.get(name) or [MappingEntry(name, binding.prefix + name)]
         for entry in entries:
@@ -108,11 +125,17 @@ def _put(archive: Archive, values: Values, fmus: Mapping[str, Fmu], component: s
     number = _number(archive, given, fmu, variable, who)
     if number is None:
         return
-    lower, upper = (float(b) if b is not None else default for b, default in
-                    ((variable.min, float("-inf")), (variable.max, float("inf"))))  # fmt: skip
+    lower, upper = (
+        float(b) if b is not None else default for b, default in ((variable.min, float("-inf")), (variable.max, float("inf")))
+    )
     if not lower <= number <= upper:
-        archive.blame(given.file, who, f"{number:g} is outside the bounds {lower:g} to {upper:g} {variable.unit or ''} of "
-                      f"{component}", "give a value between them", line)  # fmt: skip
+        archive.blame(
+            given.file,
+            who,
+            f"{number:g} is outside the bounds {lower:g} to {upper:g} {variable.unit or ''} of {component}",
+            "give a value between them",
+            line,
+        )
         return
     values[component][name] = number
 
@@ -136,8 +159,9 @@ def _number(archive: Archive, given: Given, fmu: Fmu, variable: ScalarVariable, 
     if given.unit is None or own is None or given.scaling.suppress_units:
         return scaled
     if dict(given.unit.exponents) != dict(own.exponents):
-        archive.blame(given.file, who, f"unit {given.unit.name!r} has another dimension than {own.name!r}",
-                      f"give it in {own.name}", line)  # fmt: skip
+        archive.blame(
+            given.file, who, f"unit {given.unit.name!r} has another dimension than {own.name!r}", f"give it in {own.name}", line
+        )
         return None
     return converted(scaled, given.unit, own)
 

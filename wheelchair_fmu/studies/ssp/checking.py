@@ -13,8 +13,13 @@ from .records import MAIN, Component, Connection, Connector, System
 
 Fmus = Mapping[str, Fmu]
 PAIRS = {("output", "input"), ("calculatedParameter", "parameter")}  # between elements
-KINDS = {"input": ("input",), "output": ("output",), "parameter": ("parameter",),
-         "calculatedParameter": ("calculatedParameter", "output"), "inout": ("input", "output")}  # fmt: skip
+KINDS = {
+    "input": ("input",),
+    "output": ("output",),
+    "parameter": ("parameter",),
+    "calculatedParameter": ("calculatedParameter", "output"),
+    "inout": ("input", "output"),
+}
 TYPES = {"Float64": "Real", "Int32": "Integer"}
 
 
@@ -48,8 +53,13 @@ def _fmus(archive: Archive, file: str, system: System) -> dict[str, Fmu]:
     for c in system.components:
         if not archive.has(c.source):
             there = [f.relative_to(archive.folder).as_posix() for f in archive.folder.rglob("*.fmu")]
-            archive.blame(file, f"Component {c.name}", f"source {c.source!r} is not in the archive",
-                          suggestion(c.source, there) if there else "put the FMU there", c.line)  # fmt: skip
+            archive.blame(
+                file,
+                f"Component {c.name}",
+                f"source {c.source!r} is not in the archive",
+                suggestion(c.source, there) if there else "put the FMU there",
+                c.line,
+            )
         elif (fmu := archive.fmu(c.source)) is not None:
             found[c.name] = fmu
     return found
@@ -70,17 +80,33 @@ def connectors_are_variables(archive: Archive, file: str, system: System, fmus: 
             variable = fmus[c.name].variables.get(k.name)
             who = f"Connector {c.name}.{k.name}"
             if variable is None:
-                archive.blame(file, who, "the FMU has no such variable",
-                              suggestion(k.name, _of_kind(fmus[c.name], k.kind)), k.line)  # fmt: skip
+                archive.blame(
+                    file, who, "the FMU has no such variable", suggestion(k.name, _of_kind(fmus[c.name], k.kind)), k.line
+                )
             elif variable.causality not in KINDS.get(k.kind, ()):
-                archive.blame(file, who, f"it is of kind {k.kind}, but the FMU has it as {variable.causality}",
-                              f'write kind="{variable.causality}"', k.line)  # fmt: skip
+                archive.blame(
+                    file,
+                    who,
+                    f"it is of kind {k.kind}, but the FMU has it as {variable.causality}",
+                    f'write kind="{variable.causality}"',
+                    k.line,
+                )
             elif TYPES.get(k.type, k.type) != variable.type:
-                archive.blame(file, who, f"it is of type {k.type}, but the FMU has it as {variable.type}",
-                              f"write ssc:{variable.type}", k.line)  # fmt: skip
+                archive.blame(
+                    file,
+                    who,
+                    f"it is of type {k.type}, but the FMU has it as {variable.type}",
+                    f"write ssc:{variable.type}",
+                    k.line,
+                )
             elif k.unit and variable.unit and k.unit != variable.unit:
-                archive.blame(file, who, f"it is in {k.unit}, but the FMU has it in {variable.unit}",
-                              f'write unit="{variable.unit}"', k.line)  # fmt: skip
+                archive.blame(
+                    file,
+                    who,
+                    f"it is in {k.unit}, but the FMU has it in {variable.unit}",
+                    f'write unit="{variable.unit}"',
+                    k.line,
+                )
 
 
 def connectors_have_known_units(archive: Archive, file: str, system: System, fmus: Fmus) -> None:
@@ -88,21 +114,31 @@ def connectors_have_known_units(archive: Archive, file: str, system: System, fmu
     for owner in (system, *system.components):
         for k in owner.connectors:
             if k.unit and k.unit not in known:
-                archive.blame(file, f"Connector {k.name}", f"unit {k.unit!r} is not defined in Units",
-                              suggestion(k.unit, known) if known else "define it there", k.line)  # fmt: skip
+                archive.blame(
+                    file,
+                    f"Connector {k.name}",
+                    f"unit {k.unit!r} is not defined in Units",
+                    suggestion(k.unit, known) if known else "define it there",
+                    k.line,
+                )
 
 
 def connections_lead_somewhere(archive: Archive, file: str, system: System, fmus: Fmus) -> None:
     for c in system.connections:
-        ends = [_end(archive, file, system, c, e, k) for e, k in
-                ((c.start_element, c.start_connector), (c.end_element, c.end_connector))]  # fmt: skip
+        ends = [
+            _end(archive, file, system, c, e, k)
+            for e, k in ((c.start_element, c.start_connector), (c.end_element, c.end_connector))
+        ]
         if None in ends:
             continue
         start, end = (k.kind for k in ends if k)
         inner = bool(c.start_element) == bool(c.end_element)
         if (inner and (start, end) not in PAIRS) or (not inner and start != end):
-            cure = "lead from an output to an input" if inner else "lead from the system's input to an input, or from an " \
-                                                                   "output to the system's output"  # fmt: skip
+            cure = (
+                "lead from an output to an input"
+                if inner
+                else "lead from the system's input to an input, or from an output to the system's output"
+            )
             archive.blame(file, str(c), f"it leads from kind {start} to kind {end}", cure, c.line)
 
 
@@ -117,21 +153,31 @@ def inputs_are_fed_once(archive: Archive, file: str, system: System, fmus: Fmus)
 
 def connections_keep_the_dimension(archive: Archive, file: str, system: System, fmus: Fmus) -> None:
     for c in system.connections:
-        ends = [fmus[e].variables.get(k) if e in fmus else None for e, k in
-                ((c.start_element, c.start_connector), (c.end_element, c.end_connector))]  # fmt: skip
+        ends = [
+            fmus[e].variables.get(k) if e in fmus else None
+            for e, k in ((c.start_element, c.start_connector), (c.end_element, c.end_connector))
+        ]
         if None in ends or c.scaling.suppress_units:
             continue
-        start, end = (fmus[e].units.get(v.unit or "") for e, v in
-                      zip((c.start_element, c.end_element), ends, strict=True))  # fmt: skip
+        start, end = (fmus[e].units.get(v.unit or "") for e, v in zip((c.start_element, c.end_element), ends, strict=True))
         if start and end and dict(start.exponents) != dict(end.exponents):
-            archive.blame(file, str(c), f"it leads from {start.name} to {end.name}, which is another dimension",
-                          "connect what measures the same", c.line)  # fmt: skip
+            archive.blame(
+                file,
+                str(c),
+                f"it leads from {start.name} to {end.name}, which is another dimension",
+                "connect what measures the same",
+                c.line,
+            )
 
 
 CHECKS: tuple[Callable[[Archive, str, System, Fmus], None], ...] = (
-    components_differ, connectors_are_variables, connectors_have_known_units, connections_lead_somewhere,
-    inputs_are_fed_once, connections_keep_the_dimension,
-)  # fmt: skip
+    components_differ,
+    connectors_are_variables,
+    connectors_have_known_units,
+    connections_lead_somewhere,
+    inputs_are_fed_once,
+    connections_keep_the_dimension,
+)
 
 
 def _of_kind(fmu: Fmu, kind: str) -> list[str]:
@@ -141,12 +187,18 @@ def _of_kind(fmu: Fmu, kind: str) -> list[str]:
 def _end(archive: Archive, file: str, system: System, c: Connection, element: str, name: str) -> Connector | None:
     owner: Component | System | None = system.component(element) if element else system
     if owner is None:
-        archive.blame(file, str(c), f"there is no element {element!r}",
-                      suggestion(element, (k.name for k in system.components)), c.line)  # fmt: skip
+        archive.blame(
+            file, str(c), f"there is no element {element!r}", suggestion(element, (k.name for k in system.components)), c.line
+        )
         return None
     found = next((k for k in owner.connectors if k.name == name), None)
     if found is None:
         there = [k.name for k in owner.connectors]
-        archive.blame(file, str(c), f"{element or 'the system'} has no connector {name!r}",
-                      suggestion(name, there) if there else "add it", c.line)  # fmt: skip
+        archive.blame(
+            file,
+            str(c),
+            f"{element or 'the system'} has no connector {name!r}",
+            suggestion(name, there) if there else "add it",
+            c.line,
+        )
     return found

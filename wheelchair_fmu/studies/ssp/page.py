@@ -18,9 +18,12 @@ BOX, GAP, ROW, TOP = 200, 440, 150, 20  # px: a box's width, from box to box, a 
 
 
 def page(
-    plain: System, models: Mapping[str, Model], sets: Mapping[str, ParameterSet], handles: ParameterSet,
+    plain: System,
+    models: Mapping[str, Model],
+    sets: Mapping[str, ParameterSet],
+    handles: ParameterSet,
     entries: Iterable[MappingEntry],
-) -> bytes:  # fmt: skip
+) -> bytes:
     """The page of a system: `sets` by component, with their choices; `handles`, and where `entries` lead them."""
     step, stop = plain.step or 0.0, plain.stop or 0.0
     text = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
@@ -50,8 +53,10 @@ def diagram(plain: System) -> str:
         for start, end, at in ((name, "Chair", y + 40), ("Chair", name, y + 85)):
             if signals := _signals(plain, start, end):
                 parts.append(_arrow(", ".join(signals), at, back=start == "Chair"))
-    return (f'<svg viewBox="-2 0 {2 * BOX + GAP + 4} {height}" width="{2 * BOX + GAP + 4}" role="img" '
-            f'aria-label="The components and the signals between them">\n' + "\n".join(parts) + "\n</svg>")  # fmt: skip
+    return (
+        f'<svg viewBox="-2 0 {2 * BOX + GAP + 4} {height}" width="{2 * BOX + GAP + 4}" role="img" '
+        f'aria-label="The components and the signals between them">\n' + "\n".join(parts) + "\n</svg>"
+    )
 
 
 def _signals(plain: System, start: str, end: str) -> list[str]:
@@ -60,17 +65,21 @@ def _signals(plain: System, start: str, end: str) -> list[str]:
 
 def _box(name: str, x: float, y: float, height: float) -> str:
     middle, centre = y + height / 2, x + BOX / 2
-    return (f'<rect x="{x}" y="{y}" width="{BOX}" height="{height}" rx="6" fill="#eef3f8" stroke="#345"/>'
-            f'<text class="name" x="{centre}" y="{middle - 4}" text-anchor="middle">{escape(name)}</text>'
-            f'<text class="what" x="{centre}" y="{middle + 16}" text-anchor="middle">{WORDS.get(name, "")}</text>')  # fmt: skip
+    return (
+        f'<rect x="{x}" y="{y}" width="{BOX}" height="{height}" rx="6" fill="#eef3f8" stroke="#345"/>'
+        f'<text class="name" x="{centre}" y="{middle - 4}" text-anchor="middle">{escape(name)}</text>'
+        f'<text class="what" x="{centre}" y="{middle + 16}" text-anchor="middle">{WORDS.get(name, "")}</text>'
+    )
 
 
 def _arrow(text: str, y: float, back: bool) -> str:
     left, right = BOX, BOX + GAP
     tip, inward = (left, 9) if back else (right, -9)
-    return (f'<line x1="{left}" y1="{y}" x2="{right}" y2="{y}" stroke="#345"/>'
-            f'<path d="M{tip} {y} l{inward} -5 v10 z" fill="#345"/>'
-            f'<text x="{(left + right) / 2}" y="{y - 7}" text-anchor="middle">{escape(text)}</text>')  # fmt: skip
+    return (
+        f'<line x1="{left}" y1="{y}" x2="{right}" y2="{y}" stroke="#345"/>'
+        f'<path d="M{tip} {y} l{inward} -5 v10 z" fill="#345"/>'
+        f'<text x="{(left + right) / 2}" y="{y - 7}" text-anchor="middle">{escape(text)}</text>'
+    )
 
 
 def _connection(c: Connection, models: Mapping[str, Model]) -> tuple[str, ...]:

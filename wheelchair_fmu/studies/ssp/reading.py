@@ -23,8 +23,11 @@ from .faults import Fault
 from .records import Binding, Component, Connection, Connector, MappingEntry, Scaling, System
 from .unpacking import too_much, unpack
 
-SCHEMAS = {"ssd": "SystemStructureDescription.xsd", "ssv": "SystemStructureParameterValues.xsd",
-           "ssm": "SystemStructureParameterMapping.xsd"}  # fmt: skip
+SCHEMAS = {
+    "ssd": "SystemStructureDescription.xsd",
+    "ssv": "SystemStructureParameterValues.xsd",
+    "ssm": "SystemStructureParameterMapping.xsd",
+}
 ROOTS = {"ssd": "SystemStructureDescription", "ssv": "ParameterSet", "ssm": "ParameterMapping"}
 FMU_TYPES = ("application/x-fmu-sharedlibrary", "")
 
@@ -86,17 +89,27 @@ class Archive:
         try:
             root = etree.fromstring((self.folder / file).read_bytes(), parser)
         except etree.XMLSyntaxError as error:
-            self.blame(file, "", f"not well-formed XML: {error.msg}", "correct it, or build the archive again",
-                       error.lineno or 0)  # fmt: skip
+            self.blame(
+                file, "", f"not well-formed XML: {error.msg}", "correct it, or build the archive again", error.lineno or 0
+            )
             return None
         if root.getroottree().docinfo.internalDTD is not None:  # entities could stand for other files, or for gigabytes
-            self.blame(file, "", "it begins with a document type declaration (DTD), and entities are not read here",
-                       "take the declaration out and write what its entities stand for")
+            self.blame(
+                file,
+                "",
+                "it begins with a document type declaration (DTD), and entities are not read here",
+                "take the declaration out and write what its entities stand for",
+            )
             return None
         wanted = qualified(f"{kind}:{ROOTS[kind]}")
         if root.tag != wanted:
-            self.blame(file, _local(root), f"the root is {root.tag}, not {wanted}",
-                       f"write {kind}:{ROOTS[kind]} of SSP 1.0 or 2.0, with the namespace {NAMESPACE[kind]}", root.sourceline)
+            self.blame(
+                file,
+                _local(root),
+                f"the root is {root.tag}, not {wanted}",
+                f"write {kind}:{ROOTS[kind]} of SSP 1.0 or 2.0, with the namespace {NAMESPACE[kind]}",
+                root.sourceline,
+            )
             return None
         version = root.get("version", "")
         schema = _schema(kind, version)
@@ -106,8 +119,13 @@ class Archive:
         elif schema is not None and not schema.validate(root):
             for error in schema.error_log:  # type: ignore[attr-defined]
                 text = error.message.replace(f"{{{NAMESPACE[kind]}}}", f"{kind}:").replace(f"{{{NAMESPACE['ssc']}}}", "ssc:")
-                self.blame(file, "", f"not as the schema of SSP {version} wants it: {text}",
-                           "put elements in the schema's order, with the attributes it asks for", error.line)
+                self.blame(
+                    file,
+                    "",
+                    f"not as the schema of SSP {version} wants it: {text}",
+                    "put elements in the schema's order, with the attributes it asks for",
+                    error.line,
+                )
         return root
 
 
@@ -158,8 +176,13 @@ def _system(archive: Archive, file: str, root: etree._Element) -> System | None:
         if _local(node) == "Component":
             components.append(_component(archive, file, node))
         else:
-            archive.blame(file, f"{_local(node)} {node.get('name', '')}".strip(), "only components are run here",
-                          "put the components of an inner system into the outer one", node.sourceline)  # fmt: skip
+            archive.blame(
+                file,
+                f"{_local(node)} {node.get('name', '')}".strip(),
+                "only components are run here",
+                "put the components of an inner system into the outer one",
+                node.sourceline,
+            )
     start, stop, step = _experiment(archive, file, root)
     return System(
         name=root.get("name", ""),
@@ -180,12 +203,22 @@ def _system(archive: Archive, file: str, root: etree._Element) -> System | None:
 def _component(archive: Archive, file: str, node: etree._Element) -> Component:
     name = node.get("name", "")
     if node.get("type", "") not in FMU_TYPES:
-        archive.blame(file, f"Component {name}", f"type {node.get('type')!r} is no FMU",
-                      "give an FMU: application/x-fmu-sharedlibrary", node.sourceline)  # fmt: skip
+        archive.blame(
+            file,
+            f"Component {name}",
+            f"type {node.get('type')!r} is no FMU",
+            "give an FMU: application/x-fmu-sharedlibrary",
+            node.sourceline,
+        )
     if node.get("implementation") == "ModelExchange":
         archive.blame(file, f"Component {name}", "ModelExchange is asked for", "ask for CoSimulation", node.sourceline)
-    return Component(name, node.get("source", ""), _connectors(node), _bindings(archive, file, node, f"Component {name}"),
-                     line=node.sourceline)  # fmt: skip
+    return Component(
+        name,
+        node.get("source", ""),
+        _connectors(node),
+        _bindings(archive, file, node, f"Component {name}"),
+        line=node.sourceline,
+    )
 
 
 def _connectors(parent: etree._Element) -> tuple[Connector, ...]:
@@ -208,8 +241,13 @@ def _bindings(archive: Archive, file: str, parent: etree._Element, owner: str) -
             mapped = mapping.get("source") or _inline(archive, file, mapping, mapping, "ssm", owner)
         for what in (node, mapping):
             if what is not None and what.get("sourceBase", "SSD") != "SSD":
-                archive.blame(file, owner, "sourceBase = component is not read here", "take the file out of the FMU, into "
-                              "resources", what.sourceline)  # fmt: skip
+                archive.blame(
+                    file,
+                    owner,
+                    "sourceBase = component is not read here",
+                    "take the file out of the FMU, into resources",
+                    what.sourceline,
+                )
         found.append(Binding(source, node.get("prefix", ""), mapped, node.sourceline))
     return tuple(found)
 
@@ -218,8 +256,13 @@ def _inline(archive: Archive, file: str, node: etree._Element, holder: etree._El
     """What stands inside the description, laid beside it as a file of its own, so that there is one way to read it."""
     content = None if holder is None else holder.find(qualified(f"{kind}:{ROOTS[kind]}"))
     if content is None:
-        archive.blame(file, owner, f"a binding with neither a source nor a {ROOTS[kind]} inside",
-                      f"give source=\"resources/….{kind}\"", node.sourceline)  # fmt: skip
+        archive.blame(
+            file,
+            owner,
+            f"a binding with neither a source nor a {ROOTS[kind]} inside",
+            f'give source="resources/….{kind}"',
+            node.sourceline,
+        )
         return ""
     name = f"{file} line {content.sourceline}.{kind}"
     (archive.folder / name).write_bytes(etree.tostring(content))
@@ -250,12 +293,18 @@ def _experiment(archive: Archive, file: str, root: etree._Element) -> tuple[floa
     start, stop = _number(archive, file, node, "startTime") or 0.0, _number(archive, file, node, "stopTime")
     step = next((_number(archive, file, a, "baseStepSize") for a in node.iter(qualified("osp:FixedStepAlgorithm"))), None)
     if stop is not None and not stop > start:
-        archive.blame(file, "DefaultExperiment", f"stopTime {stop:g} s is not after startTime {start:g} s",
-                      "give a later stopTime", node.sourceline)  # fmt: skip
+        archive.blame(
+            file,
+            "DefaultExperiment",
+            f"stopTime {stop:g} s is not after startTime {start:g} s",
+            "give a later stopTime",
+            node.sourceline,
+        )
         stop = None
     if step is not None and not step > 0:
-        archive.blame(file, "DefaultExperiment", f"baseStepSize {step:g} s is not above 0", "give a step such as 0.01",
-                      node.sourceline)  # fmt: skip
+        archive.blame(
+            file, "DefaultExperiment", f"baseStepSize {step:g} s is not above 0", "give a step such as 0.01", node.sourceline
+        )
         step = None
     return start, stop, step
 
@@ -285,17 +334,26 @@ def _setting(archive: Archive, file: str, name: str, node: etree._Element) -> Se
         return Setting(text, line=node.sourceline)
     if kind == "Boolean":
         return Setting(text in ("true", "1"), line=node.sourceline)
-    archive.blame(file, f"Parameter {name}", f"a value of type {kind} is not read here",
-                  "give a Real, Integer, Boolean or Enumeration", node.sourceline)  # fmt: skip
+    archive.blame(
+        file,
+        f"Parameter {name}",
+        f"a value of type {kind} is not read here",
+        "give a Real, Integer, Boolean or Enumeration",
+        node.sourceline,
+    )
     return None
 
 
 def _mapping(archive: Archive, file: str, root: etree._Element) -> tuple[MappingEntry, ...]:
     return tuple(
-        MappingEntry(n.get("source", ""), n.get("target", ""), _scaling(archive, file, n, f"MappingEntry {n.get('source')}"),
-                     n.sourceline)
+        MappingEntry(
+            n.get("source", ""),
+            n.get("target", ""),
+            _scaling(archive, file, n, f"MappingEntry {n.get('source')}"),
+            n.sourceline,
+        )
         for n in _all(root, "ssm:MappingEntry")
-    )  # fmt: skip
+    )
 
 
 def _units(archive: Archive, file: str, root: etree._Element) -> tuple[SspUnit, ...]:
@@ -320,8 +378,9 @@ def _number(archive: Archive, file: str, node: etree._Element, key: str, owner: 
     except ValueError:
         value = float("nan")
     if text is not None and not abs(value or 0.0) < float("inf"):
-        archive.blame(file, owner or _local(node), f"{key} = {text!r} is not a finite number", "write a number",
-                      node.sourceline)  # fmt: skip
+        archive.blame(
+            file, owner or _local(node), f"{key} = {text!r} is not a finite number", "write a number", node.sourceline
+        )
         return None
     return value
 
@@ -337,8 +396,9 @@ def _fmu(archive: Archive, file: str) -> Fmu | None:
                 return refuse(fact, "pack less into one FMU")
         description = fmpy.read_model_description(str(path))
     except Exception as error:  # fmpy raises whatever its parsers raise, zipfile what zlib does
-        return refuse(f"not an FMU: {' '.join(str(error).split()) or type(error).__name__}",
-                      "give a file that `fmpy validate` accepts")  # fmt: skip
+        return refuse(
+            f"not an FMU: {' '.join(str(error).split()) or type(error).__name__}", "give a file that `fmpy validate` accepts"
+        )
     if description.fmiVersion != "2.0" or description.coSimulation is None:
         return refuse(f"FMI {description.fmiVersion} without co-simulation by FMI 2.0", "give an FMU 2.0 for co-simulation")
     platforms = fmpy.supported_platforms(str(path))

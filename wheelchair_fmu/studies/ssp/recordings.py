@@ -50,7 +50,14 @@ def _refuse_gaps(table: CsvTable, columns: dict[str, np.ndarray], indices: list[
     faults = []
     for (_, column), index in zip(columns.items(), indices, strict=True):
         for row in np.flatnonzero(~np.isfinite(column))[:1]:
-            faults.append(run_fault(table.file, "a gap, which hands cannot replay", "fill it, or cut the file there",
-                                    table.rows([index]).line(int(row)), table.headers[index]))  # fmt: skip
+            faults.append(
+                run_fault(
+                    table.file,
+                    "a gap, which hands cannot replay",
+                    "fill it, or cut the file there",
+                    table.rows([index]).line(int(row)),
+                    table.headers[index],
+                )
+            )
     if faults:
         raise FileError(faults)

@@ -73,8 +73,10 @@ class Connection:
     line: int = field(default=0, compare=False)
 
     def __str__(self) -> str:
-        start, end = (f"{e}.{c}" if e else c for e, c in
-                      ((self.start_element, self.start_connector), (self.end_element, self.end_connector)))  # fmt: skip
+        start, end = (
+            f"{e}.{c}" if e else c
+            for e, c in ((self.start_element, self.start_connector), (self.end_element, self.end_connector))
+        )
         return f"connection {start} → {end}"
 
 

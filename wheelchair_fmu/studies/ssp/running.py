@@ -50,12 +50,7 @@ class Trace:
 
 
 def run(
-    path: Path,
-    *,
-    step: float | None = None,
-    stop: float | None = None,
-    description: str = MAIN,
-    parameters: Sequence[str] = (),
+    path: Path, *, step: float | None = None, stop: float | None = None, description: str = MAIN, parameters: Sequence[str] = ()
 ) -> Trace:
     """Run a system of an archive; `step` and `stop` [s] are its own unless given, `description` says which .ssd.
 
@@ -220,8 +215,9 @@ def _run(system: System, times: np.ndarray, slaves: Mapping[str, _Slave], values
             table[i] = slave.read()
         exchange()
     units = {f"{s.name}.{v.name}": v.unit or "1" for s in slaves.values() for v in s.outputs}
-    parameters = {f"{s.name}.{n}": s.get(v) for s in slaves.values() for n, v in s.fmu.variables.items()
-                  if v.causality == "parameter"}  # fmt: skip
+    parameters = {
+        f"{s.name}.{n}": s.get(v) for s in slaves.values() for n, v in s.fmu.variables.items() if v.causality == "parameter"
+    }
     warnings = tuple(f"{s.name}: {text}" for s in slaves.values() for status, text in s.said if status == WARNING)
     columns = dict(zip(units, np.hstack(tables).T.copy(), strict=True))
     return Trace(system, times, columns, units, parameters, warnings)

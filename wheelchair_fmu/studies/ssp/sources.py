@@ -46,7 +46,7 @@ def system(name: str) -> Source:
     path = _path(name, "systems", systems(), "system")
     table = _load(path)
     if lost := [key for key in ("title", "stop", "step") if key not in table]:
-        raise Failure(f"{path}: no {' and no '.join(lost)}; write title = \"…\", stop and step in seconds")
+        raise Failure(f'{path}: no {" and no ".join(lost)}; write title = "…", stop and step in seconds')
     for key in table:
         if key not in ("title", "stop", "step", *COMPONENTS):
             raise unknown(f"component in {path}", key, COMPONENTS)

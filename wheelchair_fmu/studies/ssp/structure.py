@@ -37,8 +37,11 @@ class Model:
         return fmu_units(self.description)
 
     def connectors(self) -> tuple[Connector, ...]:
-        return tuple(Connector(v.name, v.causality, v.type, v.unit or "") for v in self.description.modelVariables
-                     if v.causality in ("input", "output"))  # fmt: skip
+        return tuple(
+            Connector(v.name, v.causality, v.type, v.unit or "")
+            for v in self.description.modelVariables
+            if v.causality in ("input", "output")
+        )
 
 
 def plain_system(source: sources.Source, models: dict[str, Model], version: str) -> System:
@@ -50,8 +53,16 @@ def plain_system(source: sources.Source, models: dict[str, Model], version: str)
     connections = tuple(_same_names(everything))
     components = tuple(_without_loose_ends(everything, connections))
     units = {k.unit: models[c.name].units()[k.unit] for c in components for k in c.connectors if k.unit}
-    return System(source.name, components, connections, units=tuple(units.values()), stop=source.stop,
-                  step=source.step, description=source.title, version=version)  # fmt: skip
+    return System(
+        source.name,
+        components,
+        connections,
+        units=tuple(units.values()),
+        stop=source.stop,
+        step=source.step,
+        description=source.title,
+        version=version,
+    )
 
 
 def _same_names(components: tuple[Component, ...]) -> Iterable[Connection]:
@@ -113,13 +124,24 @@ def with_interface(
         value = _start(sets[element], variable) * own.factor / units[unit].factor
         settings[handle] = Setting(float(f"{value:.12g}"), unit)  # as people write it
     used = {s.unit for s in settings.values()}
-    handles = ParameterSet("handles", settings, tuple(u for u in units.values() if u.name in used),
-                           "the parameters that a user turns, in everyday units")  # fmt: skip
+    handles = ParameterSet(
+        "handles",
+        settings,
+        tuple(u for u in units.values() if u.name in used),
+        "the parameters that a user turns, in everyday units",
+    )
     components = tuple(replace(c, connectors=(*c.connectors, *shown[c.name])) for c in plain.components)
     binding = Binding("resources/handles.ssv", mapping="resources/handles.ssm")
     # A name of its own: OMSimulator takes the descriptions of an archive as variants, and refuses two of one name.
-    outer_system = replace(plain, name=f"{plain.name}-interface", components=components, connections=tuple(connections),
-                           connectors=tuple(connectors), bindings=(binding,), units=tuple(units.values()))  # fmt: skip
+    outer_system = replace(
+        plain,
+        name=f"{plain.name}-interface",
+        components=components,
+        connections=tuple(connections),
+        connectors=tuple(connectors),
+        bindings=(binding,),
+        units=tuple(units.values()),
+    )
     return outer_system, handles, entries
 
 

@@ -29,8 +29,9 @@ def unpack(path: Path, folder: Path) -> Iterator[str]:
                 else:
                     yield name
     except BROKEN as error:
-        raise Failure(f"{path}: not a zip archive that can be read ({error}); an .ssp is one, with SystemStructure.ssd "
-                      "in it") from None  # fmt: skip
+        raise Failure(
+            f"{path}: not a zip archive that can be read ({error}); an .ssp is one, with SystemStructure.ssd in it"
+        ) from None
 
 
 def too_much(packed: zipfile.ZipFile) -> str:
@@ -39,5 +40,7 @@ def too_much(packed: zipfile.ZipFile) -> str:
     size = sum(entry.file_size for entry in entries)
     if len(entries) <= MOST_FILES and size <= MOST_BYTES:
         return ""
-    return (f"{len(entries)} files of {size / 1e6:.0f} MB in all, unpacked, are more than {MOST_FILES} files or "
-            f"{MOST_BYTES / 1e6:.0f} MB")  # fmt: skip
+    return (
+        f"{len(entries)} files of {size / 1e6:.0f} MB in all, unpacked, are more than {MOST_FILES} files or "
+        f"{MOST_BYTES / 1e6:.0f} MB"
+    )

@@ -16,8 +16,9 @@ MARGIN = 40.0
 
 def description(system: System) -> bytes:
     """The .ssd of a system."""
-    root = element("ssd:SystemStructureDescription", version=system.version, name=system.name, generationTool=TOOL,
-                   license="MIT")  # fmt: skip
+    root = element(
+        "ssd:SystemStructureDescription", version=system.version, name=system.name, generationTool=TOOL, license="MIT"
+    )
     if system.description:
         root.set("description", system.description)
     inner = child(root, "ssd:System", name=system.name)
@@ -74,8 +75,14 @@ def _bindings(parent: etree._Element, bindings: tuple[Binding, ...]) -> None:
 
 
 def _component(parent: etree._Element, component: Component) -> None:
-    made = child(parent, "ssd:Component", name=component.name, source=component.source,
-                 type="application/x-fmu-sharedlibrary", implementation="CoSimulation")  # fmt: skip
+    made = child(
+        parent,
+        "ssd:Component",
+        name=component.name,
+        source=component.source,
+        type="application/x-fmu-sharedlibrary",
+        implementation="CoSimulation",
+    )
     _connectors(made, component.connectors)
     if component.place:
         child(made, "ssd:ElementGeometry", **_corners(component.place))
@@ -83,8 +90,12 @@ def _component(parent: etree._Element, component: Component) -> None:
 
 
 def _connection(parent: etree._Element, connection: Connection) -> None:
-    ends = {"startElement": connection.start_element, "startConnector": connection.start_connector,
-            "endElement": connection.end_element, "endConnector": connection.end_connector}  # fmt: skip
+    ends = {
+        "startElement": connection.start_element,
+        "startConnector": connection.start_connector,
+        "endElement": connection.end_element,
+        "endConnector": connection.end_connector,
+    }
     made = child(parent, "ssd:Connection", **{k: v for k, v in ends.items() if v}, **_suppressed(connection.scaling))
     _transformation(made, connection.scaling)
 

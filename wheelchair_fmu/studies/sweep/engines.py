@@ -59,5 +59,8 @@ ENGINES: dict[str, type[KernelEngine] | type[FmuEngine]] = {"kernel": KernelEngi
 def encoded(variant: Variant, values: Mapping[str, float | str]) -> dict[str, float]:
     """Values as numbers, choices by their number; those that the variant does not know are left out."""
     records = {p.name: p for p in variant.parameters()}
-    return {name: number(records, name, value) if isinstance(value, str) else float(value)
-            for name, value in values.items() if name in records}  # fmt: skip
+    return {
+        name: number(records, name, value) if isinstance(value, str) else float(value)
+        for name, value in values.items()
+        if name in records
+    }

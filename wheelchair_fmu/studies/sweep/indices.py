@@ -38,8 +38,10 @@ def indices(plan: Plan, out: Path) -> pd.DataFrame | None:
             case = frame[(frame.variant == variant) & (frame.manoeuvre == manoeuvre)].sort_values("chair")
             values = case[name].to_numpy()
             if np.isfinite(values).any():
-                rows += [{"variant": variant, "manoeuvre": manoeuvre, "quantity": name, **row}
-                         for row in indices_of(plan.design, values)]  # fmt: skip
+                rows += [
+                    {"variant": variant, "manoeuvre": manoeuvre, "quantity": name, **row}
+                    for row in indices_of(plan.design, values)
+                ]
     return pd.DataFrame(rows)
 
 

@@ -167,8 +167,15 @@ class _Reader:
         except tomllib.TOMLDecodeError as error:
             place = re.search(r" \(at line (\d+), column \d+\)", str(error))
             line = int(place[1]) if place else text.count("\n") + 1
-            self.faults.append(Fault(self.path.name, line, None, f"not valid TOML: {str(error).partition(' (at ')[0].lower()}",
-                                     "correct this line"))  # fmt: skip
+            self.faults.append(
+                Fault(
+                    self.path.name,
+                    line,
+                    None,
+                    f"not valid TOML: {str(error).partition(' (at ')[0].lower()}",
+                    "correct this line",
+                )
+            )
         else:
             self.lines = _lines(text)
             return True
@@ -205,8 +212,11 @@ class _Reader:
             self.fault("sweep.samples", "a grid has no samples", "leave it out; each parameter has its own steps or list")
         elif method in BALANCED and samples & (samples - 1):
             below = 1 << (samples.bit_length() - 1)
-            self.fault("sweep.samples", f"samples = {samples} is no power of two, and Sobol' points are even only then",
-                       f"give {below} or {2 * below}")  # fmt: skip
+            self.fault(
+                "sweep.samples",
+                f"samples = {samples} is no power of two, and Sobol' points are even only then",
+                f"give {below} or {2 * below}",
+            )
         return Design(method, axes, max(samples, 1), self._whole(sweep, "seed", 0, 0))
 
     def _whole(self, table: Mapping[str, Any], key: str, least: int, default: int | None = None) -> int:
@@ -270,8 +280,9 @@ class _Reader:
         if "from" not in value or "to" not in value:
             raise ValueError("the range has no beginning or no end", "write { from = …, to = … }")
         if any(isinstance(value[key], bool | str | list | dict) for key in ("from", "to")):
-            raise ValueError(f"from = {value['from']!r}, to = {value['to']!r} are no numbers",
-                             f"give numbers in {record.unit.name}")  # fmt: skip
+            raise ValueError(
+                f"from = {value['from']!r}, to = {value['to']!r} are no numbers", f"give numbers in {record.unit.name}"
+            )
         lower, upper = (number({record.name: record}, record.name, value[key]) for key in ("from", "to"))
         steps, log = value.get("steps", 0), value.get("log", False)
         if not lower < upper:

@@ -69,17 +69,24 @@ class Job:
         """Columns of the result, with units in their metadata."""
         units = {p.name: p.unit.name for p in self.plan.chairs[0].variant().parameters()}
         options = dict.fromkeys(name for course in self.plan.courses for name, _ in course.options)
-        return pa.schema([
-            pa.field("chair", pa.int64(), metadata={"meaning": "number of the point in the plan's design"}),
-            pa.field("variant", pa.string()),
-            pa.field("manoeuvre", pa.string()),
-            *(pa.field(f"manoeuvre.{name}", pa.float64()) for name in options),
-            *(pa.field(axis.name, pa.string() if axis.choices else pa.float64(), metadata={"unit": units[axis.name]})
-              for axis in self.plan.design.axes),
-            *(pa.field(name, pa.float64(), metadata={"unit": unit, "meaning": meaning})
-              for name, (unit, meaning) in QUANTITIES.items()),
-            pa.field(ERROR, pa.string(), metadata={"meaning": "why this run gave nothing; empty where it did"}),
-        ], metadata={"wheelchair-fmu": __version__, "fingerprint": self.fingerprint})  # fmt: skip
+        return pa.schema(
+            [
+                pa.field("chair", pa.int64(), metadata={"meaning": "number of the point in the plan's design"}),
+                pa.field("variant", pa.string()),
+                pa.field("manoeuvre", pa.string()),
+                *(pa.field(f"manoeuvre.{name}", pa.float64()) for name in options),
+                *(
+                    pa.field(axis.name, pa.string() if axis.choices else pa.float64(), metadata={"unit": units[axis.name]})
+                    for axis in self.plan.design.axes
+                ),
+                *(
+                    pa.field(name, pa.float64(), metadata={"unit": unit, "meaning": meaning})
+                    for name, (unit, meaning) in QUANTITIES.items()
+                ),
+                pa.field(ERROR, pa.string(), metadata={"meaning": "why this run gave nothing; empty where it did"}),
+            ],
+            metadata={"wheelchair-fmu": __version__, "fingerprint": self.fingerprint},
+        )
 
     def table(self, chunk: int) -> pa.Table:
         """The runs of one chunk: chairs in order, of each chair every variant, of each variant every manoeuvre."""
