@@ -116,6 +116,7 @@ class Parameter(Quantity):
     choices: tuple[str, ...] = ()  # an enumeration: the value is the 1-based place of the choice
     fixed: bool = False  # may not change once the simulation has started
     uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
+    known_to: float | None = None  # standard deviation of one that was measured with a tape, in place of the relative one
     estimated: bool = True  # False for an effect's constants, which no fit touches
     mirror_given: bool = field(init=False, repr=False, compare=False)
 
@@ -127,6 +128,10 @@ class Parameter(Quantity):
             object.__setattr__(self, "default", self.off)
         if self.nominal is None:
             object.__setattr__(self, "nominal", abs(self.default) or self.smallest_interesting or 1.0)
+
+    def prior_sd(self, value: float) -> float:
+        """Standard deviation of what is known of it where it was measured or looked up as `value`."""
+        return self.known_to if self.known_to is not None else self.uncertainty * (abs(value) or 1.0)
 
     def owned_by(self, effect: str) -> Parameter:
         """The same parameter under its full name `effect.<id>.<name>`; partners keep their short names."""

@@ -58,6 +58,8 @@ NOISE = {
 AR1 = 0.9
 CALIBRATION = {"C_lambda": 0.12, "C_m_lambda": 0.08, "f_r": 0.06, "f_f": 0.06, "I_z": 0.05}
 """Half-widths of the uniform relative difference between the true chair and the file."""
+MEASURED = {"m": 0.02, "a": 0.04, "b": 0.05, "t_r": 0.015}
+"""Standard deviations of the same for what is weighed and taped, where a campaign asks for such errors."""
 SECTIONS = {
     "chair": ("a", "b", "t_r", "t_f", "m", "I_z"),
     "tyre": ("C_lambda", "C_m_lambda", "C_phi", "C_m_phi"),
@@ -87,10 +89,15 @@ def nominal(chair: Mapping[str, float] | None = None) -> Chair:
     return replace(Chair(), **dict(chair or {}))
 
 
-def truth(hidden: Hidden, *, seed: int = 0, chair: Mapping[str, float] | None = None, calibration: float = 1.0) -> Truth:
-    """The true chair of a campaign: the file's, a few per cent off (`calibration` scales it), with the effects in it."""
+def truth(
+    hidden: Hidden, *, seed: int = 0, chair: Mapping[str, float] | None = None, calibration: float = 1.0, measured: float = 0.0
+) -> Truth:
+    """The true chair of a campaign: the file's, a few per cent off (`calibration` scales it; `measured` what was weighed and
+    taped), with the effects in it."""
     told, rng = nominal(chair), _rng(seed, "calibration")
     off = {name: getattr(told, name) * (1 + calibration * width * rng.uniform(-1, 1)) for name, width in CALIBRATION.items()}
+    rng = _rng(seed, "measured")
+    off |= {name: getattr(told, name) * (1 + measured * sd * rng.standard_normal()) for name, sd in MEASURED.items()}
     return hide(Truth(chair=replace(told, **off)), hidden)
 
 
@@ -212,14 +219,16 @@ def make(
     channels: Sequence[str] = CHANNELS,
     seed: int = 0,
     chair: Mapping[str, float] | None = None,
+    measured: float = 0.0,
 ) -> Path:
-    """Write a campaign. `chair` changes the chair itself, so both the file and the truth; `seed` fixes all that is random."""
+    """Write a campaign. `chair` changes the chair itself, so both the file and the truth; `seed` fixes all that is random;
+    `measured` is as of `truth`."""
     unknown = set(channels) - set(NOISE) - {"F_rl", "F_rr"}
     if unknown:
         raise KeyError(f"no channel {', '.join(sorted(unknown))}; there are {', '.join(NOISE)}")
     folder = Path(folder)
     runs, told = pick(manoeuvres), nominal(chair)
-    true = truth(hidden, seed=seed, chair=chair)
+    true = truth(hidden, seed=seed, chair=chair, measured=measured)
     names = ["F_rl", "F_rr", *(c for c in channels if c not in ("F_rl", "F_rr"))]
     (folder / "runs").mkdir(parents=True, exist_ok=True)
     for run in runs:

@@ -19,6 +19,8 @@
 
 enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, STATES };
 
+#define WAVES 9
+
 static const double CREEP = 0.002;      /* m/s, within which rolling resistance changes its sign */
 static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel bearing */
 static const double SCRUB_CREEP = 0.01; /* rad/s, the same for the yaw of the patches */
@@ -45,6 +47,19 @@ static Tyre tyre(double e, double vx, double vy, double stiffness, double sigma,
 /* A wheel's part of its axle's load; at least 1 N, as this chair does not tip over. */
 static double share_of(double load, double share) { return load * share > 1 ? load * share : 1; }
 
+/* Slope of an uneven floor at a place in the room: waves 0.7 to 4 m long that run all ways, and no two alike. */
+static void uneven(const double *p, double x, double y, double *slope_x, double *slope_y) {
+    double sum_x = 0, sum_y = 0;
+    for (int i = 0; i < WAVES; i++) {
+        double way = 2.39996 * i, length = 0.7 * pow(4 / 0.7, (double)i / (WAVES - 1)), k = 2 * 3.14159265358979 / length;
+        double wave = cos(k * (x * cos(way) + y * sin(way)) + 1.7 * i * i);
+        sum_x += wave * cos(way);
+        sum_y += wave * sin(way);
+    }
+    *slope_x = p[P_slope_x] + p[P_floor] * 2 / sqrt(WAVES) * sum_x;
+    *slope_y = p[P_slope_y] + p[P_floor] * 2 / sqrt(WAVES) * sum_y;
+}
+
 /* Rates of all states, and what the instruments need, for the pushes F (right, left) and their slopes dF. */
 static void rates(const double *p, const double *s, const double *F, const double *dF, double *d, double *out) {
     double u = s[U], v = s[V], r = s[R];
@@ -55,8 +70,10 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     double a = p[P_a] - shift, b = p[P_b] + shift, base = p[P_a] + p[P_b];
     double frame = u - shift_rate;
     double c = cos(s[PSI]), n = sin(s[PSI]);
-    double gx = p[P_g] * (p[P_slope_x] * c + p[P_slope_y] * n);
-    double gy = p[P_g] * (-p[P_slope_x] * n + p[P_slope_y] * c + p[P_cross_slope]);
+    double slope_x = p[P_slope_x], slope_y = p[P_slope_y];
+    if (p[P_floor] != 0) uneven(p, s[X], s[Y], &slope_x, &slope_y);
+    double gx = p[P_g] * (slope_x * c + slope_y * n);
+    double gy = p[P_g] * (-slope_x * n + slope_y * c + p[P_cross_slope]);
     double weight = p[P_m] * p[P_g];
     double y_r[2] = {p[P_t_r] / 2 - p[P_y_cm], -p[P_t_r] / 2 - p[P_y_cm]};
     double y_f[2] = {p[P_t_f] / 2 - p[P_y_cm], -p[P_t_f] / 2 - p[P_y_cm]};

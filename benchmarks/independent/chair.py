@@ -98,6 +98,7 @@ class Chair:
     wobble: float = 0.0
     speed_torque: float = 0.0
     sticky: float = 0.0
+    floor: float = 0.0  # rms slope of an uneven floor, along and across
 
 
 @dataclass(frozen=True)

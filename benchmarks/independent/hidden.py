@@ -110,6 +110,7 @@ class Effect:
     parameters: dict[str, Parameter]
     sees: str = "everyday"
     catalogued: bool = True
+    of_nobody: bool = False  # what no effect should be blamed for
 
 
 def _one(name: str, where: str, unit: str, delta: float, sign: str, **more: object) -> dict[str, Parameter]:
@@ -212,9 +213,14 @@ EFFECTS: dict[str, Effect] = {
     "sticky_axle": Effect(
         _one("D", "chair.sticky", "N", 0.4, "drag of the right rear wheel only while turning right"), catalogued=False
     ),
+    "uneven_floor": Effect(
+        _one("slope", "chair.floor", "rad", 0.001, "rms slope, along and across, in waves of 0.7 to 4 m"),
+        catalogued=False,
+        of_nobody=True,
+    ),
 }
 CATALOGUE = tuple(name for name, e in EFFECTS.items() if e.catalogued)
-OUTSIDE = tuple(name for name, e in EFFECTS.items() if not e.catalogued)
+OUTSIDE = tuple(name for name, e in EFFECTS.items() if not e.catalogued and not e.of_nobody)
 
 
 def usual(effect: str, times: float = 1.0) -> dict[str, float]:

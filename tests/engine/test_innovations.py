@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.engine.innovations import Noise, Whitener
+from wheelchair_fmu.engine.innovations import Disturbance, Noise, Whitener
+from wheelchair_fmu.engine.smoothing import smoothed
 
 
 def drawn(rng, n, nx, ns, keeps):
@@ -46,6 +47,55 @@ def test_innovations_are_generalised_least_squares(colour):
     filtered = white.reshape(n * nz, -1)[keep]
     np.testing.assert_allclose(filtered.T @ filtered, flat.T @ np.linalg.solve(V, flat), rtol=1e-8)
     assert logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
+
+
+def test_forces_that_nobody_recorded_are_part_of_the_covariance():
+    """A disturbance is a coloured push on a mixture of wheels, beside the noise of the record."""
+    rng = np.random.default_rng(4)
+    n, nx, nq, nz, lasting = 12, 3, 2, 2, 0.05
+    run = drawn(rng, n, nx, nz, 0.3)
+    noise = Noise(np.array([0.3, 0.5]), np.zeros(nq), np.array([0.2, 0.4]), np.zeros(nz), np.diag([0.1, 0.0, 0.2]) ** 2)
+    signal, mean, present = rng.normal(size=(n, nz, 1)), np.zeros(nx), np.ones((n, nz), bool)
+    unknown = Disturbance(np.array([2.0, 0.7]), np.full(2, lasting), np.array([[0.5, 2.0], [0.5, -2.0]]))
+    V, _ = dense(run, [0, 1], noise, n, nx, nq, nz, mean)
+    lag = np.abs(np.subtract.outer(run.time, run.time))
+    each = np.array(
+        [[respond(run, ("push", i, q), run.by_state, run.by_push[:, :, :nq], n, nx, nq) for i in range(n)] for q in (0, 1)]
+    )
+    for d, sd in enumerate(unknown.sd):
+        response = np.tensordot(unknown.as_push[:, d], each, axes=1)
+        V += sd**2 * response.T @ np.exp(-lag / lasting) @ response
+    plain = Whitener(run, [0, 1], noise, present)
+    for filter_ in (plain.disturbed(unknown), Whitener(run, [0, 1], noise, present, disturbance=unknown)):
+        white = filter_(signal, mean).ravel()
+        assert white @ white == pytest.approx(signal.ravel() @ np.linalg.solve(V, signal.ravel()), rel=1e-8)
+        assert filter_.logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
+        assert filter_.response(np.ones((n, nq))).shape == (n, nz)
+    assert plain.disturbed(replace(unknown, sd=np.zeros(2))).logdet == pytest.approx(plain.logdet, rel=1e-12)
+
+
+def test_a_disturbance_is_smoothed_as_all_readings_have_it():
+    """Against conditioning of the joint Gaussian in full."""
+    rng = np.random.default_rng(6)
+    n, nx, nq, nz, lasting = 10, 2, 2, 2, 0.05
+    run = drawn(rng, n, nx, nz, 0.4)
+    noise = Noise(np.array([0.3, 0.5]), np.full(nq, 0.5), np.array([0.2, 0.4]), np.array([0.0, 0.6]), np.diag([0.1, 0.2]) ** 2)
+    signal, present = rng.normal(size=(n, nz)), np.ones((n, nz), bool)
+    present[3, 1] = present[5, 0] = False
+    unknown = Disturbance(np.array([2.0, 0.7]), np.full(2, lasting), np.array([[0.5, 2.0], [0.5, -2.0]]))
+    V, offset = dense(run, [0, 1], noise, n, nx, nq, nz, np.array([0.3, -0.2]))
+    lag = np.exp(-np.abs(np.subtract.outer(run.time, run.time)) / lasting)
+    H, D = run.by_state, run.by_push[:, :, :nq]
+    pushed = np.array([[respond(run, ("push", i, q), H, D, n, nx, nq) for i in range(n)] for q in (0, 1)])
+    by = [np.tensordot(unknown.as_push[:, d], pushed, axes=1) for d in (0, 1)]
+    V += sum(sd**2 * response.T @ lag @ response for sd, response in zip(unknown.sd, by, strict=True))
+    keep = present.ravel()
+    solve = np.linalg.inv(V[np.ix_(keep, keep)])
+    mean, sd = smoothed(Whitener(run, [0, 1], noise, present, disturbance=unknown), signal, np.array([0.3, -0.2]))
+    for d in (0, 1):
+        cross = unknown.sd[d] ** 2 * lag @ by[d][:, keep]
+        np.testing.assert_allclose(mean[:, d], cross @ solve @ (signal.ravel() - offset)[keep], rtol=1e-7, atol=1e-9)
+        np.testing.assert_allclose(sd[:, d] ** 2, unknown.sd[d] ** 2 - np.diag(cross @ solve @ cross.T), rtol=1e-6)
 
 
 def dense(run, which, noise, n, nx, nq, nz, mean):

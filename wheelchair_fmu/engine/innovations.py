@@ -47,6 +47,16 @@ class Noise:
     push_step: np.ndarray | None = None
 
 
+@dataclass(frozen=True)
+class Disturbance:
+    """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
+    over which it is forgotten. `as_push` (nq, d) says as what change of the recorded pushes one unit of each acts."""
+
+    sd: np.ndarray
+    lasting: np.ndarray
+    as_push: np.ndarray
+
+
 @cache
 def _library() -> ctypes.CDLL:
     library = helper("innovations")
@@ -61,6 +71,7 @@ class Whitener:
 
     Readings about the moment a chair comes to rest, which no slope foretells (`kinks`; see wc_drop_kinks in innovations.c),
     tell nothing: they are 0, and in `logdet` as if they were as expected. `speeds` are the places of u and v among the states.
+    A `disturbance` goes through the filter as further pushes, whose record is zero.
     """
 
     def __init__(
@@ -71,14 +82,16 @@ class Whitener:
         present: np.ndarray,
         speeds: Sequence[int] = (),
         pushes: Sequence[int] | None = None,
+        disturbance: Disturbance | None = None,
     ):
         self.present, self.noise = present, noise
         n, nz = present.shape
-        nx, nq = run.transition.shape[1], len(noise.pushes)
+        at = list(range(len(noise.pushes)) if pushes is None else pushes)
+        nx, nq = run.transition.shape[1], len(at)
+        self.time = run.time
         if nx + nq + nz > MOST:
             raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
         push_sd, push_phi = _by_push(run.time, noise)
-        at = list(range(nq) if pushes is None else pushes)
         arrays = {
             "A": run.transition,
             "B": run.push_before[:, :, at],
@@ -91,22 +104,49 @@ class Whitener:
             "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
             "start_cov": noise.start,
         }
-        self._arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
-        self._arrays["present"] = np.ascontiguousarray(present, np.int8)
-        self._size = (nx, nq, nz)
+        self.arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
+        self.arrays["present"] = np.ascontiguousarray(present, np.int8)
+        self.size, self.recorded = (nx, nq, nz), nq
         if speeds:
             dt = float(np.median(np.diff(run.time)))
             _library().wc_drop_kinks(ctypes.byref(self._filter), ctypes.c_long(n), ctypes.c_double(dt), *speeds)
-        self.kinks = present & (self._arrays["present"] == 0)
-        self._gain, self._scale = np.empty((n, nz, nx + nq + nz)), np.empty((n, nz))
+        self.kinks = present & (self.arrays["present"] == 0)
+        if disturbance is not None:
+            self._disturb(disturbance)
+        self._design()
+
+    def _design(self) -> None:
+        n, nz = self.present.shape
+        self._gain, self._scale = np.empty((n, nz, sum(self.size))), np.empty((n, nz))
         self.logdet: float = _library().wc_design(
             ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain), _of(self._scale)
         )
-        self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(noise.readings)))
+        self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(self.noise.readings)))
+
+    def _disturb(self, unknown: Disturbance) -> None:
+        """Let forces act that nobody recorded, in the place of any that did before."""
+        recorded = {name: self.arrays[name][..., : self.recorded] for name in ("B", "C", "D", "input_sd", "input_phi")}
+        further = {name: recorded[name] @ unknown.as_push for name in ("B", "C", "D")}
+        further["input_sd"] = np.tile(unknown.sd, (len(self.time), 1))
+        further["input_phi"] = np.exp(-np.diff(self.time)[:, None] / unknown.lasting)
+        both = {name: np.concatenate((recorded[name], further[name]), axis=-1) for name in recorded}
+        self.arrays |= {name: np.ascontiguousarray(a) for name, a in both.items()}
+        self.size = (self.size[0], self.recorded + len(unknown.sd), self.size[2])
+        if sum(self.size) > MOST:
+            raise ValueError(f"{sum(self.size)} states, pushes, disturbances and readings are more than {MOST}")
+
+    def disturbed(self, disturbance: Disturbance) -> Whitener:
+        """The filter of the same run where other forces act that nobody recorded."""
+        other = object.__new__(Whitener)
+        other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays)}
+        other.__dict__.pop("spread", None)
+        other._disturb(disturbance)
+        other._design()
+        return other
 
     @property
     def _filter(self) -> _Filter:
-        return _Filter(*self._size, **{name: a.ctypes.data for name, a in self._arrays.items()})
+        return _Filter(*self.size, **{name: a.ctypes.data for name, a in self.arrays.items()})
 
     def __call__(self, signals: np.ndarray, start_mean: np.ndarray, *, in_place: bool = False) -> np.ndarray:
         """Innovations (n, nz, m) of signals (n, nz, m), which they may replace.
@@ -132,7 +172,8 @@ class Whitener:
 
     def response(self, change: np.ndarray) -> np.ndarray:
         """Readings (n, nz) that recorded pushes (n, nq) add if they are larger by `change`, to first order."""
-        pushed, out = np.ascontiguousarray(change, float), np.empty(self.present.shape)
+        pushed, out = np.zeros((len(change), self.size[1])), np.empty(self.present.shape)
+        pushed[:, : self.recorded] = change
         _library().wc_respond(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(pushed), _of(out))
         return out
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BY_FMU_NAME, PUSHES, TELLS
-from ..engine.innovations import Noise, Whitener
+from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
 from ..model.variant import Variant
@@ -32,15 +32,19 @@ POSE_SD = 0.05
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
+LASTING = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
 FIRST = 0.2  # s of samples that say where a run starts
 
 
 @dataclass(frozen=True)
 class Colour:
-    """Noise of each channel, and of the recorded pushes: standard deviation (SI) and AR(1) coefficient."""
+    """Noise of each channel, and of the recorded pushes: standard deviation (SI) and AR(1) coefficient; and the forces that
+    nobody recorded."""
 
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
+    force: float = 0.0  # N, standard deviation of what pushes the chair along its heading and nobody recorded,
+    moment: float = 0.0  # N m, and of what turns it
 
     def differs(self, other: Colour) -> bool:
         """Is some channel's noise of another size or colour, by more than estimates of either scatter?"""
@@ -225,6 +229,7 @@ class Bench:
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
+        self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
         self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
@@ -317,7 +322,8 @@ class Bench:
         spread = to_state * [sd[n] for n in START]
         noise = self._noise(run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
-        filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there)
+        unknown = disturbance(self.colour, len(pushes), given[self._tread]) if self.colour.force or self.colour.moment else None
+        filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
         constants = locals_of(run)
         by_constant = [slope(c, run, channels, predicted, pushes, filter_) for c in constants]
         k, m = len(by), len(START)
@@ -404,6 +410,14 @@ class Bench:
         other = object.__new__(Bench)
         other.__dict__ = {**self.__dict__, "colour": colour}
         return other
+
+
+def disturbance(colour: Colour, pushes: int, t_r: float) -> Disturbance:
+    """A force along the heading and a moment, as changes of the recorded pushes, of which the first two are on the left and
+    on the right wheel, `t_r` apart."""
+    as_push = np.zeros((pushes, 2))
+    as_push[:2] = [[0.5, 1 / t_r], [0.5, -1 / t_r]]
+    return Disturbance(np.array([colour.force, colour.moment]), np.full(2, LASTING), as_push)
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:

@@ -28,7 +28,7 @@ NEAR = 2.0  # mean square innovation of a model that is about right: of one that
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
 PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
 AT_BOUND = 1e-3  # of a parameter's scale
-REACH = 2.0  # standard deviations of the prior; a value further off is no calibration but another chair
+REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def prior_of(bench: Bench, names: Sequence[str]) -> Prior:
             return GROUPED * bench.records[name].smallest_interesting if groups[name.rpartition(".")[0]] > 1 else np.inf
         if name in bench.offsets:
             return bench.campaign.nuisance_sd.get(bench.offsets[name], np.inf)
-        return bench.records[name].uncertainty * (abs(mean) or 1.0)
+        return bench.records[name].prior_sd(mean)
 
     return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
 

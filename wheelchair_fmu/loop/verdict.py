@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
+from .calibration import Calibrated, calibration, doubts
 from .climb import Climb
 from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
 from .evidence import Evidence
@@ -26,7 +27,7 @@ from .preflight import retime_by_slopes, settle_clocks
 from .screen import AT_THE_FLOOR
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
-from .workshop import CALIBRATED, Workshop
+from .workshop import CALIBRATED, MEASURED, Workshop
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
@@ -47,7 +48,7 @@ LASTING = 2.0  # that is no noise where so many samples are alike
 class Diagnosis:
     """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
     `beside` those that judge an effect beside all others, for those that do not stand without, `proposal` the generic term of
-    "outside", `intervals` the profile-likelihood intervals of what was found."""
+    "outside", `calibration` what became of given values, `intervals` the profile-likelihood intervals of what was found."""
 
     campaign: str
     verdict: str
@@ -60,6 +61,7 @@ class Diagnosis:
     leftover: Round | None
     proposal: Candidate | None
     final: Fit
+    calibration: tuple[Calibrated, ...]
     intervals: Mapping[str, tuple[float, float]]
     search: Search
     notes: tuple[str, ...]
@@ -112,7 +114,8 @@ def diagnose(
     effects = tuple(e for e in included if e not in climb.already and e not in helping)
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties = tuple(group for group, _ in groups)
-    verdict = _verdict(effects, ties, rounds, proposal, ladder, base.evidence)
+    values = calibration(search.workshop.bench(included), proposal.fit if proposal else base)
+    verdict = _verdict(search, effects, ties, rounds, proposal, ladder, base.evidence, values)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, groups, rounds, experiments)
@@ -120,7 +123,7 @@ def diagnose(
     settle_clocks(search, base.evidence, climb.held)
     thinned = (campaign.thinned,) if campaign.thinned else ()
     beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
-    notes = (*thinned, *search.notes, *search.noise_notes, *beyond_limits)
+    notes = (*thinned, *search.notes, *search.noise_notes, *doubts(values), *beyond_limits)
     return Diagnosis(
         campaign.name,
         verdict,
@@ -133,6 +136,7 @@ def diagnose(
         leftover,
         proposal,
         base,
+        tuple(values),
         intervals,
         search,
         notes,
@@ -247,14 +251,16 @@ def _settle(
 
 
 def _verdict(
+    search: Search,
     effects: Sequence[str],
     ties: Sequence[Sequence[str]],
     rounds: Sequence[Round],
     proposal: Candidate | None,
     ladder: Sequence[Step],
     left: Evidence,
+    values: Sequence[Calibrated],
 ) -> str:
-    if proposal is not None or ladder[-1].left > UNEXPLAINED:
+    if proposal is not None or ladder[-1].left > UNEXPLAINED or any(v.beyond for v in values):
         return "outside"
     if effects and insufficient(ladder) and correlation_time(left) > LASTING:
         return "outside"
@@ -264,8 +270,18 @@ def _verdict(
         return "outside"
     if _small(rounds, "small"):
         return "small"
-    powers = [s.power for s in rounds[0].scores]
-    return "adequate" if np.mean([p >= ENOUGH_POWER for p in powers] or [0]) >= WHOLE_LIBRARY else "cannot_see"
+    seen = _seen(search, rounds[0])
+    return "adequate" if np.mean(list(seen.values()) or [0]) >= WHOLE_LIBRARY else "cannot_see"
+
+
+def _seen(search: Search, first: Round) -> dict[str, bool]:
+    """Which effects would have been seen if they were there, but for what mass and geometry could be instead within what is
+    known of them: in that case the model predicts as well without."""
+    weak = [s.effect for s in first.scores if s.power < ENOUGH_POWER]
+    exact = replace(first.fit, names=tuple(n for n in first.fit.names if n not in MEASURED))
+    again = search.screen(exact, first.effects, weak) if weak else []
+    powers = {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}
+    return {effect: power >= ENOUGH_POWER for effect, power in powers.items()}
 
 
 def insufficient(ladder: Sequence[Step]) -> bool:

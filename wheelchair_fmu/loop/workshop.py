@@ -16,7 +16,8 @@ from ..model.wheelchair import adds_state
 from .evidence import Bench, Colour
 from .timing import Late, retimed
 
-CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z")
+MEASURED = ("chair.m", "chair.a", "chair.b", "chair.t_r")  # by scales and tape, well enough to be doubted only a little
+CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", *MEASURED)
 
 
 class Workshop:

@@ -12,7 +12,16 @@ from .stage import Row, define, stage
 
 TABLE_1 = "Doria, Table 1"
 PARAMETERS = (
-    Parameter("chair.m", KG, "total mass m of chair and user", default=80.0, lower=1.0, upper=1000.0, source=TABLE_1),
+    Parameter(
+        "chair.m",
+        KG,
+        "total mass m of chair and user",
+        default=80.0,
+        lower=1.0,
+        upper=1000.0,
+        source=TABLE_1,
+        uncertainty=0.025,
+    ),
     Parameter(
         "chair.I_z",
         KG_M2,
@@ -30,9 +39,19 @@ PARAMETERS = (
         lower=0.01,
         upper=2.0,
         source=TABLE_1,
+        known_to=0.01,
     ),
-    Parameter("chair.b", M, "distance b from the CM back to the rear axle", default=0.20, lower=0.0, upper=2.0, source=TABLE_1),
-    Parameter("chair.t_r", M, "rear tread t_r", default=0.55, lower=0.05, upper=3.0, source=TABLE_1),
+    Parameter(
+        "chair.b",
+        M,
+        "distance b from the CM back to the rear axle",
+        default=0.20,
+        lower=0.0,
+        upper=2.0,
+        source=TABLE_1,
+        known_to=0.01,
+    ),
+    Parameter("chair.t_r", M, "rear tread t_r", default=0.55, lower=0.05, upper=3.0, source=TABLE_1, known_to=0.008),
     Parameter("chair.t_f", M, "front tread t_f", default=0.45, lower=0.05, upper=3.0, source=TABLE_1),
     Parameter(
         "wheel.R",

@@ -1,0 +1,47 @@
+"""Given values that are wrong: calibrated where that is believable, and said where it is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from benchmarks.independent.campaigns import make, truth
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.loop.calibration import calibration, doubts
+from wheelchair_fmu.loop.models import Models
+from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.loop.workshop import MEASURED, Workshop
+from wheelchair_fmu.model.variant import Variant
+
+
+def fitted(campaign):
+    shop = Workshop(campaign, Variant())
+    found, *_ = Models(shop).calibrate()
+    return {c.record.name: c for c in calibration(shop.bench(), found)}
+
+
+def test_values_as_given_raise_no_doubts(sample):
+    found = fitted(sample)
+    assert set(MEASURED) < set(found)
+    assert not any(c.beyond for c in found.values())
+    assert found["chair.m"].value == pytest.approx(80, abs=1) and found["chair.m"].prior_sd == pytest.approx(2)
+
+
+def test_a_mass_that_nobody_weighed_is_said(sample):
+    found = fitted(replace(sample, known={**sample.known, "chair.m": 60.0}))
+    assert found["chair.m"].beyond and found["chair.m"].at_bound
+    said = [words for words in doubts(list(found.values())) if words.startswith("chair.m comes out at")]
+    assert len(said) == 1 and "standard deviations from the 60 ± 1.5 kg given" in said[0]
+
+
+def test_errors_of_scales_and_tape_are_no_effect(tmp_path):
+    """The chair is as heavy and as wide as a lab measures it: some per cent and some millimetres off."""
+    campaign = read(make(tmp_path / "c", {}, seed=31, measured=1.5))
+    true = truth({}, seed=31, measured=1.5).chair
+    assert abs(true.a - 0.25) > 0.03 and abs(true.m - 80) > 1.5  # by what was an effect once
+    found = diagnose(campaign)
+    assert found.verdict in ("adequate", "cannot_see")
+    values = {c.record.name: c for c in found.calibration}
+    assert values["chair.m"].value == pytest.approx(true.m, rel=0.005)
+    assert values["chair.t_r"].value == pytest.approx(true.t_r, abs=0.004)

@@ -1,0 +1,68 @@
+"""What acted on a run, given all of its readings: the smoothed states of a `Whitener`, by Bryson and Frazier's recursion.
+
+The filter goes forward, and what later readings say of each moment comes back as one vector λ and one matrix Λ, so that no
+covariance has to be inverted: x = x⁻ − P⁻ λ, P = P⁻ − P⁻ Λ P⁻ (Bierman 1973, "Fixed interval smoothing with discrete
+measurements").
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .innovations import Whitener
+
+
+def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Posterior mean and standard deviation (n, d) of a filter's disturbances, in their units.
+
+    `residual` (n, nz) is measured less simulated, `start_mean` (nx,) where the true start is expected, less the simulated one.
+    """
+    a = filter_.arrays
+    (nx, nq, nz), n = filter_.size, len(residual)
+    whole = nx + nq + nz
+    first = np.zeros((whole, whole))
+    first[:nx, :nx] = a["start_cov"]
+    first[range(nx, whole), range(nx, whole)] = np.concatenate((a["input_sd"][0], a["sd"])) ** 2
+    x, P = np.concatenate((start_mean, np.zeros(nq + nz))), first
+    before: list[tuple[np.ndarray, np.ndarray]] = []
+    seen: list[list[tuple[np.ndarray, np.ndarray, float, float]]] = []
+    for i in range(n):
+        if i:
+            F, Q = _step(a, i - 1, nx, nq, nz)
+            x, P = F @ x, F @ P @ F.T + Q
+        before.append((x, P))
+        seen.append([])
+        for z in np.nonzero(a["present"][i])[0]:
+            h = np.concatenate((a["H"][i, z], a["D"][i, z], np.eye(nz)[z]))
+            Ph = P @ h
+            variance, new = float(h @ Ph), float(residual[i, z] - h @ x)
+            seen[i].append((h, Ph / variance, variance, new))
+            x, P = x + Ph * (new / variance), P - np.outer(Ph, Ph) / variance
+    there = slice(nx + filter_.recorded, nx + nq)
+    mean, sd = np.empty((n, nq - filter_.recorded)), np.empty((n, nq - filter_.recorded))
+    back, Back = np.zeros(whole), np.zeros((whole, whole))
+    for i in range(n - 1, -1, -1):
+        for h, gain, variance, new in reversed(seen[i]):
+            kept = np.eye(whole) - np.outer(gain, h)
+            back = kept.T @ back - h * (new / variance)
+            Back = kept.T @ Back @ kept + np.outer(h, h) / variance
+        x, P = before[i]
+        mean[i] = (x - P @ back)[there]
+        sd[i] = np.sqrt(np.maximum(np.diag(P - P @ Back @ P)[there], 0.0))
+        if i:
+            F, _ = _step(a, i - 1, nx, nq, nz)
+            back, Back = F.T @ back, F.T @ Back @ F
+    return mean, sd
+
+
+def _step(a: dict[str, np.ndarray], i: int, nx: int, nq: int, nz: int) -> tuple[np.ndarray, np.ndarray]:
+    """The transition (size, size) from sample i to the next, and the covariance of what is new there."""
+    whole, phi = nx + nq + nz, a["input_phi"][i]
+    F = np.zeros((whole, whole))
+    F[:nx, :nx] = a["A"][i]
+    F[:nx, nx : nx + nq] = a["B"][i] + a["C"][i] * phi
+    F[range(nx, whole), range(nx, whole)] = np.concatenate((phi, a["phi"][i]))
+    G = np.concatenate((a["C"][i], np.eye(nq), np.zeros((nz, nq))))
+    Q = (G * ((1 - phi**2) * a["input_sd"][i + 1] ** 2)) @ G.T
+    Q[range(nx + nq, whole), range(nx + nq, whole)] += (1 - a["phi"][i] ** 2) * a["sd"] ** 2
+    return F, Q
