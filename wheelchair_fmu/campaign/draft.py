@@ -61,7 +61,7 @@ class Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
         return replace(
             self,
-            table=FrameTable(self.file, self.table.headers, pd.DataFrame()),
+            table=FrameTable(self.file, self.table.headers, frame=pd.DataFrame()),
             rows=Rows({}, None),
             whole_time=None,
             kept=np.empty(0, int),

@@ -80,7 +80,7 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, about: Mapp
     if np.isnan(values[:, 1]).any():
         line = places[int(np.flatnonzero(np.isnan(values[:, 1]))[0])]
         faults.append(run_fault(file, "the time is empty", "export it again", line))
-    return FrameTable(file, tuple(headers), frame, units, tuple(notes), time=0), faults
+    return FrameTable(file, tuple(headers), units, tuple(notes), time=0, frame=frame), faults
 
 
 FORMAT = Format(
