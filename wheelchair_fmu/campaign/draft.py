@@ -37,8 +37,30 @@ class Gap:
     inside: bool
 
 
+class Readings:
+    """What one file or a whole run holds, as series by name: among them channels and inputs. All are (n,)."""
+
+    values: Mapping[str, np.ndarray]
+
+    @property
+    def inputs(self) -> dict[str, np.ndarray]:
+        return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
+
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
+
+    @property
+    def measured(self) -> dict[str, np.ndarray]:
+        """The channels that say something: not those that are empty or stuck."""
+        return {name: series for name, series in self.channels.items() if self._says(name, series)}
+
+    def _says(self, name: str, series: np.ndarray) -> bool:
+        return tells(series)
+
+
 @dataclass(frozen=True, eq=False)
-class Draft:
+class Draft(Readings):
     """One file of a run before judgement. All series are (n,); `time`, by the run's clock, is None where the file has none."""
 
     doc: Document
@@ -75,19 +97,6 @@ class Draft:
     @property
     def file(self) -> str:
         return self.part.file
-
-    @property
-    def inputs(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
-
-    @property
-    def channels(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
-
-    @property
-    def measured(self) -> dict[str, np.ndarray]:
-        """The channels that say something: not those that are empty or stuck."""
-        return {name: s for name, s in self.channels.items() if tells(s)}
 
     @property
     def left_out(self) -> bool:
