@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..faults import WARNING, Fault, run_fault
+from ..model.chassis import DEFAULTS
 from . import baselines
 from .channels import BY_NAME, PUSH_NAMES
 from .document import FILE
@@ -18,7 +19,7 @@ from .draft import Draft
 from .recorded import Recorded
 from .records import Baseline
 
-ARM = 0.31  # m: a force at the rim of contact as a torque, where the campaign gives no radius
+ARM = DEFAULTS["wheel.R"]  # m: a force at the rim of contact as a torque, where the campaign gives no radius
 SURE = 5.0  # standard errors from which a baseline that nobody asked to be taken out is mentioned,
 LARGE = 0.3  # N m
 
