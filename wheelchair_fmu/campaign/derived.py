@@ -31,10 +31,19 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
                 faults.append(run_fault(part.file, fact, suggestion(name, table.headers), 1))
                 continue
             try:
-                found[f"{end}.{room}"] = at, sign * factor(table.units[at] or "m", "m")
+                found[f"{end}.{room}"] = at, sign * _metres(end, table, at)
             except UnitError as error:
                 faults.append(run_fault(part.file, error.fact, error.cure, 1, table.headers[at]))
     return (found, faults) if len(found) == len(ENDS) * len(ROOM) else ({}, faults)
+
+
+def _metres(end: str, table: Table, at: int) -> float:
+    """By what a marker's column becomes metres. Raises UnitError, also where there is no unit: most cameras count in mm."""
+    unit = table.units[at]
+    if not unit:
+        cure = f"write the header as '{split(table.headers[at])[0]} [mm]', or with the unit it has"
+        raise UnitError(f"the marker {end} is read from it, but it gives no unit", cure)
+    return factor(unit, "m")
 
 
 def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[str, np.ndarray]:
