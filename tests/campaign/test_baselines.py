@@ -61,6 +61,16 @@ def test_without_an_angle_only_the_offset_is_told():
     assert found.offset == pytest.approx(0.8, abs=4 * found.offset_se)
 
 
+@pytest.mark.parametrize("level", [0.0, 1.5])
+def test_readings_without_noise_tell_the_baseline_exactly(level):
+    """Some wheels report nothing below a threshold, and some loggers write a column of zeros for the other side."""
+    time, _, _, true = rim(4)
+    held = np.where(np.abs(true) > 0.5, true, 0.0)
+    for torque in (held, np.zeros_like(time)):
+        found = baseline(time, torque + level)
+        assert found.enough and (found.offset, found.offset_se) == (pytest.approx(level), pytest.approx(0, abs=1e-9))
+
+
 def test_a_hand_that_never_leaves_the_rim_is_said():
     time = np.arange(0, 6, 1 / 240)
     found = baseline(time, 12 + 9 * np.sin(7 * time) + np.random.default_rng(0).normal(size=len(time)) * 0.2)

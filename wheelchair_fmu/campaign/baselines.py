@@ -137,6 +137,8 @@ def _spread(rest: np.ndarray, unknowns: int) -> float:
     """Variance of one residual times the number of residuals (m,) that count as one, for the least squares' covariance."""
     if len(rest) < unknowns + 4:
         return np.inf
+    if not rest.any():
+        return 0.0  # a wheel that reports nothing below a threshold, or a column of zeros for one that measures nothing
     variance, wider = long_run(rest)
     independent = len(rest) * float(rest @ rest) / variance
     return variance / len(rest) * wider**2 * independent / max(independent - unknowns, 1.0)

@@ -71,7 +71,8 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
             continue
         shapes, sizes, covariance = _shapes(run.time, draft, name, rim)
         inputs[name] = inputs[name] - shapes @ sizes
-        unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
+        if covariance.any():
+            unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
     return inputs, tuple(unsure)
 
 
