@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.campaign.baselines import baseline, baselines, corrected
 
 from .riding import coloured, strokes
+from .small import HEAD, RUNS, csv_text, rows
 
 
 def rim(seed: int, a: float = 0.0, offset: float = 0.8, ripple: float = 1.1, phase: float = 2.0, sides: int = 1):
@@ -77,3 +79,19 @@ def test_a_hand_that_never_leaves_the_rim_is_said():
     assert not found.enough and "without a hand" in found.why and "stand" in found.why
     gone = baseline(time, np.full(len(time), np.nan))
     assert not gone.enough
+
+
+def test_only_a_check_looks_at_rims_that_nobody_asked_about(campaign):
+    """That takes as long as the reading itself, and an analysis has no use for it."""
+    files = {}
+    for seed, name in enumerate(("a.csv", "b.csv")):
+        time, torque, _, _ = rim(seed, ripple=0.0)
+        speed = 1 + 0.1 * np.sin(2 * time) + np.random.default_rng(seed).normal(0, 0.01, len(time))
+        data = np.column_stack([time, torque, np.zeros_like(time), speed])
+        files[name] = csv_text(["time [s]", "M_rl [N.m]", "M_rr [N.m]", "wheel_speed_l [m/s]"], rows(data))
+    folder = campaign(head=HEAD, noise="", runs=RUNS, files=files)
+    says = "the rim of M_rl shows 0."
+    assert [f.fact.startswith(says) for f in check(folder)].count(True) == 1
+    assert not any(f.fact.startswith(says) for f in read(folder).warnings)
+    toml = HEAD + "[nuisance]\nM_rl = true\n" + RUNS
+    assert not any(f.fact.startswith(says) for f in check(campaign(toml, files=files)))
