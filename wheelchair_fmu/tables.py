@@ -57,7 +57,9 @@ class Table(Protocol):
     notes: tuple[str, ...]
     started: datetime | None
     time: int | None
-    moments: frozenset[int]
+
+    @property
+    def moments(self) -> frozenset[int]: ...
 
     def rows(self, indices: Sequence[int]) -> Rows: ...
 

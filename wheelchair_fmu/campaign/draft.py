@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -40,7 +40,10 @@ class Gap:
 class Readings:
     """What one file or a whole run holds, as series by name: among them channels and inputs. All are (n,)."""
 
-    values: Mapping[str, np.ndarray]
+    if TYPE_CHECKING:  # a dataclass would take the property for the default of its field
+
+        @property
+        def values(self) -> Mapping[str, np.ndarray]: ...
 
     @property
     def inputs(self) -> dict[str, np.ndarray]:
