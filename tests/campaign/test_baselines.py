@@ -95,3 +95,16 @@ def test_only_a_check_looks_at_rims_that_nobody_asked_about(campaign):
     assert not any(f.fact.startswith(says) for f in read(folder).warnings)
     toml = HEAD + "[nuisance]\nM_rl = true\n" + RUNS
     assert not any(f.fact.startswith(says) for f in check(campaign(toml, files=files)))
+
+
+@pytest.mark.parametrize("late", [0.0, 0.1])
+def test_a_ripple_is_taken_out_where_it_was_recorded(campaign, late):
+    """Also where the pushes are read later than their file says: the wheel's angle goes with them."""
+    time, recorded, angle, true = rim(0)
+    speed = 0.31 * np.gradient(angle, time) + np.random.default_rng(1).normal(0, 0.01, len(time))
+    headers = ["time [s]", "M_rl [N.m]", "wheel_angle_l [rad]", "wheel_speed_l [m/s]"]
+    files = {"a.csv": csv_text(headers, rows(np.column_stack([time, recorded, angle, speed])))}
+    entry = RUNS.partition('[[run]]\nfile = "b.csv"')[0] + f"constant = {{ M_rr = 0 }}\nclocks = {{ pushes = {late} }}\n"
+    (run,) = read(campaign(HEAD + "[nuisance]\nM_rl = true\n" + entry, files=files)).runs
+    left = run.inputs["push.M_rl"] - np.interp(run.time - late, time, true)
+    assert np.std(left) < 0.26 and np.mean(left) == pytest.approx(0, abs=0.03)

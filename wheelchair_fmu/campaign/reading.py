@@ -16,11 +16,11 @@ from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
-from .devices import Part, clock, parts, point_of
+from .devices import Part, parts, point_of
 from .document import Document, Entry, flatten, load, number
 from .draft import prepare
 from .noise import gather
-from .recorded import PUSHES_CLOCK, Recorded
+from .recorded import Recorded
 from .records import Campaign, Run
 from .rims import Rim, corrected, rims, unasked, unfounded
 from .windows import covered
@@ -161,7 +161,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
     entry = run.entry
     inputs, unsure = corrected(run, of)
     assert run.time is not None  # a file without time is an error, so no campaign is made
-    made = Run(
+    whole = Run(
         name=name,
         file=run.doc.folder / run.drafts[0].file,
         manoeuvre=entry.text("manoeuvre"),
@@ -175,7 +175,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
         baselines=unsure,
         input_steps=run.input_steps,
     )
-    return covered(made, clock(entry, PUSHES_CLOCK).offset) if len(run.drafts) == 1 else made
+    return covered(whole, run.late)
 
 
 def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:

@@ -85,9 +85,14 @@ class Recorded(Readings):
             found = {name: self._on_rows(d, name) for d in self.drafts for name in d.values}
         return found | {name: np.full(rows, value) for name, value in self.constants.items()}
 
+    @property
+    def late(self) -> float:
+        """How many seconds after the times in a run's only file the chair felt its pushes."""
+        return clock(self.entry, PUSHES_CLOCK).offset if len(self.drafts) == 1 else 0.0
+
     def _shifted(self, draft: Draft) -> dict[str, np.ndarray]:
         """What a run's only file holds, its pushes read when the chair felt them."""
-        late, found = clock(self.entry, PUSHES_CLOCK).offset, dict(draft.values)
+        late, found = self.late, dict(draft.values)
         if late and draft.time is not None:
             found |= {name: np.interp(draft.time - late, draft.time, push) for name, push in draft.inputs.items()}
         return found

@@ -69,7 +69,7 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
         draft = run.draft_of(name)
         if not rim.found.enough or draft is None or draft.time is None or run.time is None:
             continue
-        shapes, sizes, covariance = _shapes(run.time, draft, name, rim)
+        shapes, sizes, covariance = _shapes(run.time - run.late, draft, name, rim)
         inputs[name] = inputs[name] - shapes @ sizes
         if covariance.any():
             unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
@@ -77,7 +77,8 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
 
 
 def _shapes(time: np.ndarray, draft: Draft, name: str, rim: Rim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What a baseline and a ripple of 1 add to the push at `time` (n, m), how much there is of each (m,), its covariance."""
+    """What a baseline and a ripple of 1 add to the push that was recorded at `time` (n, m), how much there is of each (m,), its
+    covariance."""
     angle, found = _angle(draft, name), rim.found
     one = np.ones((len(time), 1)) / rim.arm
     if angle is None or not found.covariance[1, 1]:
