@@ -57,18 +57,19 @@ class Table(Protocol):
     notes: tuple[str, ...]
     started: datetime | None
     time: int | None
-    moments: frozenset[int]
+
+    @property
+    def moments(self) -> frozenset[int]: ...
 
     def rows(self, indices: Sequence[int]) -> Rows: ...
 
 
 @dataclass
-class FrameTable:
-    """A table that a library has read already: numbers, no lines."""
+class Headed:
+    """What every table that a library has read says of its columns; see `Table`."""
 
     file: str
     headers: tuple[str, ...]
-    frame: pd.DataFrame
     units: tuple[str | None, ...] = ()  # by default as the headers give them
     notes: tuple[str, ...] = ()
     started: datetime | None = None
@@ -78,6 +79,13 @@ class FrameTable:
     def __post_init__(self) -> None:
         if len(self.units) != len(self.headers):
             self.units = tuple(map(unit_of, self.headers))
+
+
+@dataclass
+class FrameTable(Headed):
+    """A table that a library has read already: numbers, no lines."""
+
+    frame: pd.DataFrame = field(kw_only=True)
 
     @property
     def length(self) -> int:
@@ -391,4 +399,4 @@ def _rated(table: CsvTable, rate: Any) -> tuple[CsvTable | None, list[Fault]]:
 
 def as_frame_table(file: str, frame: Any) -> FrameTable:
     """A frame whose column names are headers."""
-    return FrameTable(file, tuple(str(name).strip() for name in frame.columns), frame)
+    return FrameTable(file, tuple(str(name).strip() for name in frame.columns), frame=frame)

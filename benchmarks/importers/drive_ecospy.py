@@ -3,19 +3,16 @@
 Prints as drive_fmpy.py.
 """
 
-import csv
 import json
 import sys
 from importlib.metadata import version
 
 import tbb_first  # noqa: F401  before ecospy, which is linked to it
 from ecospy import EcosSimulation, EcosSimulationStructure
+from samples import read
 
 fmu, _, inputs, results = sys.argv[1:]
-with open(inputs) as file:
-    rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-with open(results) as file:
-    names = [n for n in next(csv.reader(file)) if n != "time"]
+rows, names = read(inputs, results)
 structure = EcosSimulationStructure()
 structure.add_model("chair", fmu)
 with EcosSimulation(structure=structure, step_size=0.01) as simulation:

@@ -3,7 +3,6 @@
 Prints as drive_fmpy.py.
 """
 
-import csv
 import json
 import sys
 from importlib.metadata import version
@@ -11,12 +10,10 @@ from importlib.metadata import version
 import fmpy
 from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
 from fmuloader.fmi3 import Fmi3Slave
+from samples import read
 
 fmu, _, inputs, results = sys.argv[1:]
-with open(inputs) as file:
-    rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-with open(results) as file:
-    names = [n for n in next(csv.reader(file)) if n != "time"]
+rows, names = read(inputs, results)
 description = fmpy.read_model_description(fmu)
 variables = {v.name: v for v in description.modelVariables}
 identifier = description.coSimulation.modelIdentifier

@@ -4,7 +4,6 @@ With `two`, a second chair in the same process is pushed on each side by what th
 Prints as drive_fmpy.py.
 """
 
-import csv
 import json
 import sys
 from importlib.metadata import version
@@ -13,6 +12,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimManipulator import CosimManipulator
 from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
+from samples import read
 
 fmu, _, inputs, results, *coupled = sys.argv[1:]
 execution = CosimExecution.from_step_size(step_size=1e7)  # 10 ms
@@ -27,13 +27,9 @@ if coupled:
         execution.connect_real_variables(chair, at["push.total_needed"], second, at[push])
     rows, names, watched = [{}] * 301, ["chair.u", "chair.x"], second
 else:
-    with open(inputs) as file:
-        rows = list(csv.DictReader(file))
-    with open(results) as file:
-        names = [n for n in next(csv.reader(file)) if n != "time"]
-    watched = chair
+    (rows, names), watched = read(inputs, results), chair
 for row in rows[:-1]:
-    pushes = {name: float(value) for name, value in row.items() if name != "time"}
+    pushes = {name: value for name, value in row.items() if name != "time"}
     if pushes:
         manipulator.slave_real_values(chair, [at[name] for name in pushes], list(pushes.values()))
     if not execution.step():

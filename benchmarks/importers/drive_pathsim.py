@@ -3,7 +3,6 @@
 Prints as drive_fmpy.py.
 """
 
-import csv
 import json
 import sys
 import warnings
@@ -11,13 +10,11 @@ from importlib.metadata import version
 
 from pathsim import Connection, Simulation
 from pathsim.blocks import CoSimulationFMU, Source
+from samples import read
 
 STEP = 0.01
 fmu, _, inputs, results = sys.argv[1:]
-with open(inputs) as file:
-    rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-with open(results) as file:
-    names = [n for n in next(csv.reader(file)) if n != "time"]
+rows, names = read(inputs, results)
 with warnings.catch_warnings(action="ignore", category=DeprecationWarning):  # it moves to a package that wants a newer FMPy
     chair = CoSimulationFMU(fmu, dt=STEP)
 

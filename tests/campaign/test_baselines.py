@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.campaign.baselines import baseline, baselines, corrected
 
 from .riding import coloured, strokes
+from .small import HEAD, RUNS, csv_text, rows
 
 
 def rim(seed: int, a: float = 0.0, offset: float = 0.8, ripple: float = 1.1, phase: float = 2.0, sides: int = 1):
@@ -61,9 +63,48 @@ def test_without_an_angle_only_the_offset_is_told():
     assert found.offset == pytest.approx(0.8, abs=4 * found.offset_se)
 
 
+@pytest.mark.parametrize("level", [0.0, 1.5])
+def test_readings_without_noise_tell_the_baseline_exactly(level):
+    """Some wheels report nothing below a threshold, and some loggers write a column of zeros for the other side."""
+    time, _, _, true = rim(4)
+    held = np.where(np.abs(true) > 0.5, true, 0.0)
+    for torque in (held, np.zeros_like(time)):
+        found = baseline(time, torque + level)
+        assert found.enough and (found.offset, found.offset_se) == (pytest.approx(level), pytest.approx(0, abs=1e-9))
+
+
 def test_a_hand_that_never_leaves_the_rim_is_said():
     time = np.arange(0, 6, 1 / 240)
     found = baseline(time, 12 + 9 * np.sin(7 * time) + np.random.default_rng(0).normal(size=len(time)) * 0.2)
     assert not found.enough and "without a hand" in found.why and "stand" in found.why
     gone = baseline(time, np.full(len(time), np.nan))
     assert not gone.enough
+
+
+def test_only_a_check_looks_at_rims_that_nobody_asked_about(campaign):
+    """That takes as long as the reading itself, and an analysis has no use for it."""
+    files = {}
+    for seed, name in enumerate(("a.csv", "b.csv")):
+        time, torque, _, _ = rim(seed, ripple=0.0)
+        speed = 1 + 0.1 * np.sin(2 * time) + np.random.default_rng(seed).normal(0, 0.01, len(time))
+        data = np.column_stack([time, torque, np.zeros_like(time), speed])
+        files[name] = csv_text(["time [s]", "M_rl [N.m]", "M_rr [N.m]", "wheel_speed_l [m/s]"], rows(data))
+    folder = campaign(head=HEAD, noise="", runs=RUNS, files=files)
+    says = "the rim of M_rl shows 0."
+    assert [f.fact.startswith(says) for f in check(folder)].count(True) == 1
+    assert not any(f.fact.startswith(says) for f in read(folder).warnings)
+    toml = HEAD + "[nuisance]\nM_rl = true\n" + RUNS
+    assert not any(f.fact.startswith(says) for f in check(campaign(toml, files=files)))
+
+
+@pytest.mark.parametrize("late", [0.0, 0.1])
+def test_a_ripple_is_taken_out_where_it_was_recorded(campaign, late):
+    """Also where the pushes are read later than their file says: the wheel's angle goes with them."""
+    time, recorded, angle, true = rim(0)
+    speed = 0.31 * np.gradient(angle, time) + np.random.default_rng(1).normal(0, 0.01, len(time))
+    headers = ["time [s]", "M_rl [N.m]", "wheel_angle_l [rad]", "wheel_speed_l [m/s]"]
+    files = {"a.csv": csv_text(headers, rows(np.column_stack([time, recorded, angle, speed])))}
+    entry = RUNS.partition('[[run]]\nfile = "b.csv"')[0] + f"constant = {{ M_rr = 0 }}\nclocks = {{ pushes = {late} }}\n"
+    (run,) = read(campaign(HEAD + "[nuisance]\nM_rl = true\n" + entry, files=files)).runs
+    left = run.inputs["push.M_rl"] - np.interp(run.time - late, time, true)
+    assert np.std(left) < 0.26 and np.mean(left) == pytest.approx(0, abs=0.03)

@@ -176,6 +176,15 @@ def test_faults(lab, old, new, expected):
     assert any(expected in fault for fault in found), found
 
 
+def test_markers_without_a_unit_are_not_taken_as_metres(lab):
+    file = lab / "one_markers.csv"
+    file.write_text(file.read_text(encoding="utf-8").replace("LHUB.z [mm]", "LHUB.z"), encoding="utf-8")
+    assert [str(fault) for fault in check(lab) if fault.severity == "error"] == [
+        "run one_markers.csv line 1 column 'LHUB.z': the marker axle_l is read from it, but it gives no unit; "
+        "write the header as 'LHUB.z [mm]', or with the unit it has"
+    ]
+
+
 def test_two_devices_that_see_the_same_are_told_apart(lab):
     """One of them is silenced by an empty header."""
     found = edited(lab, "columns.a_x", 'columns.wheel_speed_l = { column = "acc", unit = "m/s" }\ncolumns.a_x')

@@ -137,6 +137,8 @@ def _spread(rest: np.ndarray, unknowns: int) -> float:
     """Variance of one residual times the number of residuals (m,) that count as one, for the least squares' covariance."""
     if len(rest) < unknowns + 4:
         return np.inf
+    if not rest.any():
+        return 0.0  # a wheel that reports nothing below a threshold, or a column of zeros for one that measures nothing
     variance, wider = long_run(rest)
     independent = len(rest) * float(rest @ rest) / variance
     return variance / len(rest) * wider**2 * independent / max(independent - unknowns, 1.0)
@@ -154,7 +156,8 @@ def _baseline(pool: _Pool, i: int, off: np.ndarray, found: np.ndarray, covarianc
         why = f"only {seconds:.1f} s{where} are without a hand on the rim, and {ENOUGH:g} s are needed: {cure}"
     elif not se < SURE:
         why = f"no stretch{where} is plainly without a hand on the rim (the baseline would be known to {se:.2g} N m): {cure}"
-    return Baseline(*(float(found[j]) for j in at), covariance[np.ix_(at, at)], share, not why, why)
+    offset, sine, cosine = (float(found[j]) for j in at)
+    return Baseline(offset, sine, cosine, covariance[np.ix_(at, at)], share, not why, why)
 
 
 def _hands_off(pool: _Pool) -> np.ndarray:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..faults import Fault, run_fault, suggestion
+from ..model.chassis import DEFAULTS
 from ..tables import Table
 from ..units import UnitError, factor, split
 from .angles import TURN, unwrapped
@@ -15,7 +16,6 @@ from .document import Document, number
 
 ENDS = ("axle_l", "axle_r")  # markers on the rear axle
 ROOM = ("x", "y")
-_DEFAULT_B = 0.2  # m, from the axle to the centre of mass where the campaign does not say, as the model has it
 
 
 def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float]], list[Fault]]:
@@ -31,10 +31,19 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
                 faults.append(run_fault(part.file, fact, suggestion(name, table.headers), 1))
                 continue
             try:
-                found[f"{end}.{room}"] = at, sign * factor(table.units[at] or "m", "m")
+                found[f"{end}.{room}"] = at, sign * _metres(end, table, at)
             except UnitError as error:
                 faults.append(run_fault(part.file, error.fact, error.cure, 1, table.headers[at]))
     return (found, faults) if len(found) == len(ENDS) * len(ROOM) else ({}, faults)
+
+
+def _metres(end: str, table: Table, at: int) -> float:
+    """By what a marker's column becomes metres. Raises UnitError, also where there is no unit: most cameras count in mm."""
+    unit = table.units[at]
+    if not unit:
+        cure = f"write the header as '{split(table.headers[at])[0]} [mm]', or with the unit it has"
+        raise UnitError(f"the marker {end} is read from it, but it gives no unit", cure)
+    return factor(unit, "m")
 
 
 def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[str, np.ndarray]:
@@ -45,7 +54,7 @@ def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[s
     across, middle = right - left, (right + left) / 2  # the axle points to the right
     yaw = unwrapped(np.arctan2(-across[0], across[1]), TURN)
     b = number(doc.table("chair").get("b"))
-    forward = (_DEFAULT_B if b is None else b) * np.stack([np.cos(yaw), np.sin(yaw)])
+    forward = (DEFAULTS["chair.b"] if b is None else b) * np.stack([np.cos(yaw), np.sin(yaw)])
     return {"x": middle[0] + forward[0], "y": middle[1] + forward[1], "yaw": yaw}
 
 

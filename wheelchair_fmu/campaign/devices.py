@@ -66,10 +66,6 @@ class Part:
         """Is this the run's only file?"""
         return not self.device.name
 
-    @property
-    def title(self) -> str:
-        return self.entry.title if not self.device.name else f"{self.entry.title}, {self.device.name}"
-
 
 def devices(doc: Document) -> dict[str, Device]:
     """The devices that [[recording]] describes, by name. What is wrong in them reads as absent, and a check says so."""

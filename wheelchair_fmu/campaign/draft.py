@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -37,8 +37,33 @@ class Gap:
     inside: bool
 
 
+class Readings:
+    """What one file or a whole run holds, as series by name: among them channels and inputs. All are (n,)."""
+
+    if TYPE_CHECKING:  # a dataclass would take the property for the default of its field
+
+        @property
+        def values(self) -> Mapping[str, np.ndarray]: ...
+
+    @property
+    def inputs(self) -> dict[str, np.ndarray]:
+        return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
+
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
+
+    @property
+    def measured(self) -> dict[str, np.ndarray]:
+        """The channels that say something: not those that are empty or stuck."""
+        return {name: series for name, series in self.channels.items() if self._says(name, series)}
+
+    def _says(self, name: str, series: np.ndarray) -> bool:
+        return tells(series)
+
+
 @dataclass(frozen=True, eq=False)
-class Draft:
+class Draft(Readings):
     """One file of a run before judgement. All series are (n,); `time`, by the run's clock, is None where the file has none."""
 
     doc: Document
@@ -61,7 +86,7 @@ class Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
         return replace(
             self,
-            table=FrameTable(self.file, self.table.headers, pd.DataFrame()),
+            table=FrameTable(self.file, self.table.headers, frame=pd.DataFrame()),
             rows=Rows({}, None),
             whole_time=None,
             kept=np.empty(0, int),
@@ -75,19 +100,6 @@ class Draft:
     @property
     def file(self) -> str:
         return self.part.file
-
-    @property
-    def inputs(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
-
-    @property
-    def channels(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
-
-    @property
-    def measured(self) -> dict[str, np.ndarray]:
-        """The channels that say something: not those that are empty or stuck."""
-        return {name: s for name, s in self.channels.items() if tells(s)}
 
     @property
     def left_out(self) -> bool:

@@ -16,11 +16,11 @@ from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
-from .devices import Part, clock, parts, point_of
+from .devices import Part, parts, point_of
 from .document import Document, Entry, flatten, load, number
 from .draft import prepare
 from .noise import gather
-from .recorded import PUSHES_CLOCK, Recorded
+from .recorded import Recorded
 from .records import Campaign, Run
 from .rims import Rim, corrected, rims, unasked, unfounded
 from .windows import covered
@@ -30,12 +30,14 @@ def read(path: str | Path, known_parameters: Known | None = None) -> Campaign:
     """The campaign in a folder (or of a campaign.toml).
 
     `known_parameters` maps dotted names to (lower, upper) in SI; with it, unknown and impossible parameters are
-    found too. Raises CampaignError with every error that `check` finds; warnings are in the campaign.
+    found too. Raises CampaignError with every error that `check` finds; warnings are in the campaign, but for those that only
+    `check` looks for.
     """
-    found = judged(path, known_parameters)
-    if found.campaign is None:
-        raise CampaignError([fault for fault in found.faults if fault.severity == ERROR])
-    return found.campaign
+    assembly, faults = _assess(path, known_parameters)
+    errors = [fault for fault in faults if fault.severity == ERROR]
+    if assembly is None or errors:
+        raise CampaignError(errors)
+    return _campaign(assembly, known_parameters, tuple(faults))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,18 +52,20 @@ class Judged:
 def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
     """What `read` and `check` say of a campaign; recordings are read once."""
     assembly, faults = _assess(path, known_parameters)
-    if assembly is None or any(fault.severity == ERROR for fault in faults):
-        return Judged(None, assembly.runs if assembly else (), faults)
-    return Judged(_campaign(assembly, known_parameters, tuple(faults)), assembly.runs, faults)
+    if assembly is None:
+        return Judged(None, (), faults)
+    wrong = any(fault.severity == ERROR for fault in faults)
+    campaign = None if wrong else _campaign(assembly, known_parameters, tuple(faults))
+    return Judged(campaign, assembly.runs, [*faults, *unasked(assembly.runs, _asked(assembly.doc))])
 
 
 def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:
     """Every fault of a campaign at once, errors and warnings; empty where there is nothing to say."""
-    return _assess(path, known_parameters)[1]
+    return judged(path, known_parameters).faults
 
 
 def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, list[Fault]]:
-    """Runs every check on everything that can be read."""
+    """Runs every check that an analysis needs on everything that can be read."""
     doc, faults = load(path)
     if doc is None:
         return None, faults
@@ -78,13 +82,18 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
             left[part.file] -= 1
         if not any(left[part.file] for part in some):
             tables.clear()  # cuts of one file stand together as a rule; what is needed again is read again
-    asked = [name for name, value in doc.table("nuisance").items() if name in PUSH_NAMES and value is not False]
+    asked = _asked(doc)
     shown = rims(runs, asked) if asked else {}
-    faults += [*unfounded(runs, shown), *unasked(runs, asked)]
+    faults += unfounded(runs, shown)
     assembly = Assembly(doc, tuple(runs), gather(doc, runs), shown)
     if runs:
         faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]
     return assembly, once(faults)
+
+
+def _asked(doc: Document) -> list[str]:
+    """The pushes whose rims are to be corrected."""
+    return [name for name, value in doc.table("nuisance").items() if name in PUSH_NAMES and value is not False]
 
 
 def _recorded(doc: Document, entry: Entry, some: Sequence[Part], tables: dict[Any, Any]) -> tuple[Recorded | None, list[Fault]]:
@@ -152,7 +161,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
     entry = run.entry
     inputs, unsure = corrected(run, of)
     assert run.time is not None  # a file without time is an error, so no campaign is made
-    made = Run(
+    whole = Run(
         name=name,
         file=run.doc.folder / run.drafts[0].file,
         manoeuvre=entry.text("manoeuvre"),
@@ -166,7 +175,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
         baselines=unsure,
         input_steps=run.input_steps,
     )
-    return covered(made, clock(entry, PUSHES_CLOCK).offset) if len(run.drafts) == 1 else made
+    return covered(whole, run.late)
 
 
 def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:

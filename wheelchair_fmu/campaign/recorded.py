@@ -14,9 +14,8 @@ import numpy as np
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .devices import clock
 from .document import Document, Entry
-from .draft import Draft, constants
+from .draft import Draft, Readings, constants
 from .records import Clock
-from .series import tells
 
 PUSHES_CLOCK = "pushes"  # what `clocks` calls the record of pushes in a run of one file
 GRID = 1e-6  # s to which times of several devices are kept, so that two samples at one moment share a row
@@ -24,7 +23,7 @@ _FIRST = 10  # samples from which the starting speed is taken
 
 
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class Recorded(Readings):
     """The files of one run together. All series are (n,) at `time`, which is None where a file has no time column, or where no
     moment is covered by all records of pushes."""
 
@@ -86,9 +85,14 @@ class Recorded:
             found = {name: self._on_rows(d, name) for d in self.drafts for name in d.values}
         return found | {name: np.full(rows, value) for name, value in self.constants.items()}
 
+    @property
+    def late(self) -> float:
+        """How many seconds after the times in a run's only file the chair felt its pushes."""
+        return clock(self.entry, PUSHES_CLOCK).offset if len(self.drafts) == 1 else 0.0
+
     def _shifted(self, draft: Draft) -> dict[str, np.ndarray]:
         """What a run's only file holds, its pushes read when the chair felt them."""
-        late, found = clock(self.entry, PUSHES_CLOCK).offset, dict(draft.values)
+        late, found = self.late, dict(draft.values)
         if late and draft.time is not None:
             found |= {name: np.interp(draft.time - late, draft.time, push) for name, push in draft.inputs.items()}
         return found
@@ -105,18 +109,9 @@ class Recorded:
         out[at[inside]] = series[there][inside]
         return out
 
-    @property
-    def inputs(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
-
-    @property
-    def channels(self) -> dict[str, np.ndarray]:
-        return {name: self.values[name] for name in CHANNEL_NAMES if name in self.values}
-
-    @property
-    def measured(self) -> dict[str, np.ndarray]:
-        """The channels that say something: not those that are empty or stuck."""
-        return {name: s for name, s in self.channels.items() if name in self.constants or tells(s)}
+    def _says(self, name: str, series: np.ndarray) -> bool:
+        """A constant never changes, and yet somebody has given it."""
+        return name in self.constants or super()._says(name, series)
 
     @property
     def silent(self) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..faults import WARNING, Fault, run_fault
+from ..model.chassis import DEFAULTS
 from . import baselines
 from .channels import BY_NAME, PUSH_NAMES
 from .document import FILE
@@ -18,7 +19,7 @@ from .draft import Draft
 from .recorded import Recorded
 from .records import Baseline
 
-ARM = 0.31  # m: a force at the rim of contact as a torque, where the campaign gives no radius
+ARM = DEFAULTS["wheel.R"]  # m: a force at the rim of contact as a torque, where the campaign gives no radius
 SURE = 5.0  # standard errors from which a baseline that nobody asked to be taken out is mentioned,
 LARGE = 0.3  # N m
 
@@ -68,14 +69,16 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
         draft = run.draft_of(name)
         if not rim.found.enough or draft is None or draft.time is None or run.time is None:
             continue
-        shapes, sizes, covariance = _shapes(run.time, draft, name, rim)
+        shapes, sizes, covariance = _shapes(run.time - run.late, draft, name, rim)
         inputs[name] = inputs[name] - shapes @ sizes
-        unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
+        if covariance.any():
+            unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
     return inputs, tuple(unsure)
 
 
 def _shapes(time: np.ndarray, draft: Draft, name: str, rim: Rim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What a baseline and a ripple of 1 add to the push at `time` (n, m), how much there is of each (m,), its covariance."""
+    """What a baseline and a ripple of 1 add to the push that was recorded at `time` (n, m), how much there is of each (m,), its
+    covariance."""
     angle, found = _angle(draft, name), rim.found
     one = np.ones((len(time), 1)) / rim.arm
     if angle is None or not found.covariance[1, 1]:

@@ -79,7 +79,7 @@ def _drawn(cells: Sequence[Sequence[Cell]], share: float, rng: np.random.Generat
     for group in groups:
         some = 1 + int((count - len(groups)) * len(group) / len(together))
         for first, end in pairwise(len(group) * i // some for i in range(some + 1)):
-            yield group[rng.integers(first, end)]
+            yield group[int(rng.integers(first, end))]
 
 
 def _cut(run: Run, start: int, stop: int) -> Run:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import pyarrow as pa
 
@@ -16,7 +16,7 @@ class Job(Protocol):
     `what` it is made of, for a sentence: parts are of another such.
     """
 
-    what: str
+    what: ClassVar[str]
 
     @property
     def fingerprint(self) -> str: ...

@@ -10,6 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessP
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from multiprocessing import get_context, parent_process
+from typing import Any
 
 import pyarrow as pa
 
@@ -108,7 +109,7 @@ def _numbered(job: Job, number: int) -> tuple[int, pa.Table]:
     return number, job.table(number)
 
 
-def _connected(client: Callable, address: str, seconds: float):
+def _connected(client: Callable[..., Any], address: str, seconds: float) -> Any:
     try:
         connection = client(address, timeout=seconds)
         connection.wait_for_workers(1, timeout=seconds)

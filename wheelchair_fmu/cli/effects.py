@@ -120,7 +120,7 @@ def template(kind: str, effect: str) -> str:
 @app.command()
 def quantities(as_json: AsJson = False) -> None:
     """What a law of your own may read, by its symbol, and what an effect may act on."""
-    told = []
+    told: list[dict[str, Any]] = []
     usual, swivelling = (assemble(Choice(caster=name)) for name in ("ideal", "swivelling"))
     common = vocabulary(usual)
     for symbol, q in (vocabulary(swivelling) | common).items():

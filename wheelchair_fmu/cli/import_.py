@@ -112,7 +112,7 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
         axes = {"right": AXES[0], "left": AXES[1]}.get(
             typer.prompt("no signal tells: does y point to the right or left", "right"), ""
         )
-    return replace(wanted, axes=axes, **answers)
+    return replace(wanted, axes=axes, mass=answers["mass"], radius=answers["radius"], track=answers["track"])
 
 
 def _number(words: str) -> float | None:

@@ -49,7 +49,7 @@ class Commands(Group):
             alone = typer.Typer(rich_markup_mode=None)  # which would take units in brackets for its own
             module = f"{cmd_name}_" if iskeyword(cmd_name) else cmd_name  # no module can be called import
             import_module(f".{module}", __package__).register(alone)
-            self.commands |= typer.main.get_group(alone).commands
+            self.commands.update(typer.main.get_group(alone).commands)
         return super().get_command(ctx, cmd_name)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -174,18 +175,22 @@ def _course(trace: Trace) -> Course | None:
     return Course(trace.system.description or trace.system.name, trace.time, columns, cones, _patches(p), size)
 
 
-def _patches(p: dict[str, float]) -> list[tuple[float, float, float, float, str]]:
+def _patches(p: Mapping[str, float]) -> list[tuple[float, float, float, float, str]]:
     """The parts of the floor that are not level or not smooth, each with words for it."""
     ramp, cross, carpet = (
         p.get(f"Floor.{name}", off) for name, off in (("ramp.slope", 0.0), ("cross.slope", 0.0), ("carpet.rolling_factor", 1.0))
     )
     words = {
-        "ramp": ramp and f"ramp, {'falls' if ramp > 0 else 'rises'} {np.degrees(abs(ramp)):.2g}°",
-        "cross": cross and f"falls {np.degrees(abs(cross)):.2g}° to the {'right' if cross > 0 else 'left'}",
-        "carpet": carpet != 1 and f"rolling resistance × {carpet:.3g}",
+        "ramp": f"ramp, {'falls' if ramp > 0 else 'rises'} {np.degrees(abs(ramp)):.2g}°" if ramp else "",
+        "cross": f"falls {np.degrees(abs(cross)):.2g}° to the {'right' if cross > 0 else 'left'}" if cross else "",
+        "carpet": f"rolling resistance × {carpet:.3g}" if carpet != 1 else "",
     }
-    edges = ("x_from", "x_to", "y_from", "y_to")
-    return [(*(p[f"Floor.{patch}.{edge}"] for edge in edges), text) for patch, text in words.items() if text]
+    found = []
+    for patch, text in words.items():
+        if text:
+            x_from, x_to, y_from, y_to = (p[f"Floor.{patch}.{edge}"] for edge in ("x_from", "x_to", "y_from", "y_to"))
+            found.append((x_from, x_to, y_from, y_to, text))
+    return found
 
 
 def _table(trace: Trace) -> Table:

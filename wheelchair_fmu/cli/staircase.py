@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rich import box
+from rich.console import JustifyMethod
 from rich.table import Table
 
 from ..loop.diagnose import Step
@@ -22,7 +23,8 @@ FLOOR = "whitened RMS error, 1.0 is the noise floor"
 def staircase_table(ladder: Sequence[Step]) -> Table:
     """One line per step: the error on fitted and on held-out runs, and a bar of the latter."""
     table = Table(box=box.SIMPLE, title=FLOOR, title_justify="left")
-    for title, side in (("step", "left"), ("fitted runs", "right"), ("held-out runs", "right"), ("", "left")):
+    sides: dict[str, JustifyMethod] = {"step": "left", "fitted runs": "right", "held-out runs": "right", "": "left"}
+    for title, side in sides.items():
         table.add_column(title, justify=side)
     shown = [s.heldout if math.isfinite(s.heldout) else s.fit for s in ladder]
     for s, height in zip(ladder, shown, strict=True):

@@ -10,7 +10,6 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign.document import load
 from ..campaign.reading import judged
 from ..campaign.syncing import RunClocks, find, write
 from ..errors import CampaignError
@@ -34,9 +33,8 @@ def sync(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where the picture goes.")] = Path("out"),
 ) -> None:
     """Find the offset of each device's clock in each run, and write what is sure into campaign.toml."""
-    doc, _ = load(campaign)
     seen = judged(campaign, known_parameters())
-    if doc is None or not seen.runs:
+    if not seen.runs:
         raise CampaignError([fault for fault in seen.faults if fault.severity == ERROR])
     found = find(seen.runs)
     if found:
@@ -48,6 +46,7 @@ def sync(
         for doubt in show(found):
             console().print(doubt)
     if not dry_run and any(one.sure for one in found):
+        doc = seen.runs[0].doc
         write(doc, found)
         console(stderr=True).print(f"the clocks that are sure are in {doc.path}; their picture is {out / 'clocks.png'}")
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
+from typing import Any
 
 from rich.console import Console
 from rich.text import Text
@@ -30,7 +31,7 @@ def printable_json(text: str) -> str:
 class Terminal(Console):
     """A console that prints strings as they are, but for control characters."""
 
-    def render_str(self, text: str, **how) -> Text:
+    def render_str(self, text: str, **how: Any) -> Text:
         return super().render_str(printable(text), **how)
 
 

@@ -76,7 +76,7 @@ def _kinds(m: Model, face: Interface, by: int) -> np.ndarray:
     """Kind (place in KINDS) of each expression's dependence on each of x (by = 0) or w (1)."""
     what = _expressions(m)
     direct = cs.jacobian(what, m.w if by else m.x)
-    entries = cs.vertcat(*direct.nonzeros()) if direct.nnz() else cs.SX(0, 1)
+    entries = direct.nz[:]
     moves = _any(_pattern(m, entries, 0)) | _any(_pattern(m, entries, 1))
     by_p = _pattern(m, entries, 2)
     tunable = np.array([not v.fixed for v in face.of("parameter")])
@@ -92,7 +92,7 @@ def _kinds(m: Model, face: Interface, by: int) -> np.ndarray:
 
 
 def _any(pattern: np.ndarray) -> np.ndarray:
-    return pattern.any(axis=1)
+    return np.asarray(pattern.any(axis=1))
 
 
 def _places(matrix: cs.SX) -> Iterable[tuple[int, int]]:

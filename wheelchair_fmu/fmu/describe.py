@@ -55,14 +55,9 @@ PYTHON = {
 
 def description(face: Interface, name: str, token: str, abilities: Mapping[str, dict[str, str]], sources: list[str]) -> bytes:
     """The XML text. `abilities` are the flavour's; `sources` the C files to compile, where the archive carries some."""
-    root = ET.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=name,
-        guid=token,
-        **about(face),
-        numberOfEventIndicators=str(len(face.of("indicator"))),
-    )
+    words = {"fmiVersion": "2.0", "modelName": name, "guid": token, **about(face)}
+    words["numberOfEventIndicators"] = str(len(face.of("indicator")))
+    root = ET.Element("fmiModelDescription", words)
     root.extend(_interface(kind, name, able, sources) for kind, able in abilities.items())
     root.extend([units(face), types(face), log_categories(), experiment(), variables(face), structure(face)])
     return to_bytes(root)
@@ -89,7 +84,7 @@ def to_bytes(root: ET.Element) -> bytes:
 
 
 def _interface(kind: str, name: str, abilities: dict[str, str], sources: list[str]) -> ET.Element:
-    element = ET.Element(kind, modelIdentifier=name, **abilities)
+    element = ET.Element(kind, {"modelIdentifier": name, **abilities})
     if sources:
         files = ET.SubElement(element, "SourceFiles")
         for source in sources:

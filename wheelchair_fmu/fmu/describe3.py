@@ -70,8 +70,9 @@ SIZE = 20  # of a terminal, where the chair's icon goes from -100 to 100
 
 
 def description(face: Interface, name: str, token: str) -> bytes:
-    root = ET.Element("fmiModelDescription", fmiVersion=VERSION, modelName=name, instantiationToken=token, **about(face))
-    root.extend(ET.Element(kind, modelIdentifier=name, **abilities) for kind, abilities in INTERFACES.items())
+    words = {"fmiVersion": VERSION, "modelName": name, "instantiationToken": token, **about(face)}
+    root = ET.Element("fmiModelDescription", words)
+    root.extend(ET.Element(kind, {"modelIdentifier": name, **abilities}) for kind, abilities in INTERFACES.items())
     root.extend([units(face), _types(face), log_categories(), experiment(), _variables(face), _structure(face)])
     return to_bytes(root)
 
@@ -79,7 +80,7 @@ def description(face: Interface, name: str, token: str) -> bytes:
 def _types(face: Interface) -> ET.Element:
     element = ET.Element("TypeDefinitions")
     for unit in quantities(face):
-        ET.SubElement(element, "Float64Type", name=unit.quantity, **measure(unit))
+        ET.SubElement(element, "Float64Type", {"name": unit.quantity, **measure(unit)})
     for v in face.variables:
         if v.choices:
             items(ET.SubElement(element, "EnumerationType", name=type_name(v)), v)  # FMPy 0.3.20 knows no description

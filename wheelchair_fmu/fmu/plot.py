@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-STEADY = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "none"}  # the same bytes each time; text stays text
+# The same bytes each time; text stays text. What matplotlib calls the type of the keys depends on its version.
+STEADY: dict[Any, str] = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "none"}
 PANELS = (("speed u [m/s]", ("chair.u",)), ("yaw rate ψ' [rad/s]", ("chair.psi_dot",)), ("slip [rad]", ("slip.rl", "slip.rr")))
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 from pathlib import Path
 
 import casadi as cs
+import numpy as np
 
 from ..engine.kernel import kernel
 from ..engine.source import c_source
@@ -213,7 +214,7 @@ def interface(variant: Variant) -> Interface:
     return Interface(variant, models, tuple(table))
 
 
-def _differential(model: Model, parameters: Sequence[float]) -> list[tuple[int, Unit]]:
+def _differential(model: Model, parameters: np.ndarray) -> list[tuple[int, Unit]]:
     """Places of the states whose mass is not zero with these parameters, and the units of their rates."""
     mass = cs.Function("mass", [model.p], [cs.densify(model.mass)])(parameters).full().ravel()
     units = [s.unit for s in model.states for _ in s.names]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 INTERVAL = 0.01  # s
 HOLDING = 6.0  # N at each wheel, about what keeps a chair going
 TRACKING = {"x": 0.003, "y": 0.003, "yaw": 0.004}  # standard deviations of a camera system, SI units
+Push = Callable[[np.ndarray], np.ndarray | float]  # N at these times
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,13 +28,13 @@ class Experiment:
     sensors: Mapping[str, float] = field(default_factory=dict)
 
 
-def _run(words: str, left, right, seconds: float = 15.0, speed: float = 1.0, **other) -> Experiment:
+def _run(words: str, left: Push, right: Push, seconds: float = 15.0, speed: float = 1.0, **other: Any) -> Experiment:
     t = np.arange(0.0, seconds + INTERVAL / 2, INTERVAL)
     pushes = {"push.F_rl": left(t) + 0 * t, "push.F_rr": right(t) + 0 * t}
     return Experiment(words, t, pushes, speed, **other)
 
 
-def _wave(size: float, period: float, sign: float):
+def _wave(size: float, period: float, sign: float) -> Push:
     return lambda t: HOLDING + sign * size * np.sin(2 * np.pi * t / period)
 
 

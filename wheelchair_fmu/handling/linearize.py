@@ -100,7 +100,7 @@ def radius_slopes(state: SteadyState) -> dict[str, float]:
     slopes = np.linalg.solve(by_z, -by_p)
     radius = state.v * slopes[0] / path_squared - slopes[1] / state.psi_dot  # (23)
     radius[speed] += state.speed / path_squared
-    level = ~state.derivatives[9].any(axis=0)
+    level = ~np.any(state.derivatives[9], axis=0)
     real = {
         p.name
         for p, stays in zip(chair.model.parameters, level, strict=True)

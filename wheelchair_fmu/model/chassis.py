@@ -146,6 +146,7 @@ PARAMETERS = (
         symbol="start_psi_dot",
     ),
 )
+DEFAULTS = {p.name: p.default for p in PARAMETERS}  # for whoever needs a size before there is a model
 
 PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
 INPUTS = (

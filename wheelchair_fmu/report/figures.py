@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -197,8 +197,8 @@ def where_figure(runs: Sequence[str], channels: Sequence[str], rms: np.ndarray) 
     return figure
 
 
-def tidy(ax: Axes, grid: str = "both") -> None:
-    ax.grid(axis=grid, color="#E4E4E4", lw=0.6)  # type: ignore[arg-type]
+def tidy(ax: Axes, grid: Literal["both", "y"] = "both") -> None:
+    ax.grid(axis=grid, color="#E4E4E4", lw=0.6)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
@@ -210,7 +210,7 @@ def _steady_axis(ax: Axes) -> None:
         ax.set_ylim(low - 0.5, high + 0.5)
     if low < 0 < high:
         ax.axhline(0, color=GREY, lw=0.6, zorder=0)
-    ax.yaxis.get_major_formatter().set_useOffset(False)  # type: ignore[attr-defined]
+    ax.ticklabel_format(axis="y", useOffset=False)
 
 
 def _at_least(ax: Axes, reach: float) -> None:

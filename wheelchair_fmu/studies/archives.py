@@ -41,7 +41,7 @@ def _makers() -> str:
     """A digest of every file, and the versions, that an archive depends on."""
     files = (f for name in MAKERS for f in _files(PACKAGE / name))
     digest = hashlib.sha256(b"\0".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{__version__} {digest} {casadi.__version__} {compiler.version()} {compiler.FLAGS}"
+    return f"{__version__} {digest} {casadi.CasadiMeta.version()} {compiler.version()} {compiler.FLAGS}"
 
 
 def _files(path: Path) -> list[Path]:

@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 from .. import __version__
 from ..errors import Failure
 from ..faults import WARNING, Fault, not_utf8
-from ..model.chassis import PARAMETERS as CHASSIS
+from ..model.chassis import DEFAULTS
 from ..model.tyre.common import RATED
 from .identify import ConditionFit, Identified
 from .magic_formula import FORCE, TORQUE
@@ -32,7 +32,7 @@ LEANS = np.radians(np.arange(1, 11))
 UNITS = {"LENGTH": ("meter", "m"), "FORCE": ("newton", "n"), "ANGLE": ("radians", "radian", "rad")}
 FITTED = (5.0, 6.0)  # FITTYP of MF 5.2 and what it reads unchanged
 FORMATS = ("PAC2002", "MF_05", "MF05")
-RADIUS = next(p.default for p in CHASSIS if p.name == "wheel.R")
+RADIUS = DEFAULTS["wheel.R"]
 SIGNED = ("PKY1", "PDY1")
 _ENTRY = re.compile(r"\s*([A-Za-z]\w*)\s*=\s*('[^']*'|[^\s$!]+)")
 _SKIP = ("$", "!", "#")

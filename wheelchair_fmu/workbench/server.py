@@ -62,7 +62,8 @@ class Workbench:
         self.root, self.campaign, self.jobs, self.locks = root, campaign, Jobs(), Locks()
         self.guard = Middleware(Guard, token=token, most_upload=most_upload)
         self.most_upload = most_upload
-        self.assets = {p.relative_to(ASSETS).as_posix() for p in Path(str(ASSETS)).rglob("*") if p.suffix in TYPES}
+        assets = Path(str(ASSETS))
+        self.assets = {p.relative_to(assets).as_posix() for p in assets.rglob("*") if p.suffix in TYPES}
         chair = Variant()
         self.bounds = known_parameters()
         self.parameters = [

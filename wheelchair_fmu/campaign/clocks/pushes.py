@@ -79,7 +79,7 @@ def _is_odd(s: Shift) -> bool:
 
 def _ready(runs: Mapping[str, Iterable[Signal]]) -> dict[str, dict[str, Equations]]:
     """Equations by run and way."""
-    ready = {}
+    ready: dict[str, dict[str, Equations]] = {}
     for name, signals in runs.items():
         found = devices(signals)
         if len(found) > 1:
@@ -122,7 +122,8 @@ def _together(found: Sequence[Shift]) -> Shift:
 def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, tuple[Lag, list[Equation]]]:
     """Each run's lag with the coefficients of the other runs in the pool, by which only an offset of its own is free; and the
     equations with these coefficients."""
-    common, lags = 0.0, {}
+    common = 0.0
+    lags: dict[str, tuple[Lag, list[Equation]]] = {}
     for _ in range(ROUNDS):
         grams = {n: {v: _gram(e, common) for v, e in of.items()} for n, of in runs.items()}
         lags = {}
@@ -155,7 +156,7 @@ def _coefficients(grams: Sequence[tuple[np.ndarray, int]]) -> np.ndarray | None:
         return None
     weights, found = np.ones(len(grams)), np.zeros(len(grams[0][0]) - 1)
     for _ in range(REWEIGHTED):
-        total = sum(w * g for w, (g, _) in zip(weights, grams, strict=True))
+        total = sum((w * g for w, (g, _) in zip(weights, grams, strict=True)), np.zeros_like(grams[0][0]))
         size = np.sqrt(np.diag(total)[:-1])
         live = size > STILL * np.sqrt(float(weights @ [n for _, n in grams]))
         normal = total[:-1, :-1][np.ix_(live, live)] / np.outer(size[live], size[live])

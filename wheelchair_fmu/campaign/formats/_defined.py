@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...faults import Fault
 from ...tables import CsvTable, read_bytes, read_csv, unreadable
 from ...units import split
 
@@ -15,7 +16,9 @@ _HEAD = 65536  # bytes
 Units = Mapping[str, str]
 
 
-def read_defined(path: Path, file: str, options: Mapping[str, Any], units: Units, note: str) -> tuple[CsvTable | None, list]:
+def read_defined(
+    path: Path, file: str, options: Mapping[str, Any], units: Units, note: str
+) -> tuple[CsvTable | None, list[Fault]]:
     """The text file with the units of its definition, by name in any case, where it gives none itself."""
     try:
         table, faults = read_csv(file, read_bytes(path), options)

@@ -49,7 +49,7 @@ def framed(
     if frame.empty:
         return None, [run_fault(file, "the file has no rows", EMPTY)]
     headers = tuple(str(name).strip() for name in frame.columns)
-    table = FrameTable(file, headers, frame, tuple(units), tuple(notes))
+    table = FrameTable(file, headers, tuple(units), tuple(notes), frame=frame)
     units_found = list(table.units)
     times = []
     for i, header in enumerate(headers):
@@ -86,7 +86,7 @@ def rated(table: FrameTable, options: Mapping[str, Any]) -> Read:
     )
     note = f"time made from the rows at {rate:g} Hz"
     return FrameTable(
-        table.file, ("time [s]", *table.headers), frame, ("s", *table.units), (*table.notes, note), table.started, 0
+        table.file, ("time [s]", *table.headers), ("s", *table.units), (*table.notes, note), table.started, time=0, frame=frame
     ), []
 
 

@@ -58,7 +58,7 @@ def _points(file: str, parameters: Any, points: np.ndarray, analogs: int) -> Rea
     notes = [f"{len(names)} markers at {rate:g} Hz"]
     notes += [f'{analogs} analogue channels are left out; part = "analogs" reads them'] if analogs else []
     frame = pd.DataFrame(columns)
-    return FrameTable(file, tuple(columns), frame, ("s", *[unit] * (len(columns) - 1)), tuple(notes), time=0), []
+    return FrameTable(file, tuple(columns), ("s", *[unit] * (len(columns) - 1)), tuple(notes), time=0, frame=frame), []
 
 
 def _analogs(file: str, parameters: Any, analogs: np.ndarray) -> Read:
@@ -70,7 +70,7 @@ def _analogs(file: str, parameters: Any, analogs: np.ndarray) -> Read:
     units = tuple((given[i] if i < len(given) else "") or None for i in range(len(names)))
     frame = pd.DataFrame({"time [s]": np.arange(analogs.shape[1]) / rate} | dict(zip(names, analogs, strict=True)))
     notes = (f"{len(names)} analogue channels at {rate:g} Hz",)
-    return FrameTable(file, tuple(frame.columns), frame, ("s", *units), notes, time=0), []
+    return FrameTable(file, tuple(frame.columns), ("s", *units), notes, time=0, frame=frame), []
 
 
 FORMAT = Format(

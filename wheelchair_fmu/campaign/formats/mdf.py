@@ -28,7 +28,7 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
         frame.insert(0, "time [s]", frame.index.to_numpy(dtype=float))
         known = [stated(name, unit) for name, unit in zip(names, units, strict=True)]
         started = started if isinstance(started, datetime) else None
-        return FrameTable(file, ("time [s]", *names), frame, ("s", *known), started=started, time=0), []
+        return FrameTable(file, ("time [s]", *names), ("s", *known), started=started, time=0, frame=frame), []
 
     return by_library(path, file, "asammdf", read)
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ...timestamps import Clock, Seconds, count_over
 from ._defined import first_lines, read_defined
 from ._record import TEXT, Format, Read
@@ -31,7 +33,7 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
     table, faults = read_defined(path, file, options, _UNITS, "Movella DOT: units by their definition, m/s2, deg/s and deg")
     if table is not None and table.rate is None and "SampleTimeFine" in table.headers:
         i = table.headers.index("SampleTimeFine")
-        table.clocks[i] = Clock(lambda ticks: Seconds(count_over(ticks, _ROUND) * _MICROSECOND))  # type: ignore[arg-type]
+        table.clocks[i] = Clock(lambda ticks: Seconds(count_over(np.asarray(ticks), _ROUND) * _MICROSECOND))
         table.units = (*table.units[:i], "s", *table.units[i + 1 :])
         table.time = i
         table.notes += ("time from SampleTimeFine, in µs",)

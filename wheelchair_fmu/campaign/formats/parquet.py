@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...faults import Fault, once, run_fault
-from ...tables import FrameTable, Rows, numbers
+from ...tables import FrameTable, Headed, Rows, numbers
 from ...timestamps import is_stamp, named_time
 from ...units import split, suffixed
 from ._record import DATES, RATE, Format, Read
@@ -21,17 +20,10 @@ from ._support import EMPTY, by_library, framed, stated
 _PLAIN = ("int", "uint", "float", "double", "halffloat", "decimal", "bool")  # no times, unless they are called that
 
 
-@dataclass
-class ParquetTable:
-    """A Parquet file. `times` holds the columns that may be times, read already; see `tables.Table` for the rest."""
+@dataclass(kw_only=True)
+class ParquetTable(Headed):
+    """A Parquet file. `times` holds the columns that may be times, read already."""
 
-    file: str
-    headers: tuple[str, ...]
-    units: tuple[str | None, ...]
-    notes: tuple[str, ...]
-    started: datetime | None
-    time: int | None
-    moments: frozenset[int]
     times: Mapping[int, Any] = field(repr=False)
     columns: tuple[str, ...] = field(repr=False)  # their names in the file
     opened: Any = field(repr=False)
@@ -82,6 +74,7 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
     if not opened.metadata.num_rows:
         return None, [run_fault(file, "the file has no rows", EMPTY)]
     fields = list(opened.schema_arrow)
+    names = tuple(f.name for f in fields)
     places = [i for i, f in enumerate(fields) if _may_be_time(opened, f.name, str(f.type))]
     frame = opened.read(columns=[fields[i].name for i in places]).to_pandas(ignore_metadata=True)
     if options.get("rate") is not None and not places:
@@ -91,9 +84,7 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
     given = [(f.metadata or {}).get(b"unit") or (f.metadata or {}).get(b"units") or b"" for f in fields]
     units = [stated(h, unit.decode(errors="replace")) for h, unit in zip(headers, given, strict=True)]
     if frame.empty:
-        return ParquetTable(
-            file, headers, tuple(units), (), None, None, frozenset(), {}, tuple(f.name for f in fields), opened
-        ), []
+        return ParquetTable(file, headers, tuple(units), times={}, columns=names, opened=opened), []
     found, faults = framed(file, frame, options, [units[i] for i in places] if places else [None])
     if not isinstance(found, FrameTable):
         return found, faults
@@ -116,9 +107,9 @@ def _table(opened: Any, file: str, options: Mapping[str, Any]) -> Read:
         found.started,
         time,
         moments,
-        columns,
-        tuple(f.name for f in fields),
-        opened,
+        times=columns,
+        columns=names,
+        opened=opened,
     ), faults
 
 

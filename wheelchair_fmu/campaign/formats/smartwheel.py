@@ -109,7 +109,7 @@ def _raw(path: Path, file: str, options: Mapping[str, Any]) -> Read:
     frame.insert(0, "time [s]", (counter - counter[0] if rises else np.arange(len(frame))) / hz)
     by = "its counter" if rises else "the rows, as its counter does not rise"
     notes = ("SMARTWheel: columns and units by their places", f"time made from {by} at {hz:g} Hz")
-    return FrameTable(file, tuple(frame.columns), frame, notes=notes, time=0), []
+    return FrameTable(file, tuple(frame.columns), notes=notes, time=0, frame=frame), []
 
 
 FORMAT = Format(

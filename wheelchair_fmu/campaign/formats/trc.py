@@ -78,9 +78,9 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, about: Mapp
     notes += [f"hidden at times: {', '.join(hidden)}"] if hidden else []
     faults = []
     if np.isnan(values[:, 1]).any():
-        line = places[int(np.flatnonzero(np.isnan(values[:, 1]))[0])]
-        faults.append(run_fault(file, "the time is empty", "export it again", line))
-    return FrameTable(file, tuple(headers), frame, units, tuple(notes), time=0), faults
+        first = places[int(np.flatnonzero(np.isnan(values[:, 1]))[0])]
+        faults.append(run_fault(file, "the time is empty", "export it again", first))
+    return FrameTable(file, tuple(headers), units, tuple(notes), time=0, frame=frame), faults
 
 
 FORMAT = Format(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +29,10 @@ class Choice:
     column: Column | None = None
     si: str = ""
 
-    def because(self, why: str, **more: object) -> Choice:
+    def because(self, why: str, **more: Any) -> Choice:
         """With one more reason."""
         text = why if self.why == NAMED else f"{self.why}; {why}"
-        return replace(self, why=text, **more)  # type: ignore[arg-type]
+        return replace(self, why=text, **more)
 
 
 @dataclass

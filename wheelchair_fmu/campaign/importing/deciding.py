@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from ..channels import BY_NAME, SOURCES
 from . import frames, markers, wheels
@@ -134,7 +135,7 @@ def _sides(plans: Sequence[Plan], seen: Together, heading: str) -> None:
     for left, right in _pairs(seen):
         if {left[0], right[0]} & done:
             continue
-        fit = seen.fit(lambda run, pair=(left, right): seen.difference(run, *pair), yaw)
+        fit = seen.fit(partial(seen.difference, left=left, right=right), yaw)
         if fit is None or not fit.plain:
             continue
         done |= {left[0], right[0]}

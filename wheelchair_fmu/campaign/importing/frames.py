@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def provisional(plan: Plan) -> None:
 def clockwise(plan: Plan, run: str) -> Series | None:
     """The yaw rate (rad/s) as far as it is known, positive clockwise from above."""
     choice = next((c for c in plan.choices if c.channel == "yaw_rate"), None)
-    found = choice and plan.series(run, replace(choice, unit=choice.unit.replace("?", "")))
+    found = None if choice is None else plan.series(run, replace(choice, unit=choice.unit.replace("?", "")))
     if found is None:
         return None
     return (found[0], -found[1]) if plan.axes == ISO else found
@@ -60,7 +61,9 @@ def accelerations(plan: Plan, run: str, wheels: Sequence[Series]) -> Series | No
     best: tuple[float, Series] | None = None
     for column in columns.values():
         series = plan.source.series(run, column)
-        for time, speed in wheels if series is not None else ():
+        if series is None:
+            continue
+        for time, speed in wheels:
             match = alike(Signal("a", "a_x", *series), Signal("b", "wheel_speed_l", time, speed))
             if match is not None and (best is None or abs(match.correlation) > best[0]):
                 best = abs(match.correlation), (series[0], np.sign(match.correlation) * series[1])
@@ -113,7 +116,7 @@ def _against(plan: Plan, choice: Choice, seen: Together, pairs: Sequence, headin
         return series and seen.at(run, plan.name, series)
 
     for left, right in pairs:
-        fit = seen.fit(own, lambda run, pair=(left, right): seen.difference(run, *pair))
+        fit = seen.fit(own, partial(seen.difference, left=left, right=right))
         if fit is not None and fit.plain:
             return "the wheels' difference", Fit(fit.gain * TRACK, fit.correlation)
     if heading:

@@ -14,6 +14,7 @@ import unicodedata
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import PurePath
 
 RUN_WORDS = (
@@ -105,7 +106,7 @@ def _by_number(names: Sequence[Name]) -> Iterator[Callable[[Name], Split | None]
     order = sorted(counts, key=lambda key: (-len(counts[key]), key[0] not in RUN_WORDS, not key[0]))
     order.sort(key=lambda key: key[0] not in RUN_WORDS or len(counts[key]) < 2)
     for key in order:
-        yield lambda name, key=key: _numbered(name, key)
+        yield partial(_numbered, key=key)
 
 
 def _numbers(name: Name) -> Iterator[tuple[str, bool, int]]:
@@ -130,8 +131,16 @@ def _by_word(names: Sequence[Name]) -> Iterator[Callable[[Name], Split | None]]:
     """Ways to take the words from the beginning, or from the end, for the run: slalom_imu, slalom_wheels, coast_imu."""
     most = max((len(name.words) for name in names), default=0)
     for k in range(1, most + 1):
-        yield lambda name, k=k: ("_".join(name.words[:k]), name.words[k:]) if len(name.words) >= k else None
-        yield lambda name, k=k: ("_".join(name.words[-k:]), name.words[:-k]) if len(name.words) > k else None
+        yield partial(_first_words, k=k)
+        yield partial(_last_words, k=k)
+
+
+def _first_words(name: Name, k: int) -> Split | None:
+    return ("_".join(name.words[:k]), name.words[k:]) if len(name.words) >= k else None
+
+
+def _last_words(name: Name, k: int) -> Split | None:
+    return ("_".join(name.words[-k:]), name.words[:-k]) if len(name.words) > k else None
 
 
 def _tried(names: Sequence[Name], way: Callable[[Name], Split | None], kind: Mapping[str, Hashable]) -> list[Placed] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,8 @@ class Setting:
     def but(self, name: str, value: float) -> Setting:
         """The same but for one value."""
         if name in ("delta_force", "period", "slalom_speed"):
-            return replace(self, **{name: value})
+            changed: dict[str, Any] = {name: value}
+            return replace(self, **changed)
         return replace(self, values={**self.values, name: value})
 
 

@@ -94,7 +94,7 @@ def _slaloms(runs: Runs, name: str) -> list[Result]:
     return [runs.slalom(scaled(name, scale)) for scale in SCALES]
 
 
-def _list(values: Sequence[float], unit: str, digits: int = 3) -> str:
+def _list(values: Sequence[float] | np.ndarray, unit: str, digits: int = 3) -> str:
     return ", ".join(f"{v:.{digits}f}" for v in values) + (f" {unit}" if unit else "")
 
 
@@ -106,7 +106,7 @@ def _rises(values: Sequence[float]) -> bool:
     return bool(np.all(np.diff(values) > 0))
 
 
-def _spread(values: Sequence[float]) -> float:
+def _spread(values: Sequence[float] | np.ndarray) -> float:
     """From the first to the last, against the middle one."""
     return abs(values[-1] - values[0]) / abs(values[len(values) // 2])
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ...faults import suggestion
+from ...fmu.parameter_set import SspUnit
 from .binding import Values, resolve
 from .faults import Fault
 from .reading import Archive, Fmu, opened
@@ -111,7 +112,8 @@ def connectors_are_variables(archive: Archive, file: str, system: System, fmus: 
 
 def connectors_have_known_units(archive: Archive, file: str, system: System, fmus: Fmus) -> None:
     known = {u.name for u in system.units}
-    for owner in (system, *system.components):
+    owners: tuple[System | Component, ...] = (system, *system.components)
+    for owner in owners:
         for k in owner.connectors:
             if k.unit and k.unit not in known:
                 archive.blame(
@@ -153,13 +155,9 @@ def inputs_are_fed_once(archive: Archive, file: str, system: System, fmus: Fmus)
 
 def connections_keep_the_dimension(archive: Archive, file: str, system: System, fmus: Fmus) -> None:
     for c in system.connections:
-        ends = [
-            fmus[e].variables.get(k) if e in fmus else None
-            for e, k in ((c.start_element, c.start_connector), (c.end_element, c.end_connector))
-        ]
-        if None in ends or c.scaling.suppress_units:
+        start, end = (_unit(fmus, e, k) for e, k in ((c.start_element, c.start_connector), (c.end_element, c.end_connector)))
+        if c.scaling.suppress_units:
             continue
-        start, end = (fmus[e].units.get(v.unit or "") for e, v in zip((c.start_element, c.end_element), ends, strict=True))
         if start and end and dict(start.exponents) != dict(end.exponents):
             archive.blame(
                 file,
@@ -178,6 +176,12 @@ CHECKS: tuple[Callable[[Archive, str, System, Fmus], None], ...] = (
     inputs_are_fed_once,
     connections_keep_the_dimension,
 )
+
+
+def _unit(fmus: Fmus, element: str, name: str) -> SspUnit | None:
+    """The unit of an end of a connection, where the FMU gives it one."""
+    variable = fmus[element].variables.get(name) if element in fmus else None
+    return None if variable is None else fmus[element].units.get(variable.unit or "")
 
 
 def _of_kind(fmu: Fmu, kind: str) -> list[str]:

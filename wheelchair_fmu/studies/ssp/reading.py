@@ -11,6 +11,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any, TypeVar
 
 import fmpy
 from fmpy.model_description import ModelDescription, ScalarVariable
@@ -30,6 +31,7 @@ SCHEMAS = {
 }
 ROOTS = {"ssd": "SystemStructureDescription", "ssv": "ParameterSet", "ssm": "ParameterMapping"}
 FMU_TYPES = ("application/x-fmu-sharedlibrary", "")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class Archive:
     path: Path
     folder: Path
     faults: list[Fault] = field(default_factory=list)
-    _read: dict[tuple[str, str], object] = field(default_factory=dict, repr=False)
+    _read: dict[tuple[str, str], Any] = field(default_factory=dict, repr=False)
 
     def blame(self, file: str, element: str, fact: str, cure: str, line: int = 0) -> None:
         fault = Fault(file, element, fact, cure, line)
@@ -76,13 +78,15 @@ class Archive:
     def fmu(self, file: str) -> Fmu | None:
         if ("fmu", file) not in self._read:
             self._read["fmu", file] = _fmu(self, file)
-        return self._read["fmu", file]  # type: ignore[return-value]
+        found: Fmu | None = self._read["fmu", file]
+        return found
 
-    def _once(self, kind: str, file: str, convert: Callable):
+    def _once(self, kind: str, file: str, convert: Callable[[Archive, str, etree._Element], T]) -> T | None:
         if (kind, file) not in self._read:
             root = self._root(kind, file)
             self._read[kind, file] = None if root is None else convert(self, file, root)
-        return self._read[kind, file]
+        found: T | None = self._read[kind, file]
+        return found
 
     def _root(self, kind: str, file: str) -> etree._Element | None:
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True)
@@ -117,14 +121,14 @@ class Archive:
             if version != "2.0":
                 self.blame(file, _local(root), f"version {version!r} is unknown", "give 1.0 or 2.0", root.sourceline)
         elif schema is not None and not schema.validate(root):
-            for error in schema.error_log:  # type: ignore[attr-defined]
-                text = error.message.replace(f"{{{NAMESPACE[kind]}}}", f"{kind}:").replace(f"{{{NAMESPACE['ssc']}}}", "ssc:")
+            for entry in schema.error_log:
+                text = entry.message.replace(f"{{{NAMESPACE[kind]}}}", f"{kind}:").replace(f"{{{NAMESPACE['ssc']}}}", "ssc:")
                 self.blame(
                     file,
                     "",
                     f"not as the schema of SSP {version} wants it: {text}",
                     "put elements in the schema's order, with the attributes it asks for",
-                    error.line,
+                    entry.line,
                 )
         return root
 
@@ -393,17 +397,20 @@ def _fmu(archive: Archive, file: str) -> Fmu | None:
     try:
         with zipfile.ZipFile(path) as packed:
             if fact := too_much(packed):
-                return refuse(fact, "pack less into one FMU")
+                refuse(fact, "pack less into one FMU")
+                return None
         description = fmpy.read_model_description(str(path))
     except Exception as error:  # fmpy raises whatever its parsers raise, zipfile what zlib does
-        return refuse(
-            f"not an FMU: {' '.join(str(error).split()) or type(error).__name__}", "give a file that `fmpy validate` accepts"
-        )
+        what = " ".join(str(error).split()) or type(error).__name__
+        refuse(f"not an FMU: {what}", "give a file that `fmpy validate` accepts")
+        return None
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        return refuse(f"FMI {description.fmiVersion} without co-simulation by FMI 2.0", "give an FMU 2.0 for co-simulation")
+        refuse(f"FMI {description.fmiVersion} without co-simulation by FMI 2.0", "give an FMU 2.0 for co-simulation")
+        return None
     platforms = fmpy.supported_platforms(str(path))
     if fmpy.platform not in platforms:
-        return refuse(f"built for {', '.join(platforms) or 'no platform'}, not for {fmpy.platform}", "build it here")
+        refuse(f"built for {', '.join(platforms) or 'no platform'}, not for {fmpy.platform}", "build it here")
+        return None
     variables = MappingProxyType({v.name: v for v in description.modelVariables})
     return Fmu(path, description, variables, MappingProxyType(fmu_units(description)))
 

@@ -100,7 +100,8 @@ def with_interface(
     """The system with connectors of its own, the values of its handles, and which handle goes to which of its parameters."""
     table = sources.interface()
     connectors, connections, entries = [], list(plain.connections), []
-    settings, units, shown = {}, {u.name: u for u in plain.units}, {c: [] for c in models}
+    settings, units = dict[str, Setting](), {u.name: u for u in plain.units}
+    shown: dict[str, list[Connector]] = {c: [] for c in models}
     for kind in ("input", "output"):
         for name, path in table[f"{kind}s"].items():
             element, inner = parted(path)

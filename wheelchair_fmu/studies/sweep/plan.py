@@ -104,7 +104,8 @@ def read_plan(path: Path, effects: Path | None = None) -> Plan:
     reader = _Reader(path, Chair(own=own))
     plan = reader.plan()
     if reader.faults or plan is None:
-        raise PlanError(sorted(reader.faults, key=lambda fault: (fault.line is None, fault.line or 0)))
+        reader.faults.sort(key=lambda fault: (fault.line is None, fault.line or 0))
+        raise PlanError(reader.faults)
     return plan
 
 
