@@ -97,6 +97,8 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         lead = "The term that helps most, and does not suffice either" if insufficient(d.ladder) else "What would explain it"
         out.print(f"{lead}: {term.words}, {size}.")
     out.print(staircase_table(d.ladder))
+    for words in d.unexplained.words if d.unexplained else ():
+        out.print(words)
     out.print(_ranking(content, set(d.search.workshop.catalogue) - set(bundled())))
     for name, (low, high) in d.intervals.items():
         unit = d.search.records[name].unit.name

@@ -25,28 +25,28 @@ def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) ->
     first[range(nx, whole), range(nx, whole)] = np.concatenate((a["input_sd"][0], a["sd"])) ** 2
     x, P = np.concatenate((start_mean, np.zeros(nq + nz))), first
     before: list[tuple[np.ndarray, np.ndarray]] = []
-    seen: list[list[tuple[np.ndarray, np.ndarray, float, float]]] = []
+    seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # H (m, size), Hᵀ S⁻¹ and what is new, of m readings
+    own = np.eye(nz)
     for i in range(n):
         if i:
             F, Q = _step(a, i - 1, nx, nq, nz)
             x, P = F @ x, F @ P @ F.T + Q
         before.append((x, P))
-        seen.append([])
-        for z in np.nonzero(a["present"][i])[0]:
-            h = np.concatenate((a["H"][i, z], a["D"][i, z], np.eye(nz)[z]))
-            Ph = P @ h
-            variance, new = float(h @ Ph), float(residual[i, z] - h @ x)
-            seen[i].append((h, Ph / variance, variance, new))
-            x, P = x + Ph * (new / variance), P - np.outer(Ph, Ph) / variance
+        z = np.nonzero(a["present"][i])[0]
+        H = np.concatenate((a["H"][i, z], a["D"][i, z], own[z]), axis=1)
+        PH = P @ H.T
+        back_H = np.linalg.solve(H @ PH, H).T if len(z) else H.T
+        new = residual[i, z] - H @ x
+        seen.append((H, back_H, new))
+        gain = P @ back_H
+        x, P = x + gain @ new, P - gain @ PH.T
     there = slice(nx + filter_.recorded, nx + nq)
     mean, sd = np.empty((n, nq - filter_.recorded)), np.empty((n, nq - filter_.recorded))
     back, Back = np.zeros(whole), np.zeros((whole, whole))
     for i in range(n - 1, -1, -1):
-        for h, gain, variance, new in reversed(seen[i]):
-            kept = np.eye(whole) - np.outer(gain, h)
-            back = kept.T @ back - h * (new / variance)
-            Back = kept.T @ Back @ kept + np.outer(h, h) / variance
-        x, P = before[i]
+        (x, P), (H, back_H, new) = before[i], seen[i]
+        kept = np.eye(whole) - P @ back_H @ H
+        back, Back = kept.T @ back - back_H @ new, kept.T @ Back @ kept + back_H @ H
         mean[i] = (x - P @ back)[there]
         sd[i] = np.sqrt(np.maximum(np.diag(P - P @ Back @ P)[there], 0.0))
         if i:

@@ -18,7 +18,7 @@ from .evidence import Colour, Evidence, RunEvidence, disturbance
 
 USUAL_FORCE, USUAL_MOMENT = 5.0, 1.0  # N and N m: a strength's prior falls by e over this
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
-START = (1e-2, 1e-1, 1.0, 10.0)  # times these, from where the search may start
+START = ((0.03, 0.03), (0.3, 0.03), (0.03, 0.3), (0.6, 0.6), (6.0, 6.0))  # times these, from where the search may start
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,9 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
         return _misfit(evidence, Colour({}, force=force, moment=moment), t_r) + 2 * float(ratios.sum())
 
     without = _misfit(evidence, Colour({}), t_r)
-    starts = [np.log([f, m]) for f in START for m in START]
-    begun = min(starts, key=misfit)
+    begun = min((np.log(ratios) for ratios in START), key=misfit)
+    if misfit(begun) > without:
+        return Strength(0.0, 0.0, 0.0)
     found = minimize(
         misfit, begun, method="Nelder-Mead", options={"xatol": 0.05, "fatol": 0.5, "initial_simplex": _simplex(begun)}
     )

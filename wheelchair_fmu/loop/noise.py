@@ -7,6 +7,7 @@ d(i + k) − d(i) is 2σ²(1 − φ^k) for AR(1) noise, plus about c k² of what
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq, least_squares
@@ -47,7 +48,8 @@ def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour, lo
                 f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; the data's own is used"
             )
     pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in FORCES}
-    return Colour(sd, ar | {side: phi for side, phi in pushes.items() if phi > STEADY}), notes
+    ar |= {side: phi for side, phi in pushes.items() if phi > STEADY}
+    return replace(taken, sd=sd, ar=ar), notes
 
 
 def _push_colour(evidence: Evidence, side: str, sd: float) -> float:

@@ -17,7 +17,8 @@ from ..model.variant import Variant
 from .calibration import Calibrated, calibration, doubts
 from .climb import Climb
 from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
-from .evidence import Evidence
+from .disturbance import Strength, strength
+from .evidence import Colour, Evidence
 from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
@@ -27,6 +28,7 @@ from .preflight import retime_by_slopes, settle_clocks
 from .screen import AT_THE_FLOOR
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
+from .unexplained import Unexplained, geometry, unexplained
 from .workshop import CALIBRATED, MEASURED, Workshop
 
 ENOUGH_POWER = 0.8
@@ -40,6 +42,7 @@ REST = 0.15  # what calibration left may leave this much of its mean square erro
 HARDLY = 1.04  # the same, where they explain next to nothing: they leave
 NEXT_TO_ALL = 0.9  # of it
 FORETOLD_BADLY, OF_WHAT_WAS = 1.2, 0.2  # the same two on held-out runs alone, to which nothing was fitted
+FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 2.0  # that is no noise where so many samples are alike
 
@@ -66,7 +69,8 @@ class Diagnosis:
     search: Search
     notes: tuple[str, ...]
     next_experiment: dict[str, Any] | None
-    seconds: float
+    seconds: float = 0.0
+    unexplained: Unexplained | None = None
 
     @property
     def included(self) -> tuple[str, ...]:
@@ -95,10 +99,47 @@ def diagnose(
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
     what is being done, in words, and `climbed` the staircase whenever it has changed.
     """
-    variant, generic = variant or Variant(), generic or {}
     began = time.monotonic()
     campaign = windows(campaign)
-    search = Search(Workshop(campaign, variant, fixed, calibrated), progress)
+
+    def searched(colour: Colour | None, terms: Mapping[str, Effect]) -> Diagnosis:
+        workshop = Workshop(campaign, variant or Variant(), fixed, calibrated)
+        workshop.colour = colour or workshop.colour
+        return _searched(campaign, Search(workshop, progress), terms, experiments, climbed)
+
+    found = searched(None, generic or {})
+    found = _with_forces(found, lambda colour: searched(colour, {}), progress)
+    return replace(found, seconds=time.monotonic() - began)
+
+
+def _with_forces(found: Diagnosis, again: Callable[[Colour], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
+    """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
+    with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
+    before = _strength(found, found.rounds[0].fit)
+    if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
+        return replace(found, unexplained=Unexplained(before, _strength(found, found.final), ()))
+    say("searching again, with forces that nobody recorded")
+    second = again(before.put_into(found.search.workshop.colour))
+    after = _strength(second, second.final)
+    left = unexplained(second.search.workshop.bench(second.included), second.final, before, after)
+    if left.orders or not left.like_a_floor:
+        return replace(found, unexplained=left)
+    with_forces = replace(second.ladder[1], name=FORCES)
+    return replace(second, ladder=(*found.ladder[:2], with_forces, *second.ladder[2:]), unexplained=left)
+
+
+def _strength(found: Diagnosis, at: Fit) -> Strength:
+    return strength(at.evidence, geometry(found.search.workshop.bench(), at)["chair.t_r"])
+
+
+def _searched(
+    campaign: Campaign,
+    search: Search,
+    generic: Mapping[str, Effect],
+    experiments: Sequence[Experiment],
+    climbed: Callable[[Sequence[Step]], None],
+) -> Diagnosis:
+    """The search up the staircase, and the verdict on where it ends."""
     climb = Climb(search, climbed)
     climb.to_the_top()
     if retime_by_slopes(search, climb.effects, climb.base):
@@ -141,7 +182,6 @@ def diagnose(
         search,
         notes,
         following,
-        time.monotonic() - began,
     )
 
 
