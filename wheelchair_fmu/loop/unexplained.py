@@ -85,11 +85,11 @@ class Unexplained:
         return told + [f"{o.words[0].upper()}{o.words[1:]}." for o in self.orders]
 
     def as_json(self) -> dict[str, Any]:
-        """The key `disturbance`: standard deviations in N and N m."""
+        """The key `disturbance`: standard deviations in N and N m, and the same in words."""
         sizes = {
             name: {"force": s.force, "moment": s.moment} for name, s in (("calibrated", self.before), ("final", self.after))
         }
-        return {**sizes, "orders": [o.as_json() for o in self.orders]}
+        return {**sizes, "orders": [o.as_json() for o in self.orders], "words": self.words}
 
 
 def _size(s: Strength) -> str:

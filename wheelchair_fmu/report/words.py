@@ -9,6 +9,7 @@ from ..loop.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
 LEAST = 1e-300  # of probabilities that are printed
+HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a probability below which the data show something like the effect
 
 
@@ -41,8 +42,9 @@ def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[
 
 
 def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
-    """Effects that help, each with those this campaign cannot tell it from."""
-    return _listed([_listed([_title(e, titles) for e in group], "or") for group in grouped(effects, ties)], "and")
+    """Effects that help, each with those this campaign cannot tell it from; of many the first, as a long list says nothing."""
+    groups = [_listed([_title(e, titles) for e in group[:HELPERS]], "or") for group in grouped(effects, ties)]
+    return _listed(groups[:HELPERS], "and")
 
 
 def _title(effect: str, titles: Mapping[str, str]) -> str:
@@ -55,6 +57,7 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
     said = [_size(e, rows[e], records) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
     said += _proposal(diagnosis.get("leftover") or {}, records)
     said.append(_fall(diagnosis["ladder"]))
+    said += (diagnosis.get("disturbance") or {}).get("words", ())
     following = diagnosis.get("next_experiment")
     if following:
         times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
