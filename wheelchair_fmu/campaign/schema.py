@@ -255,8 +255,8 @@ OPEN = (
     ),
     TableRecord(
         "prior",
-        "How well the values above are known: a standard deviation for each parameter by its dotted name. Without one, m is known "
-        "to 2.5 %, a and b to 1 cm, t_r to 8 mm, f_r and f_f to 60 %, the tyres and I_z to 30 %.",
+        "How well the values above are known: a standard deviation for each parameter by its dotted name. Without one, m is "
+        "known to 2.5 %, a and b to 1 cm, t_r to 8 mm, f_r and f_f to 60 %, the tyres and I_z to 30 %.",
         (),
         open=True,
     ),
