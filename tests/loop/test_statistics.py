@@ -69,7 +69,6 @@ def test_what_takes_turns_counts_no_more_than_once():
     assert correlation_time(evidence(runs, [np.zeros((5000, 1, 0))], ())) == 1.0
 
 
-@pytest.mark.xfail(strict=True, reason="1.0 instead of 9: rows of other loggers count as residuals of zero, and end the sum")
 def test_a_slow_sensors_samples_are_as_correlated_as_they_are():
     """Readings in every third row of several loggers' rows are correlated from one reading to the next."""
     r = np.full((30000, 1), np.nan)

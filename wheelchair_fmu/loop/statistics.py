@@ -97,7 +97,7 @@ def correlation_time(evidence: Evidence) -> float:
     time, weight = 0.0, 0
     for e in evidence.runs:
         for i in range(e.r.shape[1]):
-            r = np.nan_to_num(e.r[:, i])
+            r = e.r[np.isfinite(e.r[:, i]), i]  # from reading to reading: rows of other loggers are no residuals of zero
             n = len(r)
             power = float(r @ r)
             if power == 0:
