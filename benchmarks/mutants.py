@@ -60,7 +60,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (L + "statistics.py", " * float(np.mean(evidence.r**2))", ""),
     (L + "statistics.py", "robust_variance(found.evidence, S, r) + found.prior_slopes**2", "S.T @ S + found.prior_slopes**2"),
     (L + "bootstrap.py", "(0.025, 0.975)", "(0.25, 0.75)"),
-    (L + "interval.py", "student(LEVEL, runs - 1)", "NORMAL"),
+    (L + "interval.py", "student(LEVEL, degrees_between_runs(found, at))", "NORMAL"),
     (L + "evidence.py", "np.clip(s, -3 * sd[n], 3 * sd[n])", "np.clip(s, -30 * sd[n], 30 * sd[n])"),
 )
 
