@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis importers matrix nightly clean
+.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -15,6 +15,7 @@ help:
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
+	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
 	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
 	@echo "make nightly     what takes up to an hour: every platform, importers, fuzzing, kills and damage, a few hidden truths, matrix"
@@ -61,6 +62,9 @@ lint: setup
 
 bench-diagnosis: setup
 	$(BIN)/python -m benchmarks.diagnosis --baselines $(TRIALS)
+
+mutants: setup
+	$(BIN)/python -m benchmarks.mutants $(MUTANTS)
 
 bench: setup
 	$(BIN)/python -m benchmarks.bench

@@ -16,7 +16,7 @@ def value_beyond(chance: float, degrees: int) -> float:
     return float(special.chdtri(degrees, chance))
 
 
-def student(level: float, degrees: int) -> float:
+def student(level: float, degrees: float) -> float:
     """Standard errors either way within which a value lies at this level, where its error has so many degrees of freedom."""
     return float(special.stdtrit(degrees, (1 + level) / 2))
 

@@ -18,7 +18,7 @@ from .chance import student, value_beyond
 from .cores import each
 from .evidence import Bench
 from .fit import Fit, Problem
-from .statistics import between_runs, sandwich
+from .statistics import between_runs, degrees_between_runs, sandwich
 
 LEVEL = 0.95
 NORMAL = value_beyond(1 - LEVEL, 1) ** 0.5  # standard errors, at LEVEL
@@ -67,7 +67,7 @@ def half_width(found: Fit, at: int) -> float:
     lasting, runs = NORMAL * float(np.sqrt(sandwich(found)[at, at])), len(found.evidence.runs)
     if runs < RUNS:
         return lasting
-    return max(lasting, student(LEVEL, runs - 1) * float(np.sqrt(between_runs(found)[at, at])))
+    return max(lasting, student(LEVEL, degrees_between_runs(found, at)) * float(np.sqrt(between_runs(found)[at, at])))
 
 
 def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:

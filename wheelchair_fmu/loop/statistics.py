@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -54,15 +54,33 @@ def standard_errors(found: Fit) -> dict[str, float]:
 def between_runs(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
     residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
-    S, r = found.evidence.S, found.evidence.r
-    inverse = _inverse(found)
+    r, inverse = found.evidence.r, _inverse(found)
     total = np.zeros_like(inverse)
-    for _, _, part in found.evidence.parts():
-        Q, R = np.linalg.qr(S[part])
-        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ inverse @ R.T)  # what the other runs leave it to decide
-        pull = R.T @ axes @ ((axes.T @ (Q.T @ r[part])) / np.sqrt(np.maximum(size, ALONE)))
+    for part, Q, R, root in _decided(found, inverse):
+        pull = R.T @ root @ (Q.T @ r[part])
         total += np.outer(pull, pull)
     return inverse @ total @ inverse
+
+
+def degrees_between_runs(found: Fit, at: int) -> float:
+    """Degrees of freedom of one of these variances, by Satterthwaite: one less than there are runs where all decide alike, and
+    fewer where a few of them decide most (Bell and McCaffrey 2002)."""
+    inverse, squares, pulls = _inverse(found), [], []
+    for _, _, R, root in _decided(found, inverse):
+        weight = root @ (R @ inverse[:, at])  # of the run's residuals in the estimate
+        squares.append(float(weight @ weight))
+        pulls.append(R.T @ weight)
+    G = np.diag(squares) - np.array(pulls) @ inverse @ np.array(pulls).T
+    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G)))
+
+
+def _decided(found: Fit, inverse: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
+    """Of each run its place, the factors Q R of its sensitivities, and what makes up, in Q's directions, for what the run
+    itself decides of the estimates and so takes off its residuals."""
+    for _, _, part in found.evidence.parts():
+        Q, R = np.linalg.qr(found.evidence.S[part])
+        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ inverse @ R.T)  # what the other runs leave it to decide
+        yield part, Q, R, (axes / np.sqrt(np.maximum(size, ALONE))) @ axes.T
 
 
 def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
@@ -97,7 +115,7 @@ def correlation_time(evidence: Evidence) -> float:
     time, weight = 0.0, 0
     for e in evidence.runs:
         for i in range(e.r.shape[1]):
-            r = np.nan_to_num(e.r[:, i])
+            r = e.r[np.isfinite(e.r[:, i]), i]  # from reading to reading: rows of other loggers are no residuals of zero
             n = len(r)
             power = float(r @ r)
             if power == 0:
