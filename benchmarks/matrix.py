@@ -15,27 +15,60 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from wheelchair_fmu.children import child
+
 ROOT = Path(__file__).parents[1]
 PLACE = ROOT / ".venv-matrix"
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 RESOLUTIONS = ("lowest-direct", "highest")
 EXTRAS = ("dev", "ssp")
-# What touches libraries of others, some way through all of the package; TESTS=tests is everything.
+# Each library that the package needs is used by some of these, with the least work besides; TESTS=tests is everything.
 TESTS = (
-    "tests/test_writing.py",
-    "tests/campaign",
-    "tests/engine",
-    "tests/cli/test_cli.py",
-    "tests/cli/test_tyre.py",
-    "tests/cli/test_sweep.py",
-    "tests/fmu/test_archive.py",
-    "tests/tyres",
-    "tests/workbench",
-    "tests/ssp/test_archives.py",
-    "tests/studies/sweep",
+    # Files of loggers, their units and damage: pandas, pyarrow, ezc3d, h5py, odfpy, openpyxl, Pint, tomlkit, Hypothesis.
+    "tests/campaign/test_formats.py",
+    "tests/campaign/test_loggers.py",
+    "tests/campaign/test_units.py",
+    "tests/campaign/test_reading.py",
+    "tests/campaign/test_bad_files.py",
+    "tests/campaign/test_layout.py",
+    # Tyre files: SciPy, lxml.
+    "tests/tyres/test_formats.py",
+    "tests/tyres/test_parameters.py::test_the_parameter_set_is_valid_and_holds_the_variant",
+    # FMUs built, by the system's compiler, Zig and pythonfmu, and simulated: CasADi, FMPy.
+    "tests/fmu/test_simulation.py::test_fmpy_coasts_to_rest",
+    "tests/fmu/test_simulation.py::test_python_gives_the_same_as_native",
+    "tests/fmu/test_archive.py::test_builds_with_zig_instead_of_a_system_compiler",
+    # Systems of FMUs, as others read and run them: lxml, pyssp_standard, libcosimpy.
+    "tests/ssp/test_archives.py::test_an_archive_holds_fmus_sets_and_a_mapping_and_has_no_fault",
+    "tests/ssp/test_archives.py::test_pyssp_standard_finds_it_valid",
+    "tests/ssp/test_running.py::test_libcosim_gives_the_same[slalom-0.01-sets0]",
+    # A sweep's chairs and indices: SALib, SciPy; its table: pyarrow.
+    "tests/studies/sweep/test_design.py",
+    "tests/studies/sweep/test_sweep.py::test_columns_say_their_units",
+    # A few chairs diagnosed on a cluster, and their sizes together: SciPy, threadpoolctl, distributed, statsmodels.
+    "tests/fleet/test_fleet.py::test_a_dask_cluster_gives_the_same_rows",
+    "tests/fleet/test_summary.py",
+    "tests/handling/test_linearize.py::test_python_control_takes_it",
+    # Figures: matplotlib, Pillow. What was made is kept where platformdirs says.
+    "tests/report/test_figures.py",
+    "tests/engine/test_store.py",
+    # The workbench's routes, and the server itself: Starlette, uvicorn, python-multipart, filelock, HTTPX.
+    "tests/workbench/test_server.py",
+    "tests/workbench/test_attacks.py::test_nobody_is_answered_without_the_token",
+    "tests/workbench/test_attacks.py::test_an_effect_that_cannot_be_is_refused_at_once",
+    "tests/workbench/test_attacks.py::test_a_bomb_is_not_unpacked",
+    # The command line: Typer, Rich, tomli-w.
+    "tests/cli/test_cli.py::test_set_reaches_the_fmu_and_more_cornering_stiffness_tightens_the_turn",
+    "tests/cli/test_cli.py::test_bad_input_gets_one_sentence_and_writes_nothing",
+    "tests/cli/test_handling_commands.py::test_linearize_refuses_in_one_sentence",
 )
 MISSING = "not on this machine"
-
+LIMIT = 900.0  # s for the tests of one environment, after which they are ended
+STUCK = 300  # s after which a test that still runs tells in pytest's words where it is
+# A file's tests stay together, so that what they share is made once.
+OPTIONS = ("-rfE", "--tb=short", "--dist=loadfile", "-p", "no:cacheprovider", "-o", f"faulthandler_timeout={STUCK}")
+SUMMARY = ("FAILED ", "ERROR ")  # how the lines of pytest's summary begin, one for each
+MOST, WIDTH = 40, 160  # lines shown of an environment, and characters of each
 
 WHEELS = ("--only-binary", ":all:", "--no-binary", "odfpy")  # which is of Python alone, and has never had any
 
@@ -84,13 +117,30 @@ def environment(python: str, name: str, resolution: str) -> Path:
     return inside
 
 
-def tested(python: Path, tests: list[str]) -> tuple[bool, str]:
-    """Whether the tests pass, and pytest's last line. What fails is shown."""
-    words = [str(python), "-m", "pytest", "-n", str(min(2, os.cpu_count() or 1)), "-p", "no:cacheprovider", *tests]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
-    if done.returncode:
-        print(done.stdout[-20_000:], done.stderr[-4_000:], sep="\n")
-    return done.returncode == 0, (done.stdout.strip().splitlines() or ["pytest said nothing"])[-1].strip(" =")
+def tested(python: Path, place: Path, tests: list[str]) -> tuple[bool, str]:
+    """Whether the tests pass, and pytest's last line. What fails is named, and all that pytest said is in `place`."""
+    log = place / "tests.txt"
+    words = [str(python), "-m", "pytest", "-n", str(min(2, os.cpu_count() or 1)), *OPTIONS, *tests]
+    with log.open("wb") as said, child(words, cwd=ROOT, stdout=said, stderr=subprocess.STDOUT) as process:
+        try:
+            code = process.wait(LIMIT)
+        except subprocess.TimeoutExpired:  # the end of `child` ends its process group
+            code = None
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    last = next((line.strip(" =") for line in reversed(lines) if line.strip()), "pytest said nothing")
+    if code == 0:
+        return True, last
+    named = [line for line in lines if line.startswith(SUMMARY)]
+    # Without a summary, what pytest said at its end is all there is.
+    shown = [cut(line) for line in named[:MOST] or lines[-MOST:]]
+    if len(named) > MOST:
+        shown.append(f"and {len(named) - MOST} more")
+    print(*shown, f"all that pytest said is in {log.relative_to(ROOT)}", sep="\n", flush=True)
+    return False, f"ended after {LIMIT / 60:.0f} min" if code is None else last
+
+
+def cut(line: str) -> str:
+    return line if len(line) <= WIDTH else line[: WIDTH - 1] + "…"
 
 
 def row(version: str, resolution: str, tests: list[str]) -> tuple[bool, str]:
@@ -98,7 +148,8 @@ def row(version: str, resolution: str, tests: list[str]) -> tuple[bool, str]:
     if not python:
         return True, f"skipped: {MISSING}"
     try:
-        return tested(environment(python, f"{version}-{resolution}", resolution), tests)
+        name = f"{version}-{resolution}"
+        return tested(environment(python, name, resolution), PLACE / name, tests)
     except subprocess.CalledProcessError as error:
         return False, f"uv cannot make it (exit code {error.returncode}, see above)"
 

@@ -116,9 +116,9 @@ def stamps(cells: Sequence[str], order: str = "", european: bool = False) -> Sec
         with suppress(ValueError):  # written in another way, or in several: part by part, then
             return datetimes(pd.to_datetime(texts, format="ISO8601"))
     parts = texts.str.extract(_STAMP)
-    dates = parts["iso"].fillna(parts["local"])
+    dates = parts["iso"].combine_first(parts["local"])  # not fillna, which in pandas 2 makes floats of texts all missing
     day = dates.map(_days(dates.dropna().unique(), parts, order, european)).to_numpy(dtype=float)
-    clock = [parts[name].fillna(parts[f"only_{name}"]) for name in ("h", "min", "s", "half")]
+    clock = [parts[name].combine_first(parts[f"only_{name}"]) for name in ("h", "min", "s", "half")]
     hours, minutes = (pd.to_numeric(c).to_numpy(dtype=float) for c in clock[:2])
     seconds = pd.to_numeric(clock[2].str.replace(",", ".")).to_numpy(dtype=float)
     half = clock[3].str.lower().str[0]

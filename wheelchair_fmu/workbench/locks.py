@@ -28,7 +28,7 @@ class Locks:
             lock = self._locks.setdefault(session.id, Lock())
         with lock:
             try:
-                with FileLock(session.folder / ".lock", timeout=PATIENCE, mode=0o600, poll_interval=0.01):
+                with FileLock(session.folder / ".lock", mode=0o600).acquire(timeout=PATIENCE, poll_interval=0.01):
                     yield
             except Timeout:
                 raise Failure("another workbench has held this session for two minutes; end it, or try again") from None
