@@ -223,6 +223,11 @@ def _turns(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return np.stack([np.ones(len(x)), *(part(k * x) for k in ORDERS for part in (np.sin, np.cos))], axis=1)
 
 
+def _course(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """What warms or tires does so slowly; what changes sooner, and alike in all runs, is where they began on the floor."""
+    return np.stack([np.ones(len(x)), x, x * x], axis=1)
+
+
 def _same(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return np.ones((len(x), 1))
 
@@ -237,7 +242,7 @@ VARIABLES: dict[str, tuple[str, Basis]] = {
     "heading": ("goes with the heading", _bins),
     "push": ("goes with the push", _bins),
     "caster angle": ("goes with the casters' angle", _bins),
-    "time": ("goes with the time since the start of a run", _bins),
+    "time": ("grows or fades in the course of a run", _course),
     "left wheel's angle": ("comes back with every turn of the left wheel", _turns),
     "right wheel's angle": ("comes back with every turn of the right wheel", _turns),
 }
