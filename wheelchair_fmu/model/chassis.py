@@ -255,6 +255,15 @@ def kinematics(u, v, psi_dot, x_f, y_f, x_r, y_r):
 
 
 @stage(
+    define("v_xw", M_S, "velocity of each rear hub along its wheel", "+swap", REAR),
+    define("v_yw", M_S, "velocity of each rear hub across its wheel, to the right", "-swap", REAR),
+)
+def wheel_planes(v_xr, v_yr):
+    """The rear wheels point straight ahead."""
+    return v_xr, v_yr
+
+
+@stage(
     define("fall_x", RAD, "slope under the chair along the room's x"),
     define("fall_y", RAD, "slope under the chair along the room's y", "-"),
 )
@@ -285,11 +294,11 @@ def loads(m, g, x_f, x_r):
     define("F_y", N, "sum of all forces along y_m, gravity included", "-"),
     define("M_z", N_M, "sum of all moments about the vertical axis through the CM", "-"),
 )
-def forces(F_xr, F_s, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
+def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
     """Right-hand sides of (20), (21), (22)."""
     F_x = cs.sum1(F_xr) + cs.sum1(F_xf) + m * g_x  # (20)
-    F_y = cs.sum1(F_s) + cs.sum1(F_yf) + m * g_y  # (21)
-    M_z = moment(x_r, y_r, F_xr, F_s) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
+    F_y = cs.sum1(F_yr) + cs.sum1(F_yf) + m * g_y  # (21)
+    M_z = moment(x_r, y_r, F_xr, F_yr) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
     return F_x, F_y, M_z
 
 

@@ -29,6 +29,15 @@ def test_rolling_resistance_speed_decays_exponentially():
     np.testing.assert_allclose(result["chair.u"], np.exp(-k / MASS * result.time), rtol=1e-7)
 
 
+@pytest.mark.effect("rolling_resistance_speed")
+def test_a_spin_on_the_spot_is_slowed_by_its_rolling_wheels():
+    """All the weight on the rear axle of a top, each wheel with half of k at the arm t_r/2: I_z ψ'' = −k (t_r/2)² ψ'."""
+    k, spin = 50.0, 2.0
+    result = drive({**TOP, "start.psi_dot": spin, "effect.rolling_resistance_speed.k": k})
+    expected = spin * np.exp(-k * (T_R / 2) ** 2 / I_Z * result.time)
+    np.testing.assert_allclose(result["chair.psi_dot"], expected, rtol=1e-6)
+
+
 @pytest.mark.effect("aerodynamic_drag")
 @pytest.mark.parametrize("u", [3.0, -3.0])
 def test_air_slows_a_coasting_chair_by_the_quadratic_law(u):

@@ -164,18 +164,18 @@ def tyres(C_lambda, C_m_lambda, pressure, pressure_F, pressure_M):
     define("s", ONE, "direction of rolling: +1 forward, −1 in reverse, 0 at rest", "+swap", REAR),
     define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
 )
-def slip(v_xr, v_yr, v_eps):
+def slip(v_xw, v_yw, v_eps):
     """(11), (12) for either direction; v_y / ε, a damper, at rest."""
-    return direction(v_xr, v_eps), -cs.atan2(v_yr, magnitude(v_xr, v_eps))
+    return direction(v_xw, v_eps), -cs.atan2(v_yw, magnitude(v_xw, v_eps))
 
 
 @stage(
     define("s", ONE, "direction of rolling: always forward", "+swap", REAR),
     define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
 )
-def slip_paper(v_xr, v_yr):
+def slip_paper(v_xw, v_yw):
     """(11), (12) to the letter."""
-    return per_wheel(1.0), -v_yr / v_xr
+    return per_wheel(1.0), -v_yw / v_xw
 
 
 @stage(define("lam_F", RAD, "slip angle that force and torque follow", "-swap", REAR))
