@@ -15,7 +15,7 @@ PARAMETERS = (
     Parameter(
         "caster.trail",
         M,
-        "caster trail c in (8): the lever between a torque on the caster and its lateral force",
+        "caster trail c in (8): the lever between a torque on the caster and its lateral force, unless its own is longer",
         default=0.05,
         lower=1e-3,
         upper=0.5,
