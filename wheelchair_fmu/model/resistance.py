@@ -61,6 +61,12 @@ def rolling_resistance(f_f, f_r, rolling_factor, N_f, N_r):
     return f_f * rolling_factor * cs.fmax(N_f, 0), f_r * rolling_factor * cs.fmax(N_r, 0)
 
 
+@stage(define("D_w", N, "dry drag of each rear wheel", "+swap", REAR))
+def dry_drag(D_r):
+    """Nothing but its rolling resistance."""
+    return D_r
+
+
 @stage(
     define("d_f", N_S_M, "rolling resistance of each caster per speed", "+swap", FRONT),
     define("d_r", N_S_M, "rolling resistance of each rear wheel per speed", "+swap", REAR),
@@ -71,16 +77,16 @@ def viscous_resistance():
 
 
 @stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
-def rear_longitudinal(F_t, D_r, d_r, brake_rl, brake_rr, F_max, v_xw, drag_eps):
+def rear_longitudinal(F_t, D_w, d_r, brake_rl, brake_rr, F_max, v_xw, drag_eps):
     """Traction less what opposes the hub's motion, forward or backward."""
     braking = F_max * cs.vertcat(brake_rl, brake_rr)
-    return F_t - (D_r + braking) * grip(v_xw, v_xw * v_xw, drag_eps) - d_r * v_xw
+    return F_t - (D_w + braking) * grip(v_xw, v_xw * v_xw, drag_eps) - d_r * v_xw
 
 
 @stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
-def rear_longitudinal_paper(F_t, D_r, d_r, v_xw):
+def rear_longitudinal_paper(F_t, D_w, d_r, v_xw):
     """As in (20): always forward, so resistance is constant."""
-    return F_t - D_r - d_r * v_xw
+    return F_t - D_w - d_r * v_xw
 
 
 @stage(

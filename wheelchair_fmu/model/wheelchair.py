@@ -183,6 +183,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         *tyre_law.stages,
         common.tyre_forces,
         resistance.rolling_resistance,
+        resistance.dry_drag,
         resistance.viscous_resistance,
         resistance.rear_longitudinal_paper if paper else resistance.rear_longitudinal,
         resistance.rear_forces,
