@@ -83,6 +83,28 @@ def test_a_pressure_not_stated_is_as_good_as_one_stated():
 
 
 @pytest.mark.effect("inflation_pressure")
+@pytest.mark.parametrize("law", ["dugoff", "magic_formula"])
+def test_a_soft_tyre_turns_back_harder_under_every_law(law):
+    """As in Fig. 6.2, and at small slip as much as under the linear law, whether the pressure is stated or found."""
+    slip = 0.002
+    linear = slipping(slip, {"tyre.pressure": 2.0})["M_t"] / slipping(slip, {})["M_t"]
+    for soft in ({"tyre.pressure": 2.0}, {"effect.inflation_pressure.dp": -2.0}):
+        ratio = slipping(slip, {"tyre.law": law, **soft})["M_t"] / slipping(slip, {"tyre.law": law})["M_t"]
+        assert linear.min() > 1.5
+        np.testing.assert_allclose(ratio, linear, rtol=1e-3)
+
+
+@pytest.mark.effect("load_sensitivity")
+@pytest.mark.parametrize("law", ["linear", "dugoff"])
+def test_the_torque_follows_its_own_exponent_of_the_load(law):
+    """On twice the load 2^exponent_M as much torque, whatever the force does; slips so small that no law bends."""
+    exponents = {"effect.load_sensitivity.exponent": 0.7, "effect.load_sensitivity.exponent_M": 0.2, "tyre.law": law}
+    one, two = (slipping(1e-4, {**exponents, "chair.m": m}) for m in (MASS, 2 * MASS))
+    np.testing.assert_allclose(two["M_t"] / one["M_t"], 2**0.2, rtol=1e-9)
+    np.testing.assert_allclose(two["F_s"] / one["F_s"], 2**0.7, rtol=1e-9)
+
+
+@pytest.mark.effect("inflation_pressure")
 def test_half_the_pressure_makes_of_force_and_torque_what_the_rig_measured():
     """Figs. 6.1, 6.2: slopes at zero slip of tyre A at 400 N, by odd cubics through readings up to 3°."""
     table = np.genfromtxt(RIG, delimiter=",", skip_header=1, dtype=None, encoding="utf-8")

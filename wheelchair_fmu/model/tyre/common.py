@@ -83,7 +83,13 @@ PARAMETERS = (
         source="chosen: the paper's curves do not saturate",
     ),
     Parameter(
-        "tyre.c_p", M, "pneumatic trail c_p (Dugoff)", default=45.0 / 5038.0, lower=0.0, upper=0.2, source="C_mλ/C_λ of Table 1"
+        "tyre.c_p",
+        M,
+        "pneumatic trail c_p at 4 bar (Dugoff)",
+        default=45.0 / 5038.0,
+        lower=0.0,
+        upper=0.2,
+        source="C_mλ/C_λ of Table 1",
     ),
     Parameter(
         "tyre.force.C",
@@ -149,15 +155,22 @@ PARAMETERS = (
 
 
 @stage(
+    define("q_F", ONE, "cornering stiffness of each rear tyre beside C_λ", "+swap", REAR),
+    define("q_M", ONE, "self-aligning stiffness of each rear tyre beside C_mλ", "+swap", REAR),
+)
+def stiffening(pressure, pressure_F, pressure_M):
+    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
+    log_p = cs.log(pressure / RATED)
+    return per_wheel(cs.exp(pressure_F * log_p)), per_wheel(cs.exp(pressure_M * log_p))
+
+
+@stage(
     define("k_F", N_RAD, "cornering stiffness of each rear tyre", "+swap", REAR),
     define("k_M", N_M_RAD, "self-aligning stiffness of each rear tyre", "+swap", REAR),
     define("phi", RAD, "camber angle of each rear wheel, positive when it leans to the right", "-swap", REAR),
 )
-def tyres(C_lambda, C_m_lambda, pressure, pressure_F, pressure_M):
-    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
-    log_p = cs.log(pressure / RATED)
-    k_F, k_M = C_lambda * cs.exp(pressure_F * log_p), C_m_lambda * cs.exp(pressure_M * log_p)
-    return per_wheel(k_F), per_wheel(k_M), per_wheel(0.0)
+def tyres(C_lambda, C_m_lambda, q_F, q_M):
+    return C_lambda * q_F, C_m_lambda * q_M, per_wheel(0.0)
 
 
 @stage(
