@@ -122,6 +122,41 @@ def test_the_frame_stays_rigid_while_the_trunk_leans():
     np.testing.assert_allclose(leaning["v_yf"] - leaning["v_yr"], 0.8 * (A + B), rtol=1e-12)
 
 
+def turning_strokes(u: float):
+    """Strokes of 80 N in all, the left the stronger, in a turn to the right; a chair with a trunk that leans 30 mm."""
+    return run(
+        {**SMOOTH, "start.u": u, "start.psi_dot": 1.0, "start.v": B, "effect.trunk_motion.amplitude": 0.03},
+        {"push.F_rl": lambda t: 44 * np.sin(np.pi * t) ** 2, "push.F_rr": lambda t: 36 * np.sin(np.pi * t) ** 2},
+        T=2.0,
+        n=4001,
+    )
+
+
+@pytest.mark.effect("trunk_motion")
+@pytest.mark.parametrize("u", [1.0, -0.6])
+def test_instruments_on_the_frame_tell_one_story(u):
+    """A marker, an accelerometer and the wheels move as one rigid body, which is not the CM's."""
+    result = turning_strokes(u)
+    to_room = np.exp(1j * result["chair.psi"])  # x + i y, clockwise as ψ is
+    frame = result["sensor.x"] + 1j * result["sensor.y"]
+    velocity = np.gradient(frame, result.time, edge_order=2)
+    felt = np.gradient(velocity, result.time, edge_order=2) / to_room
+    inside = slice(100, -100)
+    off = result["sensor.a_x"] + 1j * result["sensor.a_y"] - felt
+    assert np.quantile(np.abs(off[inside]), 0.99) < 2e-4  # but for the moments in which drag turns round with a wheel
+    wheels = (result["sensor.wheel_speed_l"] + result["sensor.wheel_speed_r"]) / 2
+    np.testing.assert_allclose(wheels[inside], (velocity / to_room).real[inside], atol=2e-5)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_a_marker_on_the_frame_stays_behind_while_the_trunk_leans():
+    """80 N held for long lean the trunk by the amplitude: the frame is that much behind the CM, along the heading."""
+    values = {**SMOOTH, "start.u": 0.0, "start.psi": 2.0, "effect.trunk_motion.amplitude": 0.03}
+    now = run(values, {"push.F_rl": 40.0, "push.F_rr": 40.0}, T=3.0, n=31)
+    behind = now["chair.x"] - now["sensor.x"] + 1j * (now["chair.y"] - now["sensor.y"])
+    assert behind[-1] == pytest.approx(0.03 * np.exp(2j), rel=1e-6)
+
+
 @pytest.mark.effect("trunk_motion")
 def test_an_accelerometer_on_the_frame_adds_up_to_the_frames_speed():
     result = run(
