@@ -129,6 +129,7 @@ PARAMETERS = (
 )
 
 PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
+STEEPEST = 0.5  # rad, 1 in 1.8: far beyond what a chair stands on; a ramp has 0.08, and ISO 7176-2 tests up to 0.17
 INPUTS = (
     Input(
         "push.F_rl",
@@ -188,8 +189,8 @@ INPUTS = (
         "floor.slope_x",
         RAD,
         "slope of the floor along the room's x, positive where it falls towards +x",
-        lower=-1.0,
-        upper=1.0,
+        lower=-STEEPEST,
+        upper=STEEPEST,
         nominal=0.05,
     ),
     Input(
@@ -197,8 +198,8 @@ INPUTS = (
         RAD,
         "slope of the floor along the room's y, positive where it falls towards +y",
         mirror="-",
-        lower=-1.0,
-        upper=1.0,
+        lower=-STEEPEST,
+        upper=STEEPEST,
         nominal=0.05,
     ),
     Input(
@@ -271,21 +272,28 @@ def floor(slope_x, slope_y):
     return slope_x, slope_y
 
 
-@stage(define("g_x", M_S2, "gravity along x_m"), define("g_y", M_S2, "gravity along y_m", "-"))
+@stage(
+    define("g_x", M_S2, "gravity along x_m"),
+    define("g_y", M_S2, "gravity along y_m", "-"),
+    define("g_z", M_S2, "gravity into the floor"),
+)
 def gravity(fall_x, fall_y, psi, g):
-    return to_chair(g * cs.sin(fall_x), g * cs.sin(fall_y), psi)
+    """On a slope the floor carries the cosine of it."""
+    sin_x, sin_y = cs.sin(fall_x), cs.sin(fall_y)
+    along_x, along_y = to_chair(g * sin_x, g * sin_y, psi)
+    return along_x, along_y, g * cs.sqrt((1 - sin_x * sin_x) * (1 - sin_y * sin_y))
 
 
 @stage(
     define("N_f", N, "vertical load of each caster", "+swap", FRONT),
     define("N_r", N, "vertical load of each rear wheel", "+swap", REAR),
 )
-def loads(m, g, x_f, x_r):
+def loads(m, g_z, x_f, x_r):
     """Static equilibrium about the axles; a = x_f and b = −x_r."""
     a, b = x_f, -x_r
     return (
-        per_wheel(b * g * m / (2 * (a + b))),  # (18)
-        per_wheel(a * g * m / (2 * (a + b))),  # (19)
+        per_wheel(b * g_z * m / (2 * (a + b))),  # (18)
+        per_wheel(a * g_z * m / (2 * (a + b))),  # (19)
     )
 
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 from tests.model.effects.chair import I_Z, MASS, SMOOTH, T_F, T_R, TOP, A, B, G, run, snapshot
+from wheelchair_fmu.model.variant import Variant
 
 PUSH = {"push.F_rl": 20.0, "push.F_rr": 20.0}
 
@@ -36,7 +37,7 @@ def test_lateral_load_transfer_balances_the_overturning_moment():
     )
     assert abs(now["sensor.a_y"]) > 0.1
     assert overturning(now) == pytest.approx(MASS * now["sensor.a_y"] * h, rel=1e-9)
-    assert carried(now) == pytest.approx(MASS * G)
+    assert carried(now) == pytest.approx(MASS * G * np.cos(0.05), rel=1e-9)
 
 
 @pytest.mark.effect("longitudinal_load_transfer")
@@ -46,7 +47,7 @@ def test_longitudinal_load_transfer_balances_the_pitching_moment():
         now = snapshot({**start, "effect.longitudinal_load_transfer.h": h}, {**PUSH, "floor.slope_x": slope})
         assert abs(now["sensor.a_x"]) > 0.1
         assert pitching(now) == pytest.approx(MASS * now["sensor.a_x"] * h, rel=1e-9)
-        assert carried(now) == pytest.approx(MASS * G)
+        assert carried(now) == pytest.approx(MASS * G * np.cos(slope), rel=1e-9)
 
 
 @pytest.mark.effect("longitudinal_load_transfer")
@@ -75,6 +76,29 @@ def test_resistance_in_proportion_to_load_does_not_turn_a_coasting_chair():
     assert now["D_r"][1] > 1.1 * now["D_r"][0]
     assert now["M_z"] == pytest.approx(0, abs=1e-12)
     assert abs(uneven["M_z"]) > 0.01
+
+
+@pytest.mark.parametrize("rise", [0.0, 1 / 12, 0.5])
+def test_a_slope_carries_the_cosine_of_the_weight(rise):
+    """Along the chair's way, across it and in the diagonal; up to the steepest that is allowed, about 1 in 2."""
+    angle = np.arctan(rise)
+    for heading, slopes in ((0.0, ("floor.slope_x",)), (0.7, ("floor.slope_y",)), (2.0, ("floor.slope_x", "floor.slope_y"))):
+        now = snapshot({"start.psi": heading}, dict.fromkeys(slopes, angle))
+        assert carried(now) == pytest.approx(MASS * G * np.cos(angle) ** len(slopes), rel=1e-12)
+        assert sum(now["N_r"]) * B == pytest.approx(sum(now["N_f"]) * A, rel=1e-12)
+    across = snapshot({"effect.floor_cross_slope.theta": 0.1}, {"floor.slope_x": angle})
+    assert carried(across) == pytest.approx(MASS * G * np.cos(angle) * np.cos(0.1), rel=1e-12)
+
+
+def test_no_slope_that_is_allowed_takes_the_loads_away():
+    """What the inputs and both effects allow together: the floor still carries, and no number is lost."""
+    steepest = {i.name: i.upper for i in Variant().model().inputs if i.name.startswith("floor.slope")}
+    assert all(0.3 < slope < 0.6 for slope in steepest.values())
+    now = snapshot(
+        {"effect.floor_slope.x": 0.3, "effect.floor_slope.y": 0.3, "effect.floor_cross_slope.theta": 0.3, "start.psi": 0.8},
+        steepest,
+    )
+    assert min(*now["N_r"], *now["N_f"]) > 50
 
 
 @pytest.mark.effect("wheel_inertia")
