@@ -93,7 +93,7 @@ def test_held_by_rolling_resistance_it_creeps_less_than_a_tenth_of_a_millimetre_
 def test_it_rolls_where_the_slope_pulls_harder():
     result = run({"start.u": 0.0}, {"floor.slope_x": 0.03}, T=5)
     resistance = (0.012 * 0.25 + 0.020 * 0.20) / 0.45
-    assert result["chair.u"][-1] == pytest.approx(5 * 9.81 * (np.sin(0.03) - resistance), rel=1e-3)
+    assert result["chair.u"][-1] == pytest.approx(5 * 9.81 * (np.sin(0.03) - resistance * np.cos(0.03)), rel=1e-4)
 
 
 def test_brakes_hold_on_a_ramp():

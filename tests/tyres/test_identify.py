@@ -126,12 +126,12 @@ def test_the_effects_give_the_stiffnesses_that_were_measured(disc):
     scale = {c.to: c.law for c in inflation_pressure.EFFECT.contributions}
     at = {(f.condition.tyre, f.condition.pressure, f.condition.load): f for f in disc.conditions if f.condition.speed > 1}
     soft, reference, heavy = (at["A", p, N] for p, N in ((2, 400), (4, 400), (4, 600)))
-    for to, name, channel in (("k_F", "tyre.pressure_F", FORCE), ("k_M", "tyre.pressure_M", TORQUE)):
+    for to, name, channel in (("q_F", "tyre.pressure_F", FORCE), ("q_M", "tyre.pressure_M", TORQUE)):
         factor = float(scale[to](-2.0, 4.0, DEFAULT[name]))
         measured = soft.magic(SLIP, channel).K.value / reference.magic(SLIP, channel).K.value
         assert factor == pytest.approx(measured, rel=0.05)
     scale = {c.to: c.law for c in load_sensitivity.EFFECT.contributions}
-    for to, name, channel in (("k_F", "C_lambda", FORCE), ("k_M", "C_m_lambda", TORQUE)):
+    for to, name, channel in (("q_F", "C_lambda", FORCE), ("q_M", "C_m_lambda", TORQUE)):
         exponent = disc.across["A"].laws[name].exponents["load"].value
         measured = heavy.K(SLIP, channel).value / reference.K(SLIP, channel).value
         assert float(scale[to](exponent, 600.0, 400.0)) == pytest.approx(measured, rel=0.02)

@@ -149,6 +149,7 @@ PARAMETERS = (
 DEFAULTS = {p.name: p.default for p in PARAMETERS}  # for whoever needs a size before there is a model
 
 PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
+STEEPEST = 0.5  # rad, 1 in 1.8: far beyond what a chair stands on; a ramp has 0.08, and ISO 7176-2 tests up to 0.17
 INPUTS = (
     Input(
         "push.F_rl",
@@ -208,8 +209,8 @@ INPUTS = (
         "floor.slope_x",
         RAD,
         "slope of the floor along the room's x, positive where it falls towards +x",
-        lower=-1.0,
-        upper=1.0,
+        lower=-STEEPEST,
+        upper=STEEPEST,
         nominal=0.05,
     ),
     Input(
@@ -217,8 +218,8 @@ INPUTS = (
         RAD,
         "slope of the floor along the room's y, positive where it falls towards +y",
         mirror="-",
-        lower=-1.0,
-        upper=1.0,
+        lower=-STEEPEST,
+        upper=STEEPEST,
         nominal=0.05,
     ),
     Input(
@@ -275,6 +276,15 @@ def kinematics(u, v, psi_dot, x_f, y_f, x_r, y_r):
 
 
 @stage(
+    define("v_xw", M_S, "velocity of each rear hub along its wheel", "+swap", REAR),
+    define("v_yw", M_S, "velocity of each rear hub across its wheel, to the right", "-swap", REAR),
+)
+def wheel_planes(v_xr, v_yr):
+    """The rear wheels point straight ahead."""
+    return v_xr, v_yr
+
+
+@stage(
     define("fall_x", RAD, "slope under the chair along the room's x"),
     define("fall_y", RAD, "slope under the chair along the room's y", "-"),
 )
@@ -282,21 +292,28 @@ def floor(slope_x, slope_y):
     return slope_x, slope_y
 
 
-@stage(define("g_x", M_S2, "gravity along x_m"), define("g_y", M_S2, "gravity along y_m", "-"))
+@stage(
+    define("g_x", M_S2, "gravity along x_m"),
+    define("g_y", M_S2, "gravity along y_m", "-"),
+    define("g_z", M_S2, "gravity into the floor"),
+)
 def gravity(fall_x, fall_y, psi, g):
-    return to_chair(g * cs.sin(fall_x), g * cs.sin(fall_y), psi)
+    """On a slope the floor carries the cosine of it."""
+    sin_x, sin_y = cs.sin(fall_x), cs.sin(fall_y)
+    along_x, along_y = to_chair(g * sin_x, g * sin_y, psi)
+    return along_x, along_y, g * cs.sqrt((1 - sin_x * sin_x) * (1 - sin_y * sin_y))
 
 
 @stage(
     define("N_f", N, "vertical load of each caster", "+swap", FRONT),
     define("N_r", N, "vertical load of each rear wheel", "+swap", REAR),
 )
-def loads(m, g, x_f, x_r):
+def loads(m, g_z, x_f, x_r):
     """Static equilibrium about the axles; a = x_f and b = −x_r."""
     a, b = x_f, -x_r
     return (
-        per_wheel(b * g * m / (2 * (a + b))),  # (18)
-        per_wheel(a * g * m / (2 * (a + b))),  # (19)
+        per_wheel(b * g_z * m / (2 * (a + b))),  # (18)
+        per_wheel(a * g_z * m / (2 * (a + b))),  # (19)
     )
 
 
@@ -305,11 +322,11 @@ def loads(m, g, x_f, x_r):
     define("F_y", N, "sum of all forces along y_m, gravity included", "-"),
     define("M_z", N_M, "sum of all moments about the vertical axis through the CM", "-"),
 )
-def forces(F_xr, F_s, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
+def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
     """Right-hand sides of (20), (21), (22)."""
     F_x = cs.sum1(F_xr) + cs.sum1(F_xf) + m * g_x  # (20)
-    F_y = cs.sum1(F_s) + cs.sum1(F_yf) + m * g_y  # (21)
-    M_z = moment(x_r, y_r, F_xr, F_s) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
+    F_y = cs.sum1(F_yr) + cs.sum1(F_yf) + m * g_y  # (21)
+    M_z = moment(x_r, y_r, F_xr, F_yr) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
     return F_x, F_y, M_z
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ..quantities import FRONT, M_S, ONE, REAR, N, Parameter
+from ..quantities import FRONT, M_S, N_S_M, ONE, REAR, N, Parameter
+from .chassis import per_wheel
 from .smooth import grip
 from .stage import define, stage
 
@@ -60,13 +61,38 @@ def rolling_resistance(f_f, f_r, rolling_factor, N_f, N_r):
     return f_f * rolling_factor * cs.fmax(N_f, 0), f_r * rolling_factor * cs.fmax(N_r, 0)
 
 
-@stage(define("F_xr", N, "longitudinal force of each rear wheel on the chair", "+swap", REAR))
-def rear_longitudinal(F_t, D_r, brake_rl, brake_rr, F_max, v_xr, drag_eps):
+@stage(define("D_w", N, "dry drag of each rear wheel", "+swap", REAR))
+def dry_drag(D_r):
+    """Nothing but its rolling resistance."""
+    return D_r
+
+
+@stage(
+    define("d_f", N_S_M, "rolling resistance of each caster per speed", "+swap", FRONT),
+    define("d_r", N_S_M, "rolling resistance of each rear wheel per speed", "+swap", REAR),
+)
+def viscous_resistance():
+    """None: (17) does not depend on speed."""
+    return per_wheel(0.0), per_wheel(0.0)
+
+
+@stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
+def rear_longitudinal(F_t, D_w, d_r, brake_rl, brake_rr, F_max, v_xw, drag_eps):
     """Traction less what opposes the hub's motion, forward or backward."""
-    return F_t - (D_r + F_max * cs.vertcat(brake_rl, brake_rr)) * grip(v_xr, v_xr * v_xr, drag_eps)
+    braking = F_max * cs.vertcat(brake_rl, brake_rr)
+    return F_t - (D_w + braking) * grip(v_xw, v_xw * v_xw, drag_eps) - d_r * v_xw
 
 
-@stage(define("F_xr", N, "longitudinal force of each rear wheel on the chair", "+swap", REAR))
-def rear_longitudinal_paper(F_t, D_r):
+@stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
+def rear_longitudinal_paper(F_t, D_w, d_r, v_xw):
     """As in (20): always forward, so resistance is constant."""
-    return F_t - D_r
+    return F_t - D_w - d_r * v_xw
+
+
+@stage(
+    define("F_xr", N, "force of each rear wheel on the chair along x_m", "+swap", REAR),
+    define("F_yr", N, "force of each rear wheel on the chair along y_m", "-swap", REAR),
+)
+def rear_forces(F_w, F_s):
+    """The rear wheels point straight ahead."""
+    return F_w, F_s

@@ -83,7 +83,7 @@ class Row:
     state: State
     mass: Law
     rate: Law
-    start: Law | None = None  # the value at the start, from parameters and start values; 0 unless given
+    start: Law | None = None  # the value at the start, from any quantity as it is at the start; 0 unless given
 
 
 @dataclass(frozen=True)

@@ -173,16 +173,21 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.geometry,
         chassis.inertias,
         chassis.kinematics,
+        chassis.wheel_planes,
         chassis.floor,
         chassis.gravity,
         chassis.loads,
+        common.stiffening,
         common.tyres,
         common.slip_paper if paper else common.slip,
         common.followed_slip,
         *tyre_law.stages,
         common.tyre_forces,
         resistance.rolling_resistance,
+        resistance.dry_drag,
+        resistance.viscous_resistance,
         resistance.rear_longitudinal_paper if paper else resistance.rear_longitudinal,
+        resistance.rear_forces,
         *caster_law.stages,
         chassis.forces,
         chassis.balance,
@@ -305,6 +310,7 @@ class _Assembly:
         w = cs.vertcat(*(self.known[q.symbol] for q in chassis.INPUTS))
         rows = [*map(self._row, self.rows), *map(self._foreseen_row, self.foreseen)]
         mass, f, start = (cs.vertcat(*column) for column in zip(*rows, strict=True))
+        start = _at_the_start(x, start)
         if cs.depends_on(mass, cs.vertcat(x, w)):
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
         states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
@@ -358,6 +364,16 @@ class _Assembly:
             for row, _ in self.rows[len(chassis.ROWS) :]
             for i, name in enumerate(row.state.names)
         )
+
+
+def _at_the_start(x: cs.SX, start: cs.SX) -> cs.SX:
+    """Starts as functions of parameters and inputs alone: what they read of the motion is that of the start itself."""
+    given = start
+    for _ in range(x.numel()):
+        if not cs.depends_on(start, x):
+            return start
+        start = cs.substitute(start, x, given)
+    raise ModelError("the starts of some states read one another in a circle; write one of them with parameters only")
 
 
 def _component_mirror(pair: State, i: int) -> str:

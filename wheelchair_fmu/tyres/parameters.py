@@ -70,6 +70,8 @@ def chair(found: Identified, fit: ConditionFit, law: str) -> Variant:
             exponent = values[name] = exponents[stiffness]["pressure"].value
         if f"tyre.{stiffness}" in values:
             values[f"tyre.{stiffness}"] *= (RATED / fit.condition.pressure) ** exponent
+        if "tyre.c_p" in values:  # the trail is the torque's stiffness over the force's
+            values["tyre.c_p"] *= (RATED / fit.condition.pressure) ** (exponent if stiffness == "C_m_lambda" else -exponent)
     if "load" in exponents.get("C_lambda", {}):
         values["effect.load_sensitivity.exponent"] = exponents["C_lambda"]["load"].value
         values["effect.load_sensitivity.N_ref"] = fit.condition.load

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 from tests.model.effects.chair import I_Z, MASS, SMOOTH, T_F, T_R, TOP, A, B, G, run, snapshot
+from wheelchair_fmu.model.variant import Variant
 
 PUSH = {"push.F_rl": 20.0, "push.F_rr": 20.0}
 
@@ -36,7 +37,7 @@ def test_lateral_load_transfer_balances_the_overturning_moment():
     )
     assert abs(now["sensor.a_y"]) > 0.1
     assert overturning(now) == pytest.approx(MASS * now["sensor.a_y"] * h, rel=1e-9)
-    assert carried(now) == pytest.approx(MASS * G)
+    assert carried(now) == pytest.approx(MASS * G * np.cos(0.05), rel=1e-9)
 
 
 @pytest.mark.effect("longitudinal_load_transfer")
@@ -46,7 +47,7 @@ def test_longitudinal_load_transfer_balances_the_pitching_moment():
         now = snapshot({**start, "effect.longitudinal_load_transfer.h": h}, {**PUSH, "floor.slope_x": slope})
         assert abs(now["sensor.a_x"]) > 0.1
         assert pitching(now) == pytest.approx(MASS * now["sensor.a_x"] * h, rel=1e-9)
-        assert carried(now) == pytest.approx(MASS * G)
+        assert carried(now) == pytest.approx(MASS * G * np.cos(slope), rel=1e-9)
 
 
 @pytest.mark.effect("longitudinal_load_transfer")
@@ -75,6 +76,29 @@ def test_resistance_in_proportion_to_load_does_not_turn_a_coasting_chair():
     assert now["D_r"][1] > 1.1 * now["D_r"][0]
     assert now["M_z"] == pytest.approx(0, abs=1e-12)
     assert abs(uneven["M_z"]) > 0.01
+
+
+@pytest.mark.parametrize("rise", [0.0, 1 / 12, 0.5])
+def test_a_slope_carries_the_cosine_of_the_weight(rise):
+    """Along the chair's way, across it and in the diagonal; up to the steepest that is allowed, about 1 in 2."""
+    angle = np.arctan(rise)
+    for heading, slopes in ((0.0, ("floor.slope_x",)), (0.7, ("floor.slope_y",)), (2.0, ("floor.slope_x", "floor.slope_y"))):
+        now = snapshot({"start.psi": heading}, dict.fromkeys(slopes, angle))
+        assert carried(now) == pytest.approx(MASS * G * np.cos(angle) ** len(slopes), rel=1e-12)
+        assert sum(now["N_r"]) * B == pytest.approx(sum(now["N_f"]) * A, rel=1e-12)
+    across = snapshot({"effect.floor_cross_slope.theta": 0.1}, {"floor.slope_x": angle})
+    assert carried(across) == pytest.approx(MASS * G * np.cos(angle) * np.cos(0.1), rel=1e-12)
+
+
+def test_no_slope_that_is_allowed_takes_the_loads_away():
+    """What the inputs and both effects allow together: the floor still carries, and no number is lost."""
+    steepest = {i.name: i.upper for i in Variant().model().inputs if i.name.startswith("floor.slope")}
+    assert all(0.3 < slope < 0.6 for slope in steepest.values())
+    now = snapshot(
+        {"effect.floor_slope.x": 0.3, "effect.floor_slope.y": 0.3, "effect.floor_cross_slope.theta": 0.3, "start.psi": 0.8},
+        steepest,
+    )
+    assert min(*now["N_r"], *now["N_f"]) > 50
 
 
 @pytest.mark.effect("wheel_inertia")
@@ -120,6 +144,41 @@ def test_the_frame_stays_rigid_while_the_trunk_leans():
     for velocity, arms in ((leaning["v_xf"], T_F / 2), (leaning["v_xr"], T_R / 2)):
         np.testing.assert_allclose(velocity, 1.0 - lean_rate + 0.8 * arms * np.array([1, -1]), rtol=1e-12)
     np.testing.assert_allclose(leaning["v_yf"] - leaning["v_yr"], 0.8 * (A + B), rtol=1e-12)
+
+
+def turning_strokes(u: float):
+    """Strokes of 80 N in all, the left the stronger, in a turn to the right; a chair with a trunk that leans 30 mm."""
+    return run(
+        {**SMOOTH, "start.u": u, "start.psi_dot": 1.0, "start.v": B, "effect.trunk_motion.amplitude": 0.03},
+        {"push.F_rl": lambda t: 44 * np.sin(np.pi * t) ** 2, "push.F_rr": lambda t: 36 * np.sin(np.pi * t) ** 2},
+        T=2.0,
+        n=4001,
+    )
+
+
+@pytest.mark.effect("trunk_motion")
+@pytest.mark.parametrize("u", [1.0, -0.6])
+def test_instruments_on_the_frame_tell_one_story(u):
+    """A marker, an accelerometer and the wheels move as one rigid body, which is not the CM's."""
+    result = turning_strokes(u)
+    to_room = np.exp(1j * result["chair.psi"])  # x + i y, clockwise as ψ is
+    frame = result["sensor.x"] + 1j * result["sensor.y"]
+    velocity = np.gradient(frame, result.time, edge_order=2)
+    felt = np.gradient(velocity, result.time, edge_order=2) / to_room
+    inside = slice(100, -100)
+    off = result["sensor.a_x"] + 1j * result["sensor.a_y"] - felt
+    assert np.quantile(np.abs(off[inside]), 0.99) < 2e-4  # but for the moments in which drag turns round with a wheel
+    wheels = (result["sensor.wheel_speed_l"] + result["sensor.wheel_speed_r"]) / 2
+    np.testing.assert_allclose(wheels[inside], (velocity / to_room).real[inside], atol=2e-5)
+
+
+@pytest.mark.effect("trunk_motion")
+def test_a_marker_on_the_frame_stays_behind_while_the_trunk_leans():
+    """80 N held for long lean the trunk by the amplitude: the frame is that much behind the CM, along the heading."""
+    values = {**SMOOTH, "start.u": 0.0, "start.psi": 2.0, "effect.trunk_motion.amplitude": 0.03}
+    now = run(values, {"push.F_rl": 40.0, "push.F_rr": 40.0}, T=3.0, n=31)
+    behind = now["chair.x"] - now["sensor.x"] + 1j * (now["chair.y"] - now["sensor.y"])
+    assert behind[-1] == pytest.approx(0.03 * np.exp(2j), rel=1e-6)
 
 
 @pytest.mark.effect("trunk_motion")

@@ -80,9 +80,9 @@ def test_an_accelerometer_beside_the_cm_feels_its_own_path():
 @pytest.mark.effect("accelerometer_tilt")
 @pytest.mark.parametrize(("roll", "pitch"), [(0.2, 0.0), (0.0, 0.3), (-0.3, 0.2)])
 def test_a_tilted_accelerometer_reads_along_its_own_axes(roll, pitch):
-    """The box is rolled, then pitched about its own axle; z points down, so the floor's support is felt as −g along it."""
+    """The box is rolled, then pitched about its own axle; z points down, so the floor's support is felt as −g cos along it."""
     result = lively({"accelerometer_tilt.roll": roll, "accelerometer_tilt.pitch": pitch})
-    felt = np.column_stack([specific_force(result), np.full(2001, -G)])
+    felt = np.column_stack([specific_force(result), np.full(2001, -G * np.cos(SLOPE))])
     box = Rotation.from_euler("XY", [roll, pitch])
     np.testing.assert_allclose(readings(result)[SETTLED], box.inv().apply(felt)[SETTLED, :2], atol=2e-6)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, I_Z, MASS, SMOOTH, T_R, TOP, B, G, run
+from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, I_Z, MASS, SMOOTH, T_R, TOP, A, B, G, run, snapshot
 
 ALL = (
     "aerodynamic_drag",
@@ -27,6 +27,15 @@ def test_rolling_resistance_speed_decays_exponentially():
     k = 20.0
     result = drive({**SMOOTH, "effect.rolling_resistance_speed.k": k})
     np.testing.assert_allclose(result["chair.u"], np.exp(-k / MASS * result.time), rtol=1e-7)
+
+
+@pytest.mark.effect("rolling_resistance_speed")
+def test_a_spin_on_the_spot_is_slowed_by_its_rolling_wheels():
+    """All the weight on the rear axle of a top, each wheel with half of k at the arm t_r/2: I_z ψ'' = −k (t_r/2)² ψ'."""
+    k, spin = 50.0, 2.0
+    result = drive({**TOP, "start.psi_dot": spin, "effect.rolling_resistance_speed.k": k})
+    expected = spin * np.exp(-k * (T_R / 2) ** 2 / I_Z * result.time)
+    np.testing.assert_allclose(result["chair.psi_dot"], expected, rtol=1e-6)
 
 
 @pytest.mark.effect("aerodynamic_drag")
@@ -88,8 +97,32 @@ def test_a_wheel_that_rolls_harder_is_held_by_as_much_more_push():
     assert free["chair.psi"][100] < -0.01
     np.testing.assert_allclose(free["chair.u"][:2], even["chair.u"][:2], rtol=1e-6)
     held = drive(values, {"push.F_rl": D / 2, "push.F_rr": -D / 2})
-    np.testing.assert_allclose(held["chair.u"], even["chair.u"], rtol=1e-12)
+    np.testing.assert_allclose(held["chair.u"], even["chair.u"], rtol=1e-5)
     np.testing.assert_allclose(held["chair.psi"], 0, atol=1e-12)
+
+
+@pytest.mark.effect("rolling_resistance_asymmetry")
+@pytest.mark.parametrize("D", [1.5, 5.0, 30.0, -50.0])
+def test_however_unlike_no_wheel_drives(D):
+    """The wheels differ by D; both share the chair's own 5.2 N until one has none left, and then the other has all of D."""
+    now = snapshot({"effect.rolling_resistance_asymmetry.D": D})
+    left, right = now["F_t"] - now["F_w"]
+    own = 2 * 0.012 * MASS * G * A / (A + B) / 2
+    assert left - right == pytest.approx(D, rel=1e-9)
+    assert left + right == pytest.approx(max(own, abs(D)), rel=1e-4)
+    assert min(left, right) >= 0
+
+
+@pytest.mark.effect("rolling_resistance_asymmetry")
+@pytest.mark.parametrize("start", [(0.02, 0.0), (0.0, 0.1), (-0.5, 1.0)])
+def test_a_wheel_that_rolls_harder_takes_energy_from_any_motion(start):
+    u, r = start
+    result = drive(
+        {"tyre.C_m_lambda": 0.0, "start.u": u, "start.psi_dot": r, "effect.rolling_resistance_asymmetry.D": 30.0}, T=3.0
+    )
+    energy = 0.5 * MASS * (result["chair.u"] ** 2 + result["chair.v"] ** 2) + 0.5 * I_Z * result["chair.psi_dot"] ** 2
+    assert np.diff(energy).max() < 1e-9 * energy[0] + 1e-12
+    assert energy[-1] < 0.5 * energy[0]
 
 
 @pytest.mark.effect("floor_slope")

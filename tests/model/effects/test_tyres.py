@@ -83,6 +83,28 @@ def test_a_pressure_not_stated_is_as_good_as_one_stated():
 
 
 @pytest.mark.effect("inflation_pressure")
+@pytest.mark.parametrize("law", ["dugoff", "magic_formula"])
+def test_a_soft_tyre_turns_back_harder_under_every_law(law):
+    """As in Fig. 6.2, and at small slip as much as under the linear law, whether the pressure is stated or found."""
+    slip = 0.002
+    linear = slipping(slip, {"tyre.pressure": 2.0})["M_t"] / slipping(slip, {})["M_t"]
+    for soft in ({"tyre.pressure": 2.0}, {"effect.inflation_pressure.dp": -2.0}):
+        ratio = slipping(slip, {"tyre.law": law, **soft})["M_t"] / slipping(slip, {"tyre.law": law})["M_t"]
+        assert linear.min() > 1.5
+        np.testing.assert_allclose(ratio, linear, rtol=1e-3)
+
+
+@pytest.mark.effect("load_sensitivity")
+@pytest.mark.parametrize("law", ["linear", "dugoff"])
+def test_the_torque_follows_its_own_exponent_of_the_load(law):
+    """On twice the load 2^exponent_M as much torque, whatever the force does; slips so small that no law bends."""
+    exponents = {"effect.load_sensitivity.exponent": 0.7, "effect.load_sensitivity.exponent_M": 0.2, "tyre.law": law}
+    one, two = (slipping(1e-4, {**exponents, "chair.m": m}) for m in (MASS, 2 * MASS))
+    np.testing.assert_allclose(two["M_t"] / one["M_t"], 2**0.2, rtol=1e-9)
+    np.testing.assert_allclose(two["F_s"] / one["F_s"], 2**0.7, rtol=1e-9)
+
+
+@pytest.mark.effect("inflation_pressure")
 def test_half_the_pressure_makes_of_force_and_torque_what_the_rig_measured():
     """Figs. 6.1, 6.2: slopes at zero slip of tyre A at 400 N, by odd cubics through readings up to 3°."""
     table = np.genfromtxt(RIG, delimiter=",", skip_header=1, dtype=None, encoding="utf-8")
@@ -107,6 +129,59 @@ def test_relaxation_length_adds_the_string_models_eigenvalue():
     found = lateral_modes(sigma, u)
     for value in (*expected, -u / sigma):  # left and right tyre alike: against each other they only forget, −u/σ
         assert np.abs(found - value).min() < 1e-8 * abs(value)
+
+
+def energies(result, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+    """The chair's kinetic energy, and the work that the deflections ∫ C atan(y/σ) dy of both tyres have taken."""
+    u, v, r = (result[f"chair.{name}"] for name in ("u", "v", "psi_dot"))
+    ways = [sigma * result[f"effect.relaxation_length.lagged_slip.{side}"] for side in ("rl", "rr")]
+    wound = [C_LAMBDA * (y * np.arctan(y / sigma) - sigma / 2 * np.log1p((y / sigma) ** 2)) for y in ways]
+    return 0.5 * MASS * (u**2 + v**2) + 0.5 * I_Z * r**2, np.sum(wound, axis=0)
+
+
+SLIDES = [(0.0, 0.0, 0.5), (0.0, 0.002, 0.0), (0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.1, -1.0, 2.0), (-1.0, 0.3, 1.0)]
+
+
+@pytest.mark.effect("relaxation_length")
+@pytest.mark.parametrize(("u", "v", "r"), SLIDES)
+@pytest.mark.parametrize("sigma", [0.05, 0.3])
+def test_a_deflected_tyre_gives_back_no_more_than_it_was_given(u, v, r, sigma):
+    """From rest, spinning, sliding sideways, backward: energy never rises, and hardly any is in the tyres to begin with."""
+    start = {"start.u": u, "start.v": v, "start.psi_dot": r}
+    result = run({**SMOOTH, "tyre.C_m_lambda": 0.0, **start, "effect.relaxation_length.sigma": sigma}, T=2.0, n=2001)
+    chair, tyres = energies(result, sigma)
+    assert tyres[0] < 0.03 * chair[0]
+    assert chair.max() < 1.02 * chair[0]
+    assert np.diff(chair + tyres).max() < 1e-8 * chair[0] + 1e-9  # J; steps are good to a relative 1e-9 of 1 m/s
+
+
+@pytest.mark.effect("relaxation_length")
+def test_a_start_that_is_known_to_a_millimetre_a_second_is_no_blow():
+    """At rest but for v = 2 mm/s or ψ' = 0.01 rad/s: tyres that have not rolled hold nothing yet."""
+    for start in ({"start.v": 0.002}, {"start.psi_dot": 0.01}):
+        now = snapshot({**SMOOTH, "start.u": 0.0, **start, "effect.relaxation_length.sigma": 0.1})
+        assert np.abs(now["F_s"]).max() < 1.0
+        assert abs(now["sensor.a_y"]) < 0.02
+
+
+@pytest.mark.effect("relaxation_length")
+@pytest.mark.parametrize("u", [1.0, -1.0])
+@pytest.mark.parametrize("mode", ["free", "prescribed"])
+def test_a_chair_that_starts_in_a_turn_starts_with_the_slips_of_its_wheels(u, mode):
+    """Each hub's own, at the speed that holds, as if it had rolled for long: nothing is left to catch up with."""
+    v, r = 0.115, 0.6  # all but b ψ', as in a turn: m u ψ' of side force
+    held = {"speed.mode": mode, "start.u": u if mode == "free" else 0.0, "speed.u": u, "start.v": v, "start.psi_dot": r}
+    now = snapshot({**SMOOTH, **held, "effect.relaxation_length.sigma": 0.1})
+    hubs = np.abs([u + r * 0.55 / 2, u - r * 0.55 / 2])
+    np.testing.assert_allclose(now["lam_F"], np.arctan(-(v - B * r) / hubs), rtol=1e-3)
+    np.testing.assert_allclose(now["lam_F"], now["lam"], rtol=1e-3)
+
+
+@pytest.mark.effect("relaxation_length")
+def test_without_length_a_tyre_follows_at_once_in_any_slide():
+    for u, v in ((1.0, 0.01), (0.3, -0.9), (-0.5, 2.0)):
+        now = snapshot({"start.u": u, "start.v": v, "effect.relaxation_length.sigma": 0.0})
+        np.testing.assert_allclose(now["lam_F"], now["lam"], rtol=1e-12)
 
 
 @pytest.mark.effect("relaxation_length")
@@ -181,6 +256,25 @@ def test_parallel_wheels_that_point_aside_roll_where_they_point(u):
     np.testing.assert_allclose([*now["lam"], now["u'"], now["v'"], now["psi_dot'"]], 0, atol=1e-7)
     freed = snapshot({**SMOOTH, **toe(tau, tau), "start.u": u})  # straight ahead it is pushed that way
     assert freed["v'"] * u > 0
+
+
+@pytest.mark.effect("toe_misalignment")
+@pytest.mark.parametrize("tau", [0.015, 0.2])
+def test_wheels_that_point_aside_push_where_they_point(tau):
+    """At rest, of two wheels alike: m v' = 2 F sin τ, m u' = 2 F cos τ, and the axle is b behind the CM."""
+    F = 7.2
+    now = snapshot({**SMOOTH, **toe(tau, tau), "start.u": 0.0}, {"push.F_rl": F, "push.F_rr": F})
+    assert now["v'"] == pytest.approx(2 * F * np.sin(tau) / MASS, rel=1e-12)
+    assert now["u'"] == pytest.approx(2 * F * np.cos(tau) / MASS, rel=1e-12)
+    assert now["psi_dot'"] == pytest.approx(-B * 2 * F * np.sin(tau) / I_Z, rel=1e-12)
+
+
+@pytest.mark.effect("toe_misalignment")
+@pytest.mark.parametrize(("u", "v", "r"), [(1.0, 0.1, 0.3), (0.05, -0.4, 1.0), (0.0, 0.3, -2.0), (-0.7, 0.1, 0.9)])
+def test_wheels_that_point_aside_never_drive_the_chair(u, v, r):
+    """However far, their forces stand in their own planes, in which they roll and slip."""
+    now = snapshot({**toe(0.2, -0.15), "tyre.C_m_lambda": 0.0, "start.u": u, "start.v": v, "start.psi_dot": r})
+    assert MASS * (u * now["u'"] + v * now["v'"]) + I_Z * r * now["psi_dot'"] < 0
 
 
 @pytest.mark.effect("toe_misalignment")

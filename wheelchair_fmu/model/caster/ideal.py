@@ -15,7 +15,7 @@ PARAMETERS = (
     Parameter(
         "caster.trail",
         M,
-        "caster trail c in (8): the lever between a torque on the caster and its lateral force",
+        "caster trail c in (8): the lever between a torque on the caster and its lateral force, unless its own is longer",
         default=0.05,
         lower=1e-3,
         upper=0.5,
@@ -40,13 +40,13 @@ def bearing(delta):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f, M_w, trail, drag_eps):
+def casters(v_xf, v_yf, D_f, d_f, M_w, trail, drag_eps):
     """Rolling resistance against the pivot's velocity, M_w / c across it."""
     speed_squared = v_xf * v_xf + v_yf * v_yf
     speed = cs.sqrt(speed_squared + drag_eps * drag_eps)
     lateral = M_w / trail / speed  # (8)
-    F_xf = -D_f * grip(v_xf, speed_squared, drag_eps) - lateral * v_yf
-    F_yf = -D_f * grip(v_yf, speed_squared, drag_eps) + lateral * v_xf
+    F_xf = -D_f * grip(v_xf, speed_squared, drag_eps) - d_f * v_xf - lateral * v_yf
+    F_yf = -D_f * grip(v_yf, speed_squared, drag_eps) - d_f * v_yf + lateral * v_xf
     return F_xf, F_yf, -M_w
 
 

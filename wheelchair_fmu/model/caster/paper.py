@@ -12,9 +12,10 @@ from ..stage import Alternative, define, stage
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f):
+def casters(v_xf, v_yf, D_f, d_f):
     delta = v_yf / v_xf  # (9), (10)
-    return delta, -D_f, -D_f * delta, 0 * D_f  # the drag terms of (20), (21)
+    drag = D_f + d_f * v_xf
+    return delta, -drag, -drag * delta, 0 * D_f  # the drag terms of (20), (21)
 
 
 LAW = Alternative("paper", (casters,))

@@ -5,30 +5,34 @@ With the trail c along the caster's heading δ, the patch has no sideways veloci
     c δ' = v_y cos δ − v_x sin δ − c ψ'          (v_x, v_y of the pivot, as in (9), (10))
 
 which tends to the ideal caster as c → 0 and swings round by itself when the chair backs up. The
-kinematic trail is 1 mm here, so that this law alone changes nothing; the effect `caster_trail` adds
-the real one. The moments about the pivot balance as in (8) with the swivel inertia left out: a
-torque M_w of the bearing on the caster needs a lateral force M_w / c at the patch, c now the lever
-`caster.trail`.
+trail is 1 mm here, so that this law alone changes nothing; the effect `caster_trail` adds the real
+one. The moments about the pivot balance as in (8) with the swivel inertia left out: a torque on the
+caster needs a lateral force at the patch, whose lever is that same c. With another lever the bearing
+would make energy.
+
+A torque M_w over 1 mm would be an absurd force. A trail shorter than the stated `caster.trail` stands
+for a caster that is ideal but for this torque, and so passes on c / `caster.trail` of it: its lateral
+force is M_w / `caster.trail`, that of the real lever, and still no energy is made.
 """
 
 from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import FRONT, M_S, N_M, RAD, RAD_S, M, N, Parameter, State
+from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter, State
 from ..chassis import per_wheel
-from ..smooth import grip
+from ..smooth import grip, magnitude
 from ..stage import Alternative, Row, define, stage
 from . import ideal
 
-SLOWEST = 1e-9  # m/s; a chair that starts at rest has its casters trailing
+ASIDE = 1e-5  # m/s by which pivots are taken to move apart as a chair starts, so that none is in line with its way exactly
 
 PARAMETERS = (
     *ideal.PARAMETERS,
     Parameter(
         "regularisation.trail",
         M,
-        "kinematic trail of a caster without the effect caster_trail; shorter is too quick to matter and too stiff to solve",
+        "trail of a caster without the effect caster_trail; shorter is too quick to matter and too stiff to solve",
         default=1e-3,
         lower=1e-4,
         upper=0.01,
@@ -50,9 +54,14 @@ PARAMETERS = (
 SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT, usual=0.1)
 
 
-@stage(define("c", M, "trail that sets the caster's motion", "+swap", FRONT))
+@stage(define("c", M, "caster trail, by which it swings and which is the lever of its lateral force", "+swap", FRONT))
 def kinematic_trail(least_trail):
     return per_wheel(least_trail)
+
+
+@stage(define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT))
+def leverage(c, trail):
+    return c / cs.fmax(c, trail)
 
 
 @stage(
@@ -74,27 +83,29 @@ def turned(swivel):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(delta, v_xf, v_yf, D_f, M_w, trail, drag_eps):
-    """(6), (7) without the casters' mass: rolling resistance along the heading, M_w / c across it."""
+def casters(delta, v_xf, v_yf, D_f, d_f, M_w, c, passed, drag_eps):
+    """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
     rolling = v_xf * forward + v_yf * right
-    drag = -D_f * grip(rolling, rolling * rolling, drag_eps)
-    lateral = M_w / trail  # (8)
-    return drag * forward - lateral * right, drag * right + lateral * forward, -M_w
+    drag = -D_f * grip(rolling, rolling * rolling, drag_eps) - d_f * rolling
+    torque = passed * M_w
+    lateral = torque / c  # (8)
+    return drag * forward - lateral * right, drag * right + lateral * forward, -torque
+
+
+def trailing(v_xf, v_yf, v_eps):
+    """Each caster trails its pivot at the start, whatever the speed is that holds; a chair at rest has it straight behind.
+
+    A caster exactly in line would stay so when the chair backs up straight, as a pencil on its tip. So at rest they stand apart
+    by ASIDE / ε = 1 mrad, the left caster to the left as its mirror image to the right.
+    """
+    speed = magnitude(v_xf, v_eps)
+    return cs.atan2(v_yf + cs.DM([-ASIDE, ASIDE]) * v_eps / speed, v_xf + v_eps * v_eps / speed)
 
 
 LAW = Alternative(
     "swivelling",
-    (kinematic_trail, swivelling, turned, ideal.bearing, casters),
+    (kinematic_trail, leverage, swivelling, turned, ideal.bearing, casters),
     PARAMETERS,
-    (
-        Row(
-            SWIVEL,
-            mass=lambda c: c,
-            rate=lambda swivel_slip: swivel_slip,
-            start=lambda start_v, start_psi_dot, start_u, a: per_wheel(
-                cs.atan2(start_v + a * start_psi_dot, start_u + SLOWEST)
-            ),
-        ),
-    ),
+    (Row(SWIVEL, mass=lambda c: c, rate=lambda swivel_slip: swivel_slip, start=trailing),),
 )

@@ -15,13 +15,13 @@ ROLL = Parameter("roll", RAD, "roll of the sensor, positive with its right side 
 PITCH = Parameter("pitch", RAD, "pitch of the sensor, positive with its front up", **COMMON)
 
 
-def forward(roll, pitch, a_x, a_y, g_x, g_y, g):
+def forward(roll, pitch, a_x, a_y, g_x, g_y, g_z):
     f_x, f_y = a_x - g_x, a_y - g_y
-    return f_x * (cs.cos(pitch) - 1) + (f_y * cs.sin(roll) + g * cs.cos(roll)) * cs.sin(pitch)
+    return f_x * (cs.cos(pitch) - 1) + (f_y * cs.sin(roll) + g_z * cs.cos(roll)) * cs.sin(pitch)
 
 
-def right(roll, a_y, g_y, g):
-    return (a_y - g_y) * (cs.cos(roll) - 1) - g * cs.sin(roll)
+def right(roll, a_y, g_y, g_z):
+    return (a_y - g_y) * (cs.cos(roll) - 1) - g_z * cs.sin(roll)
 
 
 EFFECT = Effect(

@@ -47,12 +47,16 @@ def reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter):  # noqa: E741
     return -I * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter)
 
 
+def unborne(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: E741
+    return passed * reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter)
+
+
 EFFECT = Effect(
     "caster_inertia",
     "swivel inertia of the casters",
     parameters=(INERTIA,),
     constants=(FILTER,),
-    contributions=(adds("M_w", reaction), adds("M_f", reaction)),
+    contributions=(adds("M_w", reaction), adds("M_f", unborne)),
     rows=(Row(RATE, lambda: 1.0, acceleration),),
     needs={"caster": "swivelling"},
 )

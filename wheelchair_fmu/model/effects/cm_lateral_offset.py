@@ -21,12 +21,12 @@ Y = Parameter(
 RIGHT_LESS_LEFT = cs.DM([-1.0, 1.0])
 
 
-def rear(y_cm, m, g, x_f, x_r, t_r):
-    return RIGHT_LESS_LEFT * (m * g * x_f / (x_f - x_r) * y_cm / t_r)
+def rear(y_cm, m, g_z, x_f, x_r, t_r):
+    return RIGHT_LESS_LEFT * (m * g_z * x_f / (x_f - x_r) * y_cm / t_r)
 
 
-def front(y_cm, m, g, x_f, x_r, t_f):
-    return RIGHT_LESS_LEFT * (m * g * -x_r / (x_f - x_r) * y_cm / t_f)
+def front(y_cm, m, g_z, x_f, x_r, t_f):
+    return RIGHT_LESS_LEFT * (m * g_z * -x_r / (x_f - x_r) * y_cm / t_f)
 
 
 EFFECT = Effect(

@@ -3,7 +3,7 @@
 import casadi as cs
 
 from ...quantities import RAD, Parameter
-from ..stage import Effect, adds
+from ..stage import Effect, adds, scales
 
 THETA = Parameter(
     "theta",
@@ -21,5 +21,5 @@ EFFECT = Effect(
     "floor_cross_slope",
     "a slope across the chair, whatever its heading",
     parameters=(THETA,),
-    contributions=(adds("g_y", lambda theta, g: g * cs.sin(theta)),),
+    contributions=(adds("g_y", lambda theta, g: g * cs.sin(theta)), scales("g_z", lambda theta: cs.cos(theta))),
 )

@@ -27,7 +27,7 @@ EFFECT = Effect(
     "tyres at another pressure than stated",
     parameters=(DP,),
     contributions=(
-        scales("k_F", lambda dp, pressure, pressure_F: cs.exp(pressure_F * cs.log(ratio(dp, pressure)))),
-        scales("k_M", lambda dp, pressure, pressure_M: cs.exp(pressure_M * cs.log(ratio(dp, pressure)))),
+        scales("q_F", lambda dp, pressure, pressure_F: cs.exp(pressure_F * cs.log(ratio(dp, pressure)))),
+        scales("q_M", lambda dp, pressure, pressure_M: cs.exp(pressure_M * cs.log(ratio(dp, pressure)))),
     ),
 )

@@ -39,5 +39,5 @@ EFFECT = Effect(
     "cornering stiffness that grows less than the load",
     parameters=(EXPONENT,),
     constants=(EXPONENT_M, REFERENCE),
-    contributions=(scales("k_F", power), scales("k_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref))),
+    contributions=(scales("q_F", power), scales("q_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref))),
 )

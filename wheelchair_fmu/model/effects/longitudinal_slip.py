@@ -18,9 +18,9 @@ COMPLIANCE = Parameter(
 )
 
 
-def creep(compliance, F_t, brake_rl, brake_rr, F_max, v_xr, drag_eps, v_eps):
-    traction = F_t - F_max * cs.vertcat(brake_rl, brake_rr) * grip(v_xr, v_xr * v_xr, drag_eps)
-    return compliance * traction * magnitude(v_xr, v_eps)
+def creep(compliance, F_t, brake_rl, brake_rr, F_max, v_xw, drag_eps, v_eps):
+    traction = F_t - F_max * cs.vertcat(brake_rl, brake_rr) * grip(v_xw, v_xw * v_xw, drag_eps)
+    return compliance * traction * magnitude(v_xw, v_eps)
 
 
 EFFECT = Effect(

@@ -1,4 +1,8 @@
-"""One rear wheel rolls harder than the other: D_rl − D_rr = D."""
+"""One rear wheel rolls harder than the other: D_rl − D_rr = D.
+
+Their sum stays what it was while both have some drag left; a wheel that has none takes none off, and drives no chair: beyond,
+all of D is on the other.
+"""
 
 import casadi as cs
 
@@ -17,9 +21,22 @@ D = Parameter(
     source="Sawatzky2005",
 )
 
+HALF_LEFT_LESS_RIGHT = cs.DM([0.5, -0.5])
+ROUNDING = 1e-3  # of D, within which a wheel that runs out of drag is rounded off
+NOTHING = 1e-9  # N, of a wheel off the ground
+
+
+def uneven(D, D_r):
+    """Half of D more on one side and less on the other, and on both as much as the lighter one would go below zero."""
+    wanted = D_r + HALF_LEFT_LESS_RIGHT * D
+    width = ROUNDING * D
+    lacking = (cs.sqrt(wanted * wanted + width * width + NOTHING * NOTHING) - wanted) / 2
+    return HALF_LEFT_LESS_RIGHT * D + cs.sum1(lacking)
+
+
 EFFECT = Effect(
     "rolling_resistance_asymmetry",
     "one rear wheel that rolls harder than the other",
     parameters=(D,),
-    contributions=(adds("D_r", lambda D: cs.vertcat(D / 2, -D / 2)),),
+    contributions=(adds("D_w", uneven),),
 )

@@ -1,4 +1,9 @@
-"""Rolling resistance that grows with speed:  F_x = −k u  at the CM."""
+"""Rolling resistance that grows with speed, on each wheel by the share of the load that it carries:  k v N / ΣN.
+
+Straight on that is k u in all; a chair that spins on the spot has some of it too, as its wheels roll.
+"""
+
+import casadi as cs
 
 from ...quantities import N_S_M, Parameter
 from ..stage import Effect, adds
@@ -13,15 +18,29 @@ K = Parameter(
     upper=200.0,
     source="Chua2011",
 )
+LIGHTEST = 1.0  # N; a chair that weighs less is none
 
 
-def drag(u, k):
-    return -k * u
+def rear(k, N_f, N_r):
+    return k * pressed(N_r) / carried(N_f, N_r)
+
+
+def front(k, N_f, N_r):
+    return k * pressed(N_f) / carried(N_f, N_r)
+
+
+def carried(N_f, N_r):
+    return cs.fmax(cs.sum1(pressed(N_f)) + cs.sum1(pressed(N_r)), LIGHTEST)
+
+
+def pressed(load):
+    """A wheel off the ground has no load below zero."""
+    return cs.fmax(load, 0)
 
 
 EFFECT = Effect(
     "rolling_resistance_speed",
     "rolling resistance that grows with speed",
     parameters=(K,),
-    contributions=(adds("F_x", drag, opposes="u"),),
+    contributions=(adds("d_r", rear), adds("d_f", front)),
 )

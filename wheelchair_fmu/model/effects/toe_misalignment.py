@@ -16,19 +16,31 @@ LEFT = Parameter(
 )
 
 
-def slip(tau_l, tau_r, s):
-    return s * cs.vertcat(tau_l, tau_r)
+def turned(forward, right, tau):
+    """What turning a vector's axes clockwise by τ adds to its components, along and across."""
+    less = cs.cos(tau) - 1
+    return less * forward + cs.sin(tau) * right, less * right - cs.sin(tau) * forward
 
 
-def backward(tau_l, tau_r, F_s):
-    """The lateral force stands across the wheel, so part of it points backward: drag like toe squared."""
-    return -F_s * cs.sin(cs.vertcat(tau_l, tau_r))
+def hub(v_xr, v_yr, tau_l, tau_r):
+    """From the chair's axes into the wheel's, in which it rolls and slips."""
+    return turned(v_xr, v_yr, cs.vertcat(tau_l, tau_r))
+
+
+def force(F_w, F_s, tau_l, tau_r):
+    """And back: side force points backward in part, drag like toe squared; traction and drag point aside in part."""
+    return turned(F_w, F_s, -cs.vertcat(tau_l, tau_r))
 
 
 EFFECT = Effect(
     "toe_misalignment",
     "rear wheels that do not point straight ahead",
     parameters=(RIGHT, LEFT),
-    contributions=(adds("lam", slip), adds("F_xr", backward)),
+    contributions=(
+        adds("v_xw", lambda v_xr, v_yr, tau_l, tau_r: hub(v_xr, v_yr, tau_l, tau_r)[0]),
+        adds("v_yw", lambda v_xr, v_yr, tau_l, tau_r: hub(v_xr, v_yr, tau_l, tau_r)[1]),
+        adds("F_xr", lambda F_w, F_s, tau_l, tau_r: force(F_w, F_s, tau_l, tau_r)[0]),
+        adds("F_yr", lambda F_w, F_s, tau_l, tau_r: force(F_w, F_s, tau_l, tau_r)[1]),
+    ),
     even=True,
 )

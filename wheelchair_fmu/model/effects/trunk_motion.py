@@ -1,8 +1,13 @@
 """The user leans into the push: the CM moves forward against the frame by `amplitude` per 80 N, lagged.
 
-The push F passes a short filter, F_f' = (F − F_f)/τ, then  s' = (amplitude F_f / 80 N − s)/T. The frame
-recoils: its speed is the CM's less s', an accelerometer on it feels −s'', and the CM lies a − s behind
-the pivots and b + s before the axle. The filter is there because s'' needs F' and pushes may jump.
+The push F passes a short filter, F_f' = (F − F_f)/τ, then  s' = (amplitude F_f / 80 N − s)/T. The CM lies
+a − s behind the pivots and b + s before the axle, and the frame recoils at −s'. Instruments are on the
+frame: what reads the CM in a chair without this effect is s behind it. Its way is r − s e_x, so beside the
+CM's own acceleration it has
+
+    −s'' + s ψ'²  along x_m,    −2 s' ψ' − s ψ''  along y_m
+
+The filter is there because s'' needs F' and pushes may jump.
 """
 
 import casadi as cs
@@ -66,9 +71,13 @@ def recoil(amplitude, felt, F_lean, lean, T_lag):
     return -lean_rate(amplitude, felt, F_lean, lean, T_lag)
 
 
-def jerk_back(amplitude, F_t, felt, T_filter, F_lean, lean, T_lag):
+def felt_ahead(amplitude, F_t, felt, T_filter, F_lean, lean, T_lag, psi_dot):
     rate = amplitude * felt_rate(F_t, felt, T_filter) / F_lean
-    return -(rate - lean_rate(amplitude, felt, F_lean, lean, T_lag)) / T_lag
+    return -(rate - lean_rate(amplitude, felt, F_lean, lean, T_lag)) / T_lag + lean * psi_dot * psi_dot
+
+
+def felt_aside(amplitude, felt, F_lean, lean, T_lag, psi_dot, M_z, inertia):
+    return -2 * lean_rate(amplitude, felt, F_lean, lean, T_lag) * psi_dot - lean * M_z / inertia
 
 
 EFFECT = Effect(
@@ -81,7 +90,10 @@ EFFECT = Effect(
         adds("x_r", lambda lean: -lean),
         adds("v_xf", recoil),
         adds("v_xr", recoil),
-        adds("read_a_x", jerk_back),
+        adds("read_a_x", felt_ahead),
+        adds("read_a_y", felt_aside),
+        adds("read_x", lambda lean, psi: -lean * cs.cos(psi)),
+        adds("read_y", lambda lean, psi: -lean * cs.sin(psi)),
     ),
     rows=(
         Row(

@@ -83,7 +83,13 @@ PARAMETERS = (
         source="chosen: the paper's curves do not saturate",
     ),
     Parameter(
-        "tyre.c_p", M, "pneumatic trail c_p (Dugoff)", default=45.0 / 5038.0, lower=0.0, upper=0.2, source="C_mλ/C_λ of Table 1"
+        "tyre.c_p",
+        M,
+        "pneumatic trail c_p at 4 bar (Dugoff)",
+        default=45.0 / 5038.0,
+        lower=0.0,
+        upper=0.2,
+        source="C_mλ/C_λ of Table 1",
     ),
     Parameter(
         "tyre.force.C",
@@ -149,33 +155,40 @@ PARAMETERS = (
 
 
 @stage(
+    define("q_F", ONE, "cornering stiffness of each rear tyre beside C_λ", "+swap", REAR),
+    define("q_M", ONE, "self-aligning stiffness of each rear tyre beside C_mλ", "+swap", REAR),
+)
+def stiffening(pressure, pressure_F, pressure_M):
+    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
+    log_p = cs.log(pressure / RATED)
+    return per_wheel(cs.exp(pressure_F * log_p)), per_wheel(cs.exp(pressure_M * log_p))
+
+
+@stage(
     define("k_F", N_RAD, "cornering stiffness of each rear tyre", "+swap", REAR),
     define("k_M", N_M_RAD, "self-aligning stiffness of each rear tyre", "+swap", REAR),
     define("phi", RAD, "camber angle of each rear wheel, positive when it leans to the right", "-swap", REAR),
 )
-def tyres(C_lambda, C_m_lambda, pressure, pressure_F, pressure_M):
-    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
-    log_p = cs.log(pressure / RATED)
-    k_F, k_M = C_lambda * cs.exp(pressure_F * log_p), C_m_lambda * cs.exp(pressure_M * log_p)
-    return per_wheel(k_F), per_wheel(k_M), per_wheel(0.0)
+def tyres(C_lambda, C_m_lambda, q_F, q_M):
+    return C_lambda * q_F, C_m_lambda * q_M, per_wheel(0.0)
 
 
 @stage(
     define("s", ONE, "direction of rolling: +1 forward, −1 in reverse, 0 at rest", "+swap", REAR),
     define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
 )
-def slip(v_xr, v_yr, v_eps):
+def slip(v_xw, v_yw, v_eps):
     """(11), (12) for either direction; v_y / ε, a damper, at rest."""
-    return direction(v_xr, v_eps), -cs.atan2(v_yr, magnitude(v_xr, v_eps))
+    return direction(v_xw, v_eps), -cs.atan2(v_yw, magnitude(v_xw, v_eps))
 
 
 @stage(
     define("s", ONE, "direction of rolling: always forward", "+swap", REAR),
     define("lam", RAD, "slip angle λ of each rear wheel", "-swap", REAR),
 )
-def slip_paper(v_xr, v_yr):
+def slip_paper(v_xw, v_yw):
     """(11), (12) to the letter."""
-    return per_wheel(1.0), -v_yr / v_xr
+    return per_wheel(1.0), -v_yw / v_xw
 
 
 @stage(define("lam_F", RAD, "slip angle that force and torque follow", "-swap", REAR))

@@ -19,8 +19,9 @@ def dugoff_force(k_F, lam_F, inv_mu, N_r):
 
 
 @stage(define("M_lam", N_M, "self-aligning torque of each rear tyre, rolling forward", "-swap", REAR))
-def dugoff_torque(F_lam, c_p):
-    return -F_lam * c_p  # (3)
+def dugoff_torque(F_lam, c_p, q_F, q_M):
+    """The trail is what is left of the torque's stiffness beside the force's: on a soft or lightly loaded tyre not c_p."""
+    return -F_lam * c_p * q_M / q_F  # (3)
 
 
 LAW = Alternative("dugoff", (friction, dugoff_force, dugoff_torque))
