@@ -181,6 +181,8 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         common.tyres,
         common.slip_paper if paper else common.slip,
         common.followed_slip,
+        resistance.brakes_paper if paper else resistance.brakes,
+        resistance.patches,
         *tyre_law.stages,
         common.tyre_forces,
         resistance.rolling_resistance,

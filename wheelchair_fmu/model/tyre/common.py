@@ -76,7 +76,7 @@ PARAMETERS = (
     Parameter(
         "tyre.mu",
         ONE,
-        "friction coefficient μ (Dugoff and Magic Formula)",
+        "friction coefficient μ (Dugoff and Magic Formula; under every law what brakes can use)",
         default=1.0,
         lower=0.05,
         upper=5.0,
@@ -200,6 +200,7 @@ def followed_slip(lam):
     define("F_s", N, "lateral force F_s of each rear tyre", "-swap", REAR),
     define("M_t", N_M, "torque M of each rear tyre about the vertical", "-swap", REAR),
 )
-def tyre_forces(F_lam, M_lam, phi, s, C_phi, C_m_phi):
-    """(13)–(16). In reverse the trail lies on the other side; camber pushes no wheel at rest."""
-    return F_lam + C_phi * phi * s * s, s * (M_lam + C_m_phi * phi)
+def tyre_forces(F_lam, M_lam, phi, s, C_phi, C_m_phi, side, locked, braking, sliding, v_yw):
+    """(13)–(16). In reverse the trail lies on the other side; camber pushes no wheel at rest. A locked wheel only slides."""
+    F_s = side * (F_lam + C_phi * phi * s * s) - locked * braking / sliding * v_yw
+    return F_s, side * s * (M_lam + C_m_phi * phi)
