@@ -97,9 +97,9 @@ def patches(v_xw, v_yw, locked, drag_eps):
     define("D_f", N, "rolling resistance of each caster", "+swap", FRONT),
     define("D_r", N, "rolling resistance of each rear wheel", "+swap", REAR),
 )
-def rolling_resistance(f_f, f_r, rolling_factor, N_f, N_r):
+def rolling_resistance(f_f, f_r, q_D, rolling_factor, N_f, N_r):
     """(17), for wheels that touch the ground."""
-    return f_f * rolling_factor * cs.fmax(N_f, 0), f_r * rolling_factor * cs.fmax(N_r, 0)
+    return f_f * rolling_factor * cs.fmax(N_f, 0), f_r * q_D * rolling_factor * cs.fmax(N_r, 0)
 
 
 @stage(define("D_w", N, "dry drag of each rear wheel", "+swap", REAR))

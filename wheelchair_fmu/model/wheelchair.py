@@ -177,7 +177,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.floor,
         chassis.gravity,
         chassis.loads,
-        common.stiffening,
+        common.inflation,
         common.tyres,
         common.slip_paper if paper else common.slip,
         common.followed_slip,
