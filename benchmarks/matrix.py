@@ -131,8 +131,9 @@ def tested(python: Path, place: Path, tests: list[str]) -> tuple[bool, str]:
     if code == 0:
         return True, last
     named = [line for line in lines if line.startswith(SUMMARY)]
-    # Without a summary, what pytest said at its end is all there is.
-    shown = [cut(line) for line in named[:MOST] or lines[-MOST:]]
+    # Without a summary there is what was said at the end, as of a crash or of where a test was: without the frames of pytest.
+    ours = [line for line in lines if "site-packages" not in line and 'File "<' not in line]
+    shown = [cut(line) for line in named[:MOST] or ours[-MOST:]]
     if len(named) > MOST:
         shown.append(f"and {len(named) - MOST} more")
     print(*shown, f"all that pytest said is in {log.relative_to(ROOT)}", sep="\n", flush=True)

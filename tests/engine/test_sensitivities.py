@@ -50,12 +50,20 @@ def test_by_every_parameter(motion, case):
     for k, name in enumerate(names):
         record = next(p for p in base.parameters() if p.name == name)
         value = base.values.get(name, record.default)
-        h = 1e-4 * (abs(value) or 0.1)
-        ends = [simulator.run(t, w, base.vector({name: value + s * h}), tolerance=1e-11).results for s in (1, -1)]
-        expected = ((ends[0] - ends[1]) / (2 * h))[:, list(sensitivities.rows)]
-        scale = np.abs(expected).max(axis=0) + 1e-3 * np.abs(expected).max() + 1e-7 / h
-        error = (np.abs(run.by_parameter[:, :, k] - expected) / scale).max()
+        # where a wheel turns round results bend so sharply that one step of a difference may be too wide, another too rough
+        error = min(
+            _error(run, sensitivities.rows, simulator, t, w, base, name, h * (abs(value) or 0.1), k) for h in (1e-4, 1e-5)
+        )
         assert error < 2e-3, f"{name}: {error:.2g}"
+
+
+def _error(run, rows, simulator, t, w, base, name, h, k):
+    """How far slopes by a parameter are from central differences with the step h, beside their sizes."""
+    value = base.vector()[[p.name for p in base.parameters()].index(name)]
+    ends = [simulator.run(t, w, base.vector({name: value + s * h}), tolerance=1e-11).results for s in (1, -1)]
+    expected = ((ends[0] - ends[1]) / (2 * h))[:, list(rows)]
+    scale = np.abs(expected).max(axis=0) + 1e-3 * np.abs(expected).max() + 1e-7 / h
+    return (np.abs(run.by_parameter[:, :, k] - expected) / scale).max()
 
 
 def test_by_states_and_pushes():

@@ -111,10 +111,19 @@ def _generated(functions: dict[str, cs.Function], names: Sequence[str], prefix: 
     generator = cs.CodeGenerator(f"{prefix}.c", {"with_header": False})
     for name in names:
         generator.add(dividing_once(functions[name], f"{prefix}_{name}"))
-    return _unchecked(generator.dump())  # a file that it writes itself may be cut off where the disk is full, without a word
+    return _in_place(
+        _unchecked(generator.dump())
+    )  # a file that it writes may be cut off where the disk is full, without a word
 
 
 def _unchecked(text: str) -> str:
     """Functions whose arguments and results are all there: CasADi asks for each number anew, which takes compilers a third of
     their time."""
     return re.sub(r"if \(res\[\d+\]!=0\) ", "", re.sub(r"(arg\[\d+\])\? (\1\[\d+\]) : 0", r"\2", text))
+
+
+def _in_place(text: str) -> str:
+    """Squares and larger numbers where they stand: in a long function compilers call CasADi's own for each, and put away
+    all numbers at hand before."""
+    squared = re.sub(r"casadi_sq\((\w+)\)", r"(\1*\1)", text)
+    return re.sub(r"casadi_fmax\((\w+),(\w+)\)", r"(\1>\2?\1:\2)", squared)

@@ -42,7 +42,7 @@ def archive(face: Interface) -> dict[str, bytes]:
     with TemporaryDirectory() as folder:
         source = Path(folder) / "source"
         script = _write(source, package, modules, _interface(face, token))
-        files = _pythonfmu(script, source / package, Path(folder) / f"{NAME}.fmu")
+        files = _pythonfmu(script, source / package, Path(folder))
     description = describe.description(face, NAME, token, describe.PYTHON, [])
     return {
         **files,
@@ -141,14 +141,14 @@ def _write(source: Path, package: str, modules: dict[str, str], interface: dict[
     return script
 
 
-def _pythonfmu(script: Path, package: Path, target: Path) -> dict[str, bytes]:
+def _pythonfmu(script: Path, package: Path, folder: Path) -> dict[str, bytes]:
     """What pythonfmu puts into the archive, by path."""
     try:
         from pythonfmu.builder import FmuBuilder
     except ImportError as error:
         raise BuildError("the python flavour needs pythonfmu; `pip install pythonfmu`") from error
     with _imports_undone(package.name):
-        FmuBuilder.build_FMU(script, dest=target, project_files=[package])
+        target = FmuBuilder.build_FMU(script, dest=folder, project_files=[package])
     with zipfile.ZipFile(target) as made:
         names = [n for n in made.namelist() if not n.endswith("/") and "__pycache__" not in n]
         return {name: made.read(name) for name in names}

@@ -312,8 +312,8 @@ def loads(m, g_z, x_f, x_r):
     """Static equilibrium about the axles; a = x_f and b = −x_r."""
     a, b = x_f, -x_r
     return (
-        per_wheel(b * g_z * m / (2 * (a + b))),  # (18)
-        per_wheel(a * g_z * m / (2 * (a + b))),  # (19)
+        per_wheel(b * m / (2 * (a + b)) * g_z),  # (18)
+        per_wheel(a * m / (2 * (a + b)) * g_z),  # (19)
     )
 
 
@@ -331,32 +331,30 @@ def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
 
 
 @stage(
-    define("u_dot", M_S2, "u'"),
-    define("v_dot", M_S2, "v'", "-"),
+    define("u_rate", N, "mass_u · u'"),
+    define("v_rate", N, "mass_v · v'", "-"),
     define("a_x", M_S2, "acceleration of the CM along x_m, u' − v ψ'"),
     define("a_y", M_S2, "acceleration of the CM along y_m, v' + u ψ'", "-"),
     define("needed", N, "total push F_rl + F_rr that keeps u constant"),
 )
 def balance(F_x, F_y, F_t, m, mass_u, mass_v, u, v, psi_dot, speed_mode):
     """Newton's second law (20), (21); with prescribed speed (20) says which push is needed."""
-    free = 2 - speed_mode
-    u_dot = free * (F_x + m * v * psi_dot) / mass_u
-    v_dot = (F_y - m * u * psi_dot) / mass_v
-    return u_dot, v_dot, u_dot - v * psi_dot, v_dot + u * psi_dot, cs.sum1(F_t) - F_x - m * v * psi_dot
+    driving = F_x + m * v * psi_dot
+    u_rate = (2 - speed_mode) * driving
+    v_rate = F_y - m * u * psi_dot
+    return u_rate, v_rate, u_rate / mass_u - v * psi_dot, v_rate / mass_v + u * psi_dot, cs.sum1(F_t) - driving
 
 
 @stage(
     define("x_rate", M_S, "x'"),
     define("y_rate", M_S, "y'", "-"),
     define("psi_rate", RAD_S, "ψ'", "-"),
-    define("u_rate", N, "mass_u · u'"),
-    define("v_rate", N, "mass_v · v'", "-"),
     define("psi_dot_rate", N_M, "inertia · ψ''", "-"),
 )
-def motion(u, v, psi, psi_dot, u_dot, v_dot, M_z, mass_u, mass_v):
-    """Right-hand sides of the six base rows of M x' = f."""
+def motion(u, v, psi, psi_dot, M_z):
+    """Right-hand sides of the other four base rows of M x' = f."""
     x_rate, y_rate = to_room(u, v, psi)
-    return x_rate, y_rate, psi_dot, mass_u * u_dot, mass_v * v_dot, M_z
+    return x_rate, y_rate, psi_dot, M_z
 
 
 def one() -> float:

@@ -15,6 +15,6 @@ from .stage import define, stage
     define("read_y", M, "y of the CM in the room", "-"),
     define("read_yaw", RAD, "yaw angle", "-"),
 )
-def sensors(v_xw, psi_dot, a_x, a_y, g_x, g_y, x, y, psi):
-    """Wheels roll without longitudinal slip; an accelerometer does not feel gravity along its axis."""
-    return v_xw, psi_dot, a_x - g_x, a_y - g_y, x, y, psi
+def sensors(v_xw, locked, psi_dot, a_x, a_y, g_x, g_y, x, y, psi):
+    """Wheels roll without longitudinal slip unless they are locked; an accelerometer does not feel gravity along its axis."""
+    return (1 - locked) * v_xw, psi_dot, a_x - g_x, a_y - g_y, x, y, psi

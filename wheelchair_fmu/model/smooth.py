@@ -26,8 +26,13 @@ def grip(v: Any, speed_squared: Any, eps: Any) -> Any:
     The high power makes resistance reach its full size within a few ε, so a chair held by it on a
     slope creeps at about ε, whereas a tanh would creep at many times that near the limit.
     """
+    return v / speed(speed_squared, eps)
+
+
+def speed(speed_squared: Any, eps: Any) -> Any:
+    """(|v|⁸ + ε⁸)^⅛, given |v|²: dry resistance over this is its part of a drag per speed."""
     s4, e4 = speed_squared * speed_squared, eps * eps * eps * eps
-    return v / cs.sqrt(cs.sqrt(cs.sqrt(s4 * s4 + e4 * e4)))
+    return cs.sqrt(cs.sqrt(cs.sqrt(s4 * s4 + e4 * e4)))
 
 
 def sine_over(z: Any, shape: Any, bend: Any) -> Any:

@@ -94,6 +94,21 @@ def test_a_soft_tyre_turns_back_harder_under_every_law(law):
         np.testing.assert_allclose(ratio, linear, rtol=1e-3)
 
 
+@pytest.mark.effect("inflation_pressure")
+def test_a_soft_tyre_rolls_harder_as_was_measured():
+    """Of the rear axle's 5.2 N, 1 to 2.6 N more at half the pressure, and again in proportion at a quarter; casters are solid."""
+
+    def drag(**values):
+        return -MASS * snapshot({"start.u": 1.0, **{k.replace("__", "."): v for k, v in values.items()}})["u'"]
+
+    rated, half, quarter = (drag(tyre__pressure=p) for p in (4.0, 2.0, 1.0))
+    assert rated == pytest.approx(MASS * G * (0.012 * A + 0.020 * B) / (A + B), rel=1e-6)
+    assert 1.0 < half - rated < 2.6
+    rear = 0.012 * 2 * N_R
+    assert (quarter - rated + rear) / (half - rated + rear) == pytest.approx((half - rated + rear) / rear, rel=1e-6)
+    assert drag(effect__inflation_pressure__dp=-2.0) == pytest.approx(half, rel=1e-12)
+
+
 @pytest.mark.effect("load_sensitivity")
 @pytest.mark.parametrize("law", ["linear", "dugoff"])
 def test_the_torque_follows_its_own_exponent_of_the_load(law):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import casadi as cs
 
 from ...quantities import FRONT, N_M, RAD, M, N, Parameter
-from ..smooth import grip
+from ..smooth import speed
 from ..stage import Alternative, define, stage
 
 PARAMETERS = (
@@ -43,11 +43,9 @@ def bearing(delta):
 def casters(v_xf, v_yf, D_f, d_f, M_w, trail, drag_eps):
     """Rolling resistance against the pivot's velocity, M_w / c across it."""
     speed_squared = v_xf * v_xf + v_yf * v_yf
-    speed = cs.sqrt(speed_squared + drag_eps * drag_eps)
-    lateral = M_w / trail / speed  # (8)
-    F_xf = -D_f * grip(v_xf, speed_squared, drag_eps) - d_f * v_xf - lateral * v_yf
-    F_yf = -D_f * grip(v_yf, speed_squared, drag_eps) - d_f * v_yf + lateral * v_xf
-    return F_xf, F_yf, -M_w
+    drag = D_f / speed(speed_squared, drag_eps) + d_f  # per speed
+    lateral = M_w / trail / cs.sqrt(speed_squared + drag_eps * drag_eps)  # (8)
+    return -drag * v_xf - lateral * v_yf, -drag * v_yf + lateral * v_xf, -M_w
 
 
 LAW = Alternative("ideal", (angles, bearing, casters), PARAMETERS)

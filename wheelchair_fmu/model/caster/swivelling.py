@@ -21,7 +21,7 @@ import casadi as cs
 
 from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter, State
 from ..chassis import per_wheel
-from ..smooth import grip, magnitude
+from ..smooth import magnitude, speed
 from ..stage import Alternative, Row, define, stage
 from . import ideal
 
@@ -87,7 +87,7 @@ def casters(delta, v_xf, v_yf, D_f, d_f, M_w, c, passed, drag_eps):
     """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
     rolling = v_xf * forward + v_yf * right
-    drag = -D_f * grip(rolling, rolling * rolling, drag_eps) - d_f * rolling
+    drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
     torque = passed * M_w
     lateral = torque / c  # (8)
     return drag * forward - lateral * right, drag * right + lateral * forward, -torque
@@ -99,8 +99,8 @@ def trailing(v_xf, v_yf, v_eps):
     A caster exactly in line would stay so when the chair backs up straight, as a pencil on its tip. So at rest they stand apart
     by ASIDE / ε = 1 mrad, the left caster to the left as its mirror image to the right.
     """
-    speed = magnitude(v_xf, v_eps)
-    return cs.atan2(v_yf + cs.DM([-ASIDE, ASIDE]) * v_eps / speed, v_xf + v_eps * v_eps / speed)
+    fading = v_eps / magnitude(v_xf, v_eps)
+    return cs.atan2(v_yf + cs.DM([-ASIDE, ASIDE]) * fading, v_xf + v_eps * fading)
 
 
 LAW = Alternative(

@@ -22,11 +22,11 @@ RIGHT_LESS_LEFT = cs.DM([-1.0, 1.0])
 
 
 def rear(y_cm, m, g_z, x_f, x_r, t_r):
-    return RIGHT_LESS_LEFT * (m * g_z * x_f / (x_f - x_r) * y_cm / t_r)
+    return RIGHT_LESS_LEFT * (m * x_f / (x_f - x_r) * y_cm / t_r * g_z)
 
 
 def front(y_cm, m, g_z, x_f, x_r, t_f):
-    return RIGHT_LESS_LEFT * (m * g_z * -x_r / (x_f - x_r) * y_cm / t_f)
+    return RIGHT_LESS_LEFT * (m * -x_r / (x_f - x_r) * y_cm / t_f * g_z)
 
 
 EFFECT = Effect(

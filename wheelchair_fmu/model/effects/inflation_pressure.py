@@ -1,4 +1,4 @@
-"""Tyres at another pressure than stated: stiffness and trail follow the pressure p + dp instead of p."""
+"""Tyres at another pressure than stated: stiffness, trail and rolling resistance follow p + dp instead of p."""
 
 import casadi as cs
 
@@ -22,12 +22,17 @@ def ratio(dp, pressure):
     return cs.fmax(1 + dp / pressure, FLATTEST)
 
 
+def power(exponent, dp, pressure):
+    return cs.exp(exponent * cs.log(ratio(dp, pressure)))
+
+
 EFFECT = Effect(
     "inflation_pressure",
     "tyres at another pressure than stated",
     parameters=(DP,),
     contributions=(
-        scales("q_F", lambda dp, pressure, pressure_F: cs.exp(pressure_F * cs.log(ratio(dp, pressure)))),
-        scales("q_M", lambda dp, pressure, pressure_M: cs.exp(pressure_M * cs.log(ratio(dp, pressure)))),
+        scales("q_F", lambda dp, pressure, pressure_F: power(pressure_F, dp, pressure)),
+        scales("q_M", lambda dp, pressure, pressure_M: power(pressure_M, dp, pressure)),
+        scales("q_D", lambda dp, pressure, pressure_D: power(pressure_D, dp, pressure)),
     ),
 )

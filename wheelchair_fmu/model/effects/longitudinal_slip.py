@@ -1,9 +1,7 @@
 """Traction needs slip: a driven wheel turns faster than it rolls, by  compliance · F |v_x|, a braked one slower."""
 
-import casadi as cs
-
 from ...quantities import PER_N, Parameter
-from ..smooth import grip, magnitude
+from ..smooth import magnitude
 from ..stage import Effect, adds
 
 COMPLIANCE = Parameter(
@@ -18,8 +16,8 @@ COMPLIANCE = Parameter(
 )
 
 
-def creep(compliance, F_t, brake_rl, brake_rr, F_max, v_xw, drag_eps, v_eps):
-    traction = F_t - F_max * cs.vertcat(brake_rl, brake_rr) * grip(v_xw, v_xw * v_xw, drag_eps)
+def creep(compliance, F_t, locked, braking, sliding, v_xw, v_eps):
+    traction = F_t - (1 - locked) * braking * v_xw / sliding
     return compliance * traction * magnitude(v_xw, v_eps)
 
 

@@ -22,11 +22,11 @@ LIGHTEST = 1.0  # N; a chair that weighs less is none
 
 
 def rear(k, N_f, N_r):
-    return k * pressed(N_r) / carried(N_f, N_r)
+    return k / carried(N_f, N_r) * pressed(N_r)
 
 
 def front(k, N_f, N_r):
-    return k * pressed(N_f) / carried(N_f, N_r)
+    return k / carried(N_f, N_r) * pressed(N_f)
 
 
 def carried(N_f, N_r):

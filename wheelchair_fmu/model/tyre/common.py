@@ -49,7 +49,7 @@ PARAMETERS = (
     Parameter(
         "tyre.pressure",
         BAR,
-        "inflation pressure p; C_λ and C_mλ hold at 4 bar",
+        "inflation pressure p; C_λ, C_mλ and f_r hold at 4 bar",
         default=4.0,
         lower=0.5,
         upper=12.0,
@@ -74,9 +74,18 @@ PARAMETERS = (
         source="Doria, Fig. 6.2: tyre A, 2 to 4 bar",
     ),
     Parameter(
+        "tyre.pressure_D",
+        ONE,
+        "exponent of the pressure in the rear wheels' rolling resistance",
+        default=-0.4,
+        lower=-3.0,
+        upper=0.0,
+        source="chosen: a third more at half the pressure; Sawatzky2005, Ott2020",
+    ),
+    Parameter(
         "tyre.mu",
         ONE,
-        "friction coefficient μ (Dugoff and Magic Formula)",
+        "friction coefficient μ (Dugoff and Magic Formula; under every law what brakes can use)",
         default=1.0,
         lower=0.05,
         upper=5.0,
@@ -157,11 +166,12 @@ PARAMETERS = (
 @stage(
     define("q_F", ONE, "cornering stiffness of each rear tyre beside C_λ", "+swap", REAR),
     define("q_M", ONE, "self-aligning stiffness of each rear tyre beside C_mλ", "+swap", REAR),
+    define("q_D", ONE, "rolling resistance coefficient of each rear tyre beside f_r", "+swap", REAR),
 )
-def stiffening(pressure, pressure_F, pressure_M):
-    """Stiffness of a soft tyre falls with its pressure, the trail grows."""
+def inflation(pressure, pressure_F, pressure_M, pressure_D):
+    """Stiffness of a soft tyre falls with its pressure; its trail and its rolling resistance grow."""
     log_p = cs.log(pressure / RATED)
-    return per_wheel(cs.exp(pressure_F * log_p)), per_wheel(cs.exp(pressure_M * log_p))
+    return tuple(per_wheel(cs.exp(exponent * log_p)) for exponent in (pressure_F, pressure_M, pressure_D))
 
 
 @stage(
@@ -200,6 +210,7 @@ def followed_slip(lam):
     define("F_s", N, "lateral force F_s of each rear tyre", "-swap", REAR),
     define("M_t", N_M, "torque M of each rear tyre about the vertical", "-swap", REAR),
 )
-def tyre_forces(F_lam, M_lam, phi, s, C_phi, C_m_phi):
-    """(13)–(16). In reverse the trail lies on the other side; camber pushes no wheel at rest."""
-    return F_lam + C_phi * phi * s * s, s * (M_lam + C_m_phi * phi)
+def tyre_forces(F_lam, M_lam, phi, s, C_phi, C_m_phi, side, locked, braking, sliding, v_yw):
+    """(13)–(16). In reverse the trail lies on the other side; camber pushes no wheel at rest. A locked wheel only slides."""
+    F_s = side * (F_lam + C_phi * phi * s * s) - locked * braking / sliding * v_yw
+    return F_s, side * s * (M_lam + C_m_phi * phi)
