@@ -19,7 +19,7 @@ from wheelchair_fmu.loop.chance import student
 from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.evidence import START_SD, Bench, Evidence, uncertain
 from wheelchair_fmu.loop.interval import NORMAL, half_width
-from wheelchair_fmu.loop.score import projector, robust_variance, score
+from wheelchair_fmu.loop.score import Projector, robust_variance, score
 from wheelchair_fmu.loop.statistics import (
     TIED,
     between_runs,
@@ -280,7 +280,7 @@ def test_the_screens_score_test_has_the_level_it_says(kind, rho):
     found = []
     for measured, slopes in nulls(k, rho, 2000, one_sided):
         base = least_squares(measured, slopes, tuple(map(str, range(2 + k))), keep=(0, 1))
-        off = projector(base.evidence.S[:, :2], np.zeros((2, 2)))
+        off = Projector(base.evidence.S[:, :2], np.zeros((2, 2)))
         own = base.evidence.S[:, 2:]
         scored = score(base.evidence, off, "x", ["q"] * k, own, np.full(k, 0.5), np.full(k, one_sided))
         found.append(scored.p < 0.05 and (scored.estimate[0] > 0 or not one_sided))

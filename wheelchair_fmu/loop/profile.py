@@ -10,7 +10,7 @@ import numpy as np
 from ..model.stage import Effect
 from .diagnose import Search
 from .fit import Fit, prior_of
-from .score import projector, robust_variance
+from .score import Projector, robust_variance
 
 SUPPORTED = 0.9  # of a knot's prior variance that the data must take away, for the knot to be drawn
 
@@ -35,7 +35,7 @@ def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[
     names = [n for effect in free for n in workshop.parameters(effect)]
     evidence = bench.evidence(workshop.campaign.fit, base.values, [*base.names, *names])
     k = len(base.names)
-    off = projector(evidence.S[:, :k], prior_of(bench, base.names).slopes)
+    off = Projector(evidence.S[:, :k], prior_of(bench, base.names).slopes)
     found = []
     for effect in free:
         own = workshop.parameters(effect)

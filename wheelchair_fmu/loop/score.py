@@ -37,11 +37,26 @@ class Score:
     signature: np.ndarray  # (N,) unit vector of the projected expected change
 
 
-def projector(Z: np.ndarray, prior_slopes: np.ndarray):
-    """A function that takes the calibrated directions (with their priors) off any columns (N, k)."""
-    A = Z.T @ Z + prior_slopes**2
-    inverse = np.linalg.pinv(A, hermitian=True)
-    return lambda X: X - Z @ (inverse @ (Z.T @ X))
+class Projector:
+    """Takes the calibrated directions Z (N, m) off any columns (N, k). What is known of each beforehand counts as further
+    readings, with slopes (m, m) and residuals (m,): a fit that has bent a value to imitate an effect is strained, and that
+    speaks for the effect."""
+
+    def __init__(self, Z: np.ndarray, prior_slopes: np.ndarray, prior_rows: np.ndarray | None = None):
+        self.Z, self.slopes = Z, prior_slopes
+        self.rows = np.zeros(Z.shape[1]) if prior_rows is None else prior_rows
+        self._inverse = np.linalg.pinv(Z.T @ Z + prior_slopes**2, hermitian=True)
+
+    def __call__(self, X: np.ndarray) -> np.ndarray:
+        """What is left of the columns in the readings (N, k)."""
+        return X - self.Z @ self._imitated(X)
+
+    def strained(self, X: np.ndarray) -> np.ndarray:
+        """What is left of them in the further readings (m, k)."""
+        return -self.slopes @ self._imitated(X)
+
+    def _imitated(self, X: np.ndarray) -> np.ndarray:
+        return self._inverse @ (self.Z.T @ X)
 
 
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -63,12 +78,18 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
 
 
 def score(
-    evidence: Evidence, off, effect: str, names: Sequence[str], S: np.ndarray, delta: np.ndarray, one_sided: np.ndarray
+    evidence: Evidence,
+    off: Projector,
+    effect: str,
+    names: Sequence[str],
+    S: np.ndarray,
+    delta: np.ndarray,
+    one_sided: np.ndarray,
 ) -> Score:
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
     r, scaled = evidence.r, S * delta
-    s = off(scaled)
-    I = s.T @ s  # noqa: E741
+    s, strained = off(scaled), off.strained(scaled)
+    I = s.T @ s + strained.T @ strained  # noqa: E741
     size, axes = np.linalg.eigh(I)
     seen = size > max(SEEN, 1e-9 * size.max(initial=0))
     whole = float(np.einsum("ij,ij->", scaled, scaled))
@@ -77,9 +98,9 @@ def score(
         nothing = np.zeros(len(delta))
         return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0])
     V = axes[:, seen]
-    s_V, I_V = s @ V, size[seen]
-    U = s_V.T @ r
-    Omega = robust_variance(evidence, s_V, r)
+    s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
+    U = s_V.T @ r + strained_V.T @ off.rows
+    Omega = robust_variance(evidence, s_V, r) + strained_V.T @ strained_V
     change = U / I_V
     spread = np.diag(1 / I_V) @ Omega @ np.diag(1 / I_V)
     estimate = V @ change * delta

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from .cores import each
 from .evidence import Bench, Evidence
 from .fit import Fit, prior_of
 from .models import Models
-from .score import Score, projector, score
+from .score import Projector, Score, score
 from .statistics import cosines
 
 CURVED = 2  # effects that slopes say little of, beside the best
@@ -121,9 +121,11 @@ class Screen(Models):
 
         return [s for s in each(screened, effects) if s]
 
-    def _off(self, bench: Bench, base: Fit, here: Evidence) -> Callable[[np.ndarray], np.ndarray]:
+    def _off(self, bench: Bench, base: Fit, here: Evidence) -> Projector:
         """Takes what calibration can imitate off any columns."""
-        return projector(here.S[:, : len(base.names)], prior_of(bench, base.names).slopes)
+        prior = prior_of(bench, base.names)
+        rows = prior.rows(np.array([base.values[n] for n in base.names]))
+        return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
 
     def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
         """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
@@ -163,7 +165,7 @@ class Screen(Models):
             self.twins[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
         return bool(same.any())
 
-    def _score(self, evidence: Evidence, off: Callable[[np.ndarray], np.ndarray], effect: str, S: np.ndarray) -> Score:
+    def _score(self, evidence: Evidence, off: Projector, effect: str, S: np.ndarray) -> Score:
         records = [self.records[n] for n in self.workshop.parameters(effect)]
         delta = np.array([r.smallest_interesting for r in records])
         return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))

@@ -19,7 +19,7 @@ from ..campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
 from .evidence import Bench, Evidence, RunEvidence
-from .score import projector
+from .score import Projector
 from .statistics import correlation_time
 
 SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way
@@ -162,6 +162,6 @@ def _share(e: RunEvidence, again: RunEvidence, seconds: float) -> float:
     if not counted.any():
         return float("inf")
     start = e.start_S[counted]
-    off = projector(start, np.zeros((start.shape[1], start.shape[1])))
+    off = Projector(start, np.zeros((start.shape[1], start.shape[1])))
     before, after = (off(r[counted]) for r in (e.r, again.r))
     return float(after @ after / (before @ before))
