@@ -45,3 +45,12 @@ def test_errors_of_scales_and_tape_are_no_effect(tmp_path):
     values = {c.record.name: c for c in found.calibration}
     assert values["chair.m"].value == pytest.approx(true.m, rel=0.005)
     assert values["chair.t_r"].value == pytest.approx(true.t_r, abs=0.004)
+
+
+def test_a_gyro_is_not_told_from_a_tread_that_is_a_little_off(tmp_path):
+    """3 % of a gyro's scale is 16 mm of tread, which no tape excludes: nothing is called missing, and the gyro comes first."""
+    found = diagnose(read(make(tmp_path / "c", {"gyro_scale": {"k": 0.03}}, seed=1)))
+    assert found.verdict in ("adequate", "cannot_see") and found.effects == ()
+    assert max(found.rounds[0].scores, key=lambda s: s.drop).effect == "gyro_scale"
+    values = {c.record.name: c for c in found.calibration}
+    assert abs(values["chair.t_r"].value - 0.55) > 0.01

@@ -18,6 +18,7 @@ from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.statistics import standard_errors
 from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.loop.workshop import MEASURED
 from wheelchair_fmu.model.variant import Variant, read_variant
 
 FAST = Run("fast-coast", "coast-down", "fit", 2.5, 14.0, coast(0.0, 1.0))
@@ -60,15 +61,18 @@ def test_who_watches_is_told_the_whole_staircase(sample):
 
 
 def test_the_proposed_runs_break_the_tie(tmp_path):
-    """Two drags look alike at low speed; coast-downs from 2.5 m/s, made by another author's chair, decide."""
+    """Two drags look alike at low speed; coast-downs from 2.5 m/s, made by another author's chair, decide. The mass is known
+    exactly, as with noise four times as large an uncertain one leaves more than two in the tie."""
     hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 1.2)}
     noisy = {"noise_scale": 4.0, "seed": 7}
-    tied = diagnose(read(make(tmp_path / "one", hidden, manoeuvres="straight", **noisy)), experiments=experiments())
+    tied = diagnose(
+        read(make(tmp_path / "one", hidden, manoeuvres="straight", **noisy)), experiments=experiments(), fixed=MEASURED
+    )
     assert tied.verdict == "tie" and tied.next_experiment is not None
     assert set(tied.effects) == {"aerodynamic_drag", "rolling_resistance_speed"} == set(tied.next_experiment["separates"])
     assert tied.next_experiment["manoeuvre"] == "a coast-down from 2.5 m/s"
     more = [replace(FAST, name=f"fast-{i}") for i in range(tied.next_experiment["repeats"])]
-    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, *more], **noisy)))
+    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, *more], **noisy)), fixed=MEASURED)
     assert decided.verdict == "missing" and decided.ties == ()
     assert decided.rounds[0].candidates[0].effect == "aerodynamic_drag"
 
