@@ -96,7 +96,7 @@ def test_a_soft_tyre_turns_back_harder_under_every_law(law):
 
 @pytest.mark.effect("inflation_pressure")
 def test_a_soft_tyre_rolls_harder_as_was_measured():
-    """Of the rear axle's 5.2 N, 1 to 2.6 N more at half the pressure, and again in proportion at a quarter; casters are solid."""
+    """Of the rear axle's 5.2 N, 1 to 2.6 N more at half the pressure, a quarter in proportion; casters are solid."""
 
     def drag(**values):
         return -MASS * snapshot({"start.u": 1.0, **{k.replace("__", "."): v for k, v in values.items()}})["u'"]

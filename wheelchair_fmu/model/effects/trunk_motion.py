@@ -80,6 +80,11 @@ def felt_aside(amplitude, felt, F_lean, lean, T_lag, psi_dot, M_z, inertia):
     return -2 * lean_rate(amplitude, felt, F_lean, lean, T_lag) * psi_dot - lean * M_z / inertia
 
 
+def muscles(amplitude, felt, F_lean, lean, T_lag, F_xr, F_xf):
+    """Less the work of the user who moves against the frame that the wheels hold."""
+    return recoil(amplitude, felt, F_lean, lean, T_lag) * (cs.sum1(F_xr) + cs.sum1(F_xf))
+
+
 EFFECT = Effect(
     "trunk_motion",
     "a trunk that leans into the push",
@@ -104,4 +109,5 @@ EFFECT = Effect(
         ),
         Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
     ),
+    absorbs=muscles,
 )
