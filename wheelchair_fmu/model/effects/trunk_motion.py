@@ -23,7 +23,7 @@ AMPLITUDE = Parameter(
     smallest_interesting=0.01,
     lower=0.0,
     upper=0.3,
-    source="Fuss2024",
+    source="chosen; Fuss2024 measured what arms do to the frame",
 )
 CONSTANTS = (
     Parameter(
@@ -34,7 +34,7 @@ CONSTANTS = (
         lower=1.0,
         upper=1e4,
         symbol="F_lean",
-        source="Fuss2024",
+        source="chosen",
     ),
     Parameter(
         "lag",
@@ -44,7 +44,7 @@ CONSTANTS = (
         lower=0.01,
         upper=5.0,
         symbol="T_lag",
-        source="Fuss2024",
+        source="chosen",
     ),
     Parameter(
         "filter",
