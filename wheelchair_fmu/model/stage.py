@@ -113,6 +113,7 @@ class Effect:
     needs: dict[str, str] = field(default_factory=dict)
     even: bool = False  # the response is (nearly) even in the parameters: the slope at zero says little
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
+    absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
 
     @cached_property
     def owned(self) -> tuple[Parameter, ...]:

@@ -7,7 +7,7 @@ everything in them. x are the states, w the inputs, p the parameters.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
@@ -133,6 +133,7 @@ class Model:
     start: cs.SX
     quantities: Mapping[str, cs.SX]  # every quantity of the equations by its symbol
     records: Mapping[str, Quantity]  # and what it means
+    absorbed: cs.SX = field(default_factory=lambda: cs.SX(0))  # power [W] that goes into effects' own states
 
 
 def assemble(choice: Choice = Choice(), effects: Iterable[Effect] = ()) -> Model:
@@ -316,6 +317,7 @@ class _Assembly:
         if cs.depends_on(mass, cs.vertcat(x, w)):
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
         states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
+        absorbed = sum((self.call(e.absorbs, self.own[e.id], f"effect {e.id}") for e in self.effects if e.absorbs), cs.SX(0))
         extra = self._state_outputs()
         y = cs.vertcat(
             *(self.known[o.symbol][o.component] for o in OUTPUTS),
@@ -338,6 +340,7 @@ class _Assembly:
             start,
             self.known,
             self.records,
+            absorbed,
         )
 
     def _row(self, entry: tuple[Row, Mapping[str, cs.SX]]) -> tuple[cs.SX, cs.SX, cs.SX]:

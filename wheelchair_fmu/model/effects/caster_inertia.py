@@ -5,6 +5,8 @@ it takes off the moment M_f. The acceleration is that of the swivel rate through
 Ω' = (δ' + ψ' − Ω)/τ, because the rate itself may jump with the pushes.
 """
 
+import casadi as cs
+
 from ...quantities import FRONT, KG_M2, RAD_S, Parameter, S, State
 from ..stage import Effect, Row, adds
 
@@ -51,6 +53,11 @@ def unborne(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: 
     return passed * reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter)
 
 
+def spun(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: E741
+    """Of ½ I Ω², as far as the trail passes it on."""
+    return cs.sum1(passed * I * smoothed_rate * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter))
+
+
 EFFECT = Effect(
     "caster_inertia",
     "swivel inertia of the casters",
@@ -59,4 +66,5 @@ EFFECT = Effect(
     contributions=(adds("M_w", reaction), adds("M_f", unborne)),
     rows=(Row(RATE, lambda: 1.0, acceleration),),
     needs={"caster": "swivelling"},
+    absorbs=spun,
 )

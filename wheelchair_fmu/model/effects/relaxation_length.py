@@ -55,10 +55,16 @@ def rolled_slip(v_xw, v_yw, v_eps, drag_eps, sigma, C_lambda, m):
     return slip / cs.sqrt(cs.sqrt(cs.sqrt(1 + excess**4)))
 
 
+def wound(F_lam, side, lagged_slip, v_xw, v_yw, v_eps):
+    """Force times the rate of the deflection σ z, as far as a brake leaves the force to the chair."""
+    return cs.sum1(side * F_lam * rolling(lagged_slip, v_xw, v_yw, v_eps))
+
+
 EFFECT = Effect(
     "relaxation_length",
     "lateral tyre force that follows slip over a distance",
     parameters=(SIGMA,),
     contributions=(adds("lam_F", deflected),),
     rows=(Row(LAGGED, mass=lambda sigma: per_wheel(sigma), rate=rolling, start=rolled_slip),),
+    absorbs=wound,
 )

@@ -23,7 +23,7 @@ AMPLITUDE = Parameter(
     smallest_interesting=0.01,
     lower=0.0,
     upper=0.3,
-    source="Fuss2024",
+    source="chosen; Fuss2024 measured what arms do to the frame",
 )
 CONSTANTS = (
     Parameter(
@@ -34,7 +34,7 @@ CONSTANTS = (
         lower=1.0,
         upper=1e4,
         symbol="F_lean",
-        source="Fuss2024",
+        source="chosen",
     ),
     Parameter(
         "lag",
@@ -44,7 +44,7 @@ CONSTANTS = (
         lower=0.01,
         upper=5.0,
         symbol="T_lag",
-        source="Fuss2024",
+        source="chosen",
     ),
     Parameter(
         "filter",
@@ -80,6 +80,11 @@ def felt_aside(amplitude, felt, F_lean, lean, T_lag, psi_dot, M_z, inertia):
     return -2 * lean_rate(amplitude, felt, F_lean, lean, T_lag) * psi_dot - lean * M_z / inertia
 
 
+def muscles(amplitude, felt, F_lean, lean, T_lag, F_xr, F_xf):
+    """Less the work of the user who moves against the frame that the wheels hold."""
+    return recoil(amplitude, felt, F_lean, lean, T_lag) * (cs.sum1(F_xr) + cs.sum1(F_xf))
+
+
 EFFECT = Effect(
     "trunk_motion",
     "a trunk that leans into the push",
@@ -104,4 +109,5 @@ EFFECT = Effect(
         ),
         Row(State("lean", M, "how far the CM has moved forward against the frame", nominal=0.01), lambda: 1.0, lean_rate),
     ),
+    absorbs=muscles,
 )

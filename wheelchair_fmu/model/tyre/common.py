@@ -62,7 +62,7 @@ PARAMETERS = (
         default=0.62,
         lower=-2.0,
         upper=2.0,
-        source="Doria, Fig. 6.1: tyre A, 2 to 4 bar",
+        source="fitted to examples/rotating-disc.csv, which is simulated; Doria, Fig. 6.1, has the trend",
     ),
     Parameter(
         "tyre.pressure_M",
@@ -71,7 +71,7 @@ PARAMETERS = (
         default=-0.64,
         lower=-2.0,
         upper=2.0,
-        source="Doria, Fig. 6.2: tyre A, 2 to 4 bar",
+        source="fitted to examples/rotating-disc.csv, which is simulated; Doria, Fig. 6.2, has the trend",
     ),
     Parameter(
         "tyre.pressure_D",

@@ -1,0 +1,78 @@
+"""Energy never rises without a push: each effect over its whole bounds, and random pairs, whatever the motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.contracts import Subject
+from wheelchair_fmu.contracts.energy import Energy
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.stage import Effect, adds
+from wheelchair_fmu.model.wheelchair import Choice, assemble
+from wheelchair_fmu.quantities import N_M_S, N, Parameter
+
+EFFECTS = bundled()
+PAIRS, SEED = 60, 20
+CHOICES = [Choice("linear", "ideal"), Choice("linear", "swivelling"), Choice("dugoff", "swivelling"), Choice("magic_formula")]
+
+
+@pytest.fixture(scope="module", params=CHOICES, ids=lambda c: f"{c.tyre}-{c.caster}")
+def chair(request) -> Energy:
+    """All effects that these laws allow, in one model: those that are not asked of are off."""
+    choice = request.param
+    effects = [e for e in EFFECTS.values() if all(getattr(choice, kind) == law for kind, law in e.needs.items())]
+    return Energy(Subject(tuple(effects), assemble(choice, effects), assemble(choice)))
+
+
+def told(breaches) -> list[str]:
+    return [str(b) for b in breaches]
+
+
+def test_no_effect_anywhere_in_its_bounds_drives_the_chair(chair):
+    rng = np.random.default_rng(SEED)
+    assert told(chair.breaches((), rng)) == []
+    for effect in chair.subject.effects:
+        assert told(chair.breaches([effect], rng)) == [], effect.id
+
+
+def test_no_two_effects_together_drive_the_chair(chair):
+    rng = np.random.default_rng(SEED + 1)
+    pairs = list(combinations(chair.subject.effects, 2))
+    for i in rng.choice(len(pairs), PAIRS, replace=False):
+        assert told(chair.breaches(pairs[i], rng, times=20)) == [], [e.id for e in pairs[i]]
+
+
+Q = Parameter("q", N, "its size", off=0.0, smallest_interesting=0.5, lower=-9.0, upper=9.0, source="chosen")
+
+
+@pytest.mark.parametrize(
+    ("effect", "fact"),
+    [
+        (Effect("motor", "a motor", (Q,), (adds("F_x", lambda q: q),)), "its energy rises by"),
+        (Effect("easy", "a wheel that drives", (Q,), (adds("D_w", lambda q: q),)), "D_w is -"),
+        (
+            Effect("spun", "a spin fed", (replace(Q, unit=N_M_S),), (adds("M_z", lambda q, psi_dot: q * psi_dot),)),
+            "its energy rises by",
+        ),
+    ],
+)
+def test_what_drives_is_found_out(effect, fact):
+    found = told(Energy(Subject.of([effect])).breaches([effect], np.random.default_rng(SEED)))
+    assert len(found) == 1 and fact in found[0] and "q = " in found[0]
+
+
+def lever_of_its_own(M_w, passed):
+    """What is added to a bearing's moment where its force has the lever 50 mm and the caster swings by another."""
+    return M_w * (passed - 1)
+
+
+def test_a_caster_with_two_trails_is_found_out():
+    """It made 1.8 J of 26 J once: a force by one lever, a swing by another."""
+    friction = EFFECTS["caster_friction"]
+    effect = replace(friction, contributions=(*friction.contributions, adds("M_f", lever_of_its_own)))
+    chair = Energy(Subject.of([effect]))
+    assert any(chair.breaches([effect], np.random.default_rng(seed)) for seed in range(8))

@@ -1,0 +1,181 @@
+"""Energy: without a push the chair only loses it, whatever the motion, and no drag is below zero.
+
+Asked of the equations themselves, moment by moment, so that no integrator's tolerance is in the way: the power of all forces,
+less gravity's and with what goes into the states of effects, is not above zero. Camber and self-aligning torque are left out,
+as the paper's own terms for them take part in no balance of energy.
+
+A tyre that slides takes so much power that it hides what drives. So half of the motions are such that a chair without effects
+loses nothing: no resistance, no brake, and a rear axle that rolls where it points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as cs
+import numpy as np
+
+from ..model.chassis import ROWS
+from ..model.stage import Effect
+from ..model.wheelchair import Model
+from .places import NEWTON_STEPS, Place
+from .subject import Breach, Subject
+
+NAME = "energy"
+SAME = 1e-9  # of the powers that balance
+LEAST = 1e-12  # W
+DRAGS = ("D_f", "D_w", "d_f", "d_r", "braking", "side")
+SPENT = -1e-8  # N or N s/m: what rounding may leave of a drag that has run out
+SOLVED = 1e-12  # N or m/s²: what may be left of an algebraic row
+NONE = ("tyre.C_m_lambda", "tyre.c_p", "tyre.C_phi", "tyre.C_m_phi")
+RANGE = {"lagged_slip": 1.0, "smoothed_rate": 5.0, "felt_push": 60.0, "lean": 0.05}  # sizes that states of effects may have
+KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in each kind of motion
+    "at rest": (0.0, 0.0, 0.0),
+    "all but at rest": (1e-4, 1e-4, 1e-4),
+    "rolling": (1.5, 0.05, 0.8),
+    "spinning on the spot": (0.0, 0.2, 3.0),
+    "sliding": (0.5, 1.0, 1.0),
+}
+FREE: Mapping[str, float] = {"resistance.f_r": 0.0, "resistance.f_f": 0.0}
+
+
+@dataclass(frozen=True)
+class Energy:
+    """What is asked of one model, in which the effects that are asked of are on and all others off."""
+
+    subject: Subject
+
+    def breaches(self, on: Collection[Effect], rng: np.random.Generator, times: int = 60) -> list[Breach]:
+        """The first moment, of so many with these effects anywhere in their bounds, in which energy rises."""
+        for i in range(times):
+            kind = list(KINDS)[i % len(KINDS)]
+            place = self._settled(self._anywhere(kind, on, rng, free=i % 2 == 0))
+            if place is None:
+                continue  # loads and accelerations that find no balance: far beyond where wheels have left the ground
+            power, scale, drags = self._powers_at(place)
+            where = f"{kind}{self._sizes(on, place)}"
+            if power > SAME * scale + LEAST:
+                fact = f"{where} its energy rises by {power:.3g} W, of {scale:.3g} W that balance"
+                return [_breach(on, fact, "let forces oppose the velocity of the point at which they act")]
+            for symbol, least in drags.items():
+                if least < SPENT:
+                    return [_breach(on, f"{where} {symbol} is {least:.3g}", "let no drag go below zero")]
+        return []
+
+    def _anywhere(self, kind: str, on: Collection[Effect], rng: np.random.Generator, free: bool) -> Place:
+        p, w = self._values(on, rng), np.array([i.start for i in self._model.inputs])
+        if free:
+            p[[self._names.index(n) for n in FREE]] = list(FREE.values())
+        else:
+            w = np.where(self._surroundings, rng.uniform(*self._reach), w)
+        x = self._states(KINDS[kind], rng)
+        if free:
+            x[4] = p[self._names.index("chair.b")] * x[5]  # v = b ψ'
+            x[len(ROWS) :] *= rng.choice([0.0, 1.0])
+            self._trail(x, p, rng)
+        return Place(x, w, p)
+
+    def _trail(self, x: np.ndarray, p: np.ndarray, rng: np.random.Generator) -> None:
+        """Casters all but behind their pivots, where a little of their torque moves the chair and swings them by much."""
+        swivels = [i for i, name in enumerate(n for s in self._model.states for n in s.names) if name.startswith("swivel.")]
+        if swivels:
+            a, t_f = (p[self._names.index(name)] for name in ("chair.a", "chair.t_f"))
+            ways = np.arctan2(x[4] + a * x[5], x[3] + np.array([t_f / 2, -t_f / 2]) * x[5])  # (9), (10)
+            x[swivels] = ways + rng.choice([0.003, 0.3]) * rng.normal(size=len(swivels))
+
+    def _states(self, spread: tuple[float, float, float], rng: np.random.Generator) -> np.ndarray:
+        """Speeds of either sign, casters anywhere round, and what effects remember."""
+        moving = dict(zip(("u", "v", "psi_dot"), spread, strict=True))
+        x = []
+        for state in self._model.states:
+            name = state.name.rpartition(".")[2]
+            round_about = name in ("psi", "swivel")
+            size = moving.get(name, RANGE.get(name, 0.0))
+            x.append(rng.uniform(-np.pi, np.pi, state.size) if round_about else size * rng.normal(size=state.size))
+        return np.concatenate(x)
+
+    def _values(self, on: Collection[Effect], rng: np.random.Generator) -> np.ndarray:
+        """Parameters (np,): of the effects that are on anywhere in their bounds or at one of these, of the others zero."""
+        p = self._off.copy()
+        for effect in on:
+            for q in effect.parameters:
+                inside = rng.uniform(-1, 1) * (q.smallest_interesting or 0.0)
+                value = rng.choice([q.lower, q.upper, rng.uniform(q.lower, q.upper), inside])
+                p[self._names.index(f"effect.{effect.id}.{q.name}")] = np.clip(value, q.lower, q.upper)
+        return p
+
+    def _powers_at(self, place: Place) -> tuple[float, float, dict[str, float]]:
+        """Power [W], the sizes of its parts, and the least of each drag."""
+        parts, *drags = (v.full().ravel() for v in self._powers.call([place.x, place.w, place.p]))
+        return float(parts.sum()), float(abs(parts).sum()), {n: float(v.min()) for n, v in zip(DRAGS, drags, strict=True)}
+
+    def _settled(self, place: Place) -> Place | None:
+        """With algebraic states where their rows are zero, or None where that is nowhere near."""
+        off = np.flatnonzero(self._mass(place.p).full().ravel() == 0)
+        if not len(off):
+            return place
+        step, x = self._step(tuple(off.tolist())), place.x.copy()
+        for _ in range(2 * NEWTON_STEPS):
+            change, left = (v.full().ravel() for v in step.call([x, place.w, place.p]))
+            if abs(left).max() < SOLVED:
+                return Place(x, place.w, place.p)
+            x[off] -= change
+        return None
+
+    def _sizes(self, on: Collection[Effect], place: Place) -> str:
+        names = [f"effect.{e.id}.{q.name}" for e in on for q in e.parameters]
+        return "".join(f", {n.rpartition('.')[2]} = {place.p[self._names.index(n)]:.4g}" for n in names)
+
+    @property
+    def _model(self) -> Model:
+        return self.subject.model
+
+    @cached_property
+    def _names(self) -> list[str]:
+        return [q.name for q in self._model.parameters]
+
+    @cached_property
+    def _off(self) -> np.ndarray:
+        p = self.subject.values(0.0)
+        p[[self._names.index(n) for n in NONE]] = 0.0
+        return p
+
+    @cached_property
+    def _surroundings(self) -> np.ndarray:
+        return np.array([not i.name.startswith("push.") for i in self._model.inputs])
+
+    @cached_property
+    def _reach(self) -> tuple[np.ndarray, np.ndarray]:
+        """What brakes, slopes and carpets may be."""
+        inputs = self._model.inputs
+        return np.array([max(i.lower, -1.0) for i in inputs]), np.array([min(i.upper, 2.0) for i in inputs])
+
+    @cached_property
+    def _powers(self) -> cs.Function:
+        m, q = self._model, self._model.quantities
+        u, v, psi_dot = m.x[3], m.x[4], m.x[5]
+        rows = u * m.f[3], v * m.f[4], psi_dot * m.f[5]
+        gravity = -q["m"] * q["g_x"] * u, -q["m"] * q["g_y"] * v
+        return cs.Function("powers", [m.x, m.w, m.p], [cs.vertcat(*rows, *gravity, m.absorbed), *(q[n] for n in DRAGS)])
+
+    @cached_property
+    def _mass(self) -> cs.Function:
+        return cs.Function("mass", [self._model.p], [cs.densify(self._model.mass)])
+
+    @cached_property
+    def _steps(self) -> dict[tuple[int, ...], cs.Function]:
+        return {}
+
+    def _step(self, off: tuple[int, ...]) -> cs.Function:
+        """Newton's change of the states whose rows are algebraic, and what is left of these rows."""
+        if off not in self._steps:
+            m, rows = self._model, self._model.f[list(off)]
+            change = cs.solve(cs.jacobian(rows, m.x[list(off)]), rows)
+            self._steps[off] = cs.Function("step", [m.x, m.w, m.p], [change, rows])
+        return self._steps[off]
+
+
+def _breach(on: Collection[Effect], fact: str, cure: str) -> Breach:
+    return Breach(", ".join(e.id for e in on) or "none", NAME, fact, cure)
