@@ -173,7 +173,6 @@ def test_euler_at_the_default_step_integrates_a_turn(archive, request):
         assert e.get("chair.u", "chair.psi_dot") == pytest.approx(c.get("chair.u", "chair.psi_dot"), rel=2e-3)
 
 
-@pytest.mark.xfail(strict=True, reason="CVODE takes too many steps at a braked wheel since brakes have friction")
 def test_cvode_stops_at_the_event(native):
     """A growing turn: the wheel lifts between two outputs, and the output says so from then on only."""
     pushes = np.array([(0.0, 0.0, 0.0), (2.0, 400.0, -400.0)], dtype=PUSHES.dtype)
@@ -181,7 +180,7 @@ def test_cvode_stops_at_the_event(native):
         str(native.path),
         fmi_type="ModelExchange",
         stop_time=2,
-        output_interval=0.05,
+        output_interval=0.02,  # CVODE may take 500 steps between two outputs, and a start at its tolerance takes 300 in this
         input=pushes,
         start_values={"effect.lateral_load_transfer.h": 1.0, "start.u": 2.0, "chair.t_r": 0.3},
         output=["load.lifted", "load.rl", "load.rr", "load.fl", "load.fr"],
