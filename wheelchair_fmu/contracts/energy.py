@@ -20,7 +20,7 @@ import numpy as np
 from ..model.chassis import ROWS
 from ..model.stage import Effect
 from ..model.wheelchair import Model
-from .places import NEWTON_STEPS, Place
+from .places import SOLVED, Place, Settler
 from .subject import Breach, Subject
 
 NAME = "energy"
@@ -28,7 +28,6 @@ SAME = 1e-9  # of the powers that balance
 LEAST = 1e-12  # W
 DRAGS = ("D_f", "D_w", "d_f", "d_r", "braking", "side")
 SPENT = -1e-8  # N or N s/m: what rounding may leave of a drag that has run out
-SOLVED = 1e-12  # N or m/s²: what may be left of an algebraic row
 NONE = ("tyre.C_m_lambda", "tyre.c_p", "tyre.C_phi", "tyre.C_m_phi")
 RANGE = {"lagged_slip": 1.0, "smoothed_rate": 5.0, "felt_push": 60.0, "lean": 0.05}  # sizes that states of effects may have
 KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in each kind of motion
@@ -51,8 +50,8 @@ class Energy:
         """The first moment, of so many with these effects anywhere in their bounds, in which energy rises."""
         for i in range(times):
             kind = list(KINDS)[i % len(KINDS)]
-            place = self._settled(self._anywhere(kind, on, rng, free=i % 2 == 0))
-            if place is None:
+            place, left = self._settler(self._anywhere(kind, on, rng, free=i % 2 == 0))
+            if left >= SOLVED:
                 continue  # loads and accelerations that find no balance: far beyond where wheels have left the ground
             power, scale, drags = self._powers_at(place)
             where = f"{kind}{self._sizes(on, place)}"
@@ -111,19 +110,6 @@ class Energy:
         parts, *drags = (v.full().ravel() for v in self._powers.call([place.x, place.w, place.p]))
         return float(parts.sum()), float(abs(parts).sum()), {n: float(v.min()) for n, v in zip(DRAGS, drags, strict=True)}
 
-    def _settled(self, place: Place) -> Place | None:
-        """With algebraic states where their rows are zero, or None where that is nowhere near."""
-        off = np.flatnonzero(self._mass(place.p).full().ravel() == 0)
-        if not len(off):
-            return place
-        step, x = self._step(tuple(off.tolist())), place.x.copy()
-        for _ in range(2 * NEWTON_STEPS):
-            change, left = (v.full().ravel() for v in step.call([x, place.w, place.p]))
-            if abs(left).max() < SOLVED:
-                return Place(x, place.w, place.p)
-            x[off] -= change
-        return None
-
     def _sizes(self, on: Collection[Effect], place: Place) -> str:
         names = [f"effect.{e.id}.{q.name}" for e in on for q in e.parameters]
         return "".join(f", {n.rpartition('.')[2]} = {place.p[self._names.index(n)]:.4g}" for n in names)
@@ -153,28 +139,16 @@ class Energy:
         return np.array([max(i.lower, -1.0) for i in inputs]), np.array([min(i.upper, 2.0) for i in inputs])
 
     @cached_property
+    def _settler(self) -> Settler:
+        return Settler(self._model)
+
+    @cached_property
     def _powers(self) -> cs.Function:
         m, q = self._model, self._model.quantities
         u, v, psi_dot = m.x[3], m.x[4], m.x[5]
         rows = u * m.f[3], v * m.f[4], psi_dot * m.f[5]
         gravity = -q["m"] * q["g_x"] * u, -q["m"] * q["g_y"] * v
         return cs.Function("powers", [m.x, m.w, m.p], [cs.vertcat(*rows, *gravity, m.absorbed), *(q[n] for n in DRAGS)])
-
-    @cached_property
-    def _mass(self) -> cs.Function:
-        return cs.Function("mass", [self._model.p], [cs.densify(self._model.mass)])
-
-    @cached_property
-    def _steps(self) -> dict[tuple[int, ...], cs.Function]:
-        return {}
-
-    def _step(self, off: tuple[int, ...]) -> cs.Function:
-        """Newton's change of the states whose rows are algebraic, and what is left of these rows."""
-        if off not in self._steps:
-            m, rows = self._model, self._model.f[list(off)]
-            change = cs.solve(cs.jacobian(rows, m.x[list(off)]), rows)
-            self._steps[off] = cs.Function("step", [m.x, m.w, m.p], [change, rows])
-        return self._steps[off]
 
 
 def _breach(on: Collection[Effect], fact: str, cure: str) -> Breach:

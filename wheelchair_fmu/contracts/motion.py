@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..quantities import Quantity
-from .places import Place, anywhere, evaluate, mirrored, mirrored_place, settled
+from .places import Place, Settler, anywhere, evaluate, mirrored, mirrored_place
 from .subject import Breach, Subject
 
 SPEEDS = (1.0, 0.0, -0.7)
@@ -28,7 +28,7 @@ def neutral(subject: Subject) -> list[Breach]:
         model = subject.model
         x = np.concatenate([there.x, np.zeros(model.x.numel() - len(there.x))])
         p = np.concatenate([there.p, subject.values(0.0)[len(there.p) :]])
-        after = evaluate(model, settled(model, Place(x, there.w, p)), model.f, model.y)
+        after = evaluate(model, Settler(model)(Place(x, there.w, p))[0], model.f, model.y)
         for records, is_, should in zip((subject.bare.states, subject.bare.outputs), after, before, strict=True):
             worst += _furthest(records, is_[: len(should)], should)
     if not worst:

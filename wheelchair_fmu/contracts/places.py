@@ -10,7 +10,8 @@ import numpy as np
 from ..model.wheelchair import Model
 from ..quantities import Quantity
 
-NEWTON_STEPS = 5  # that bring algebraic states to where their rows are zero
+NEWTON_STEPS = 10  # at most, that bring algebraic states to where their rows are zero
+SOLVED = 1e-12  # N or m/s²: what may be left of an algebraic row
 
 
 @dataclass(frozen=True)
@@ -45,17 +46,34 @@ def at_rest(model: Model, p: np.ndarray) -> Place:
     return Place(np.zeros(model.x.numel()), np.array([i.start for i in model.inputs]), p)
 
 
-def settled(model: Model, place: Place) -> Place:
-    """The same with algebraic states, whose mass is zero, where their rows are zero."""
-    places = np.flatnonzero(evaluate(model, place, model.mass)[0] == 0)
-    if not len(places):
-        return place
-    rows = model.f[places.tolist()]
-    step = cs.Function("step", [model.x, model.w, model.p], [cs.solve(cs.jacobian(rows, model.x[places.tolist()]), rows)])
-    x = place.x.copy()
-    for _ in range(NEWTON_STEPS):
-        x[places] -= step(x, place.w, place.p).full().ravel()
-    return Place(x, place.w, place.p)
+class Settler:
+    """Brings the algebraic states of a model, whose mass is zero, to where their rows are zero, by Newton's steps."""
+
+    def __init__(self, model: Model):
+        self._model = model
+        self._mass = cs.Function("mass", [model.p], [cs.densify(model.mass)])
+        self._steps: dict[tuple[int, ...], cs.Function] = {}
+
+    def __call__(self, place: Place) -> tuple[Place, float]:
+        """The place with these states, and how far their rows are from zero there (N or m/s²)."""
+        places = np.flatnonzero(self._mass(place.p).full().ravel() == 0)
+        if not len(places):
+            return place, 0.0
+        step, x = self._step(tuple(places.tolist())), place.x.copy()
+        for _ in range(NEWTON_STEPS):
+            change, rows = (v.full().ravel() for v in step.call([x, place.w, place.p]))
+            if (left := float(abs(rows).max())) < SOLVED:
+                break
+            x[places] -= change
+        return Place(x, place.w, place.p), left
+
+    def _step(self, places: tuple[int, ...]) -> cs.Function:
+        """Newton's change of these states, and what is left of their rows."""
+        if places not in self._steps:
+            m, rows = self._model, self._model.f[list(places)]
+            change = cs.solve(cs.jacobian(rows, m.x[list(places)]), rows)
+            self._steps[places] = cs.Function("step", [m.x, m.w, m.p], [change, rows])
+        return self._steps[places]
 
 
 def mirrored(records: tuple[Quantity, ...], values: np.ndarray) -> np.ndarray:
