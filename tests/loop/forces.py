@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from wheelchair_fmu.campaign import Campaign, Run
-from wheelchair_fmu.loop.evidence import LASTING, Bench
+from wheelchair_fmu.loop.evidence import FORGOTTEN, Bench
 from wheelchair_fmu.model.variant import Variant
 
 T_R = 0.55
@@ -16,10 +16,10 @@ Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  
 
 
 def wandering(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
-    """A first-order Gauss–Markov process (n,) that is forgotten over LASTING seconds."""
+    """A first-order Gauss–Markov process (n,) that is forgotten over FORGOTTEN seconds."""
     out, level = np.empty(len(time)), sd * rng.standard_normal()
     for i, gap in enumerate(np.diff(time, prepend=time[0])):
-        keeps = np.exp(-gap / LASTING)
+        keeps = np.exp(-gap / FORGOTTEN)
         level = keeps * level + np.sqrt(1 - keeps**2) * sd * rng.standard_normal()
         out[i] = level
     return out

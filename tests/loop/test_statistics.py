@@ -287,6 +287,24 @@ def test_the_screens_score_test_has_the_level_it_says(kind, rho):
     assert 0.04 <= np.sum(found) / 2000 <= 0.06, np.sum(found) / 2000
 
 
+def test_a_strained_prior_speaks_for_what_would_relieve_it():
+    """Of a value known to 0.05 that a fit without the effect has bent: what a score expects of the effect is what a penalised
+    fit with it finds, and by how much squares and prior fall together."""
+    rng = np.random.default_rng(3)
+    (slopes,) = signals(rng, 1, LONG, 1)
+    known = np.concatenate((slopes, 0.9 * slopes + 0.1 * signals(rng, 1, LONG, 1)[0]), axis=2)
+    measured = [known @ np.array([0.0, 30.0]) + 0.1 * noise(rng, (LONG, 1))]
+    sd, by = np.array([0.05, np.inf]), ("known", "effect")
+    bent = least_squares(measured, [known], by, prior_sd=sd, keep=(0,))
+    whole = least_squares(measured, [known], by, prior_sd=sd)
+    assert bent.values["known"] / sd[0] > 3
+    rows = np.array([-bent.values["known"] / sd[0]])
+    off = Projector(bent.evidence.S[:, :1], bent.prior_slopes[:1, :1], rows)
+    found = score(bent.evidence, off, "x", ["effect"], bent.evidence.S[:, 1:], np.ones(1), np.zeros(1, bool))
+    assert found.estimate[0] == pytest.approx(whole.values["effect"], rel=1e-6)
+    assert found.drop == pytest.approx(bent.misfit - whole.misfit, rel=1e-6)
+
+
 def test_noise_that_is_larger_than_stated_makes_nothing_surer(search):
     """Twice the residuals are four times the squares: what falls is measured by what is left."""
     rng = np.random.default_rng(12)

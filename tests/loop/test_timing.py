@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.diagnose import Search
-from wheelchair_fmu.loop.preflight import begin, settle_clocks
+from wheelchair_fmu.loop.preflight import begin, retime_by_slopes, settle_clocks
 from wheelchair_fmu.loop.timing import by_model, by_signals
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.loop.workshop import Workshop
@@ -45,6 +45,13 @@ def test_a_missing_effect_is_not_taken_for_a_shift(sample):
     evidence = bench.evidence(sample.runs, {}, ())
     assert max(e.rms["yaw_rate"] for e in evidence.runs) > 3  # there is something to explain
     assert by_model(bench, evidence, {}) == {} and by_signals(sample) == {}
+
+
+def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):
+    """`--fix effect.push_force_delay.tau`."""
+    search = Search(Workshop(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
+    base, *_ = search.calibrate()
+    assert not retime_by_slopes(search, (), base) and search.retimed == {}
 
 
 def test_a_delay_that_all_runs_share_is_no_clock(sample):

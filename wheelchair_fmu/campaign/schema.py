@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..model import chassis, resistance
+from ..model.tyre import common
 from .document import number
 
 
@@ -41,6 +43,15 @@ class TableRecord:
 
     def key(self, name: str) -> Key | None:
         return next((k for k in self.keys if k.name == name), None)
+
+
+def _usually_known() -> str:
+    """How well values are known that a calibration starts from, as their records have it."""
+    records = (*chassis.PARAMETERS, *resistance.PARAMETERS, *common.PARAMETERS)
+    told = {p.name: f"{p.known_to:g} {p.unit.name}" if p.known_to else f"{p.uncertainty:.3g}" for p in records}
+    shares = "chair.m", "chair.I_z", "resistance.f_r", "resistance.f_f", "tyre.C_lambda"
+    relative = ", ".join(f"{told[name]} of {name}" for name in shares)
+    return f"{relative}; {', '.join(f'{told[name]} in {name}' for name in ('chair.a', 'chair.b', 'chair.t_r'))}"
 
 
 CAMPAIGN = TableRecord(
@@ -255,8 +266,8 @@ OPEN = (
     ),
     TableRecord(
         "prior",
-        "How well the values above are known: a standard deviation for each parameter by its dotted name. Without one, m is "
-        "known to 2.5 %, a and b to 1 cm, t_r to 8 mm, f_r and f_f to 60 %, the tyres and I_z to 30 %.",
+        "How well the values above are known: a standard deviation for each parameter by its dotted name. Without one, as "
+        f"standard deviations, {_usually_known()}.",
         (),
         open=True,
     ),

@@ -50,7 +50,7 @@ class Bootstrap:
 def bootstrap(d: Diagnosis, resamples: int = 1000, seed: int = 0) -> Bootstrap:
     """Resample a diagnosis; the same `seed` draws the same blocks."""
     rng = np.random.default_rng(seed)
-    final = d.proposal.fit if d.proposal else d.final
+    final = d.top
     rounds = {r.winner.effect: r for r in (*d.rounds, *d.beside) if r.winner and r.winner.effect in d.included}
     stable = tuple(_stability(r, rng, resamples) for r in rounds.values())
     return Bootstrap(resamples, stable, _estimates(final, rng, resamples))

@@ -13,7 +13,7 @@ from .evidence import Bench
 from .fit import REACH, Fit, Problem
 from .statistics import standard_errors
 
-BENT = 2.0  # standard deviations of its prior by which a value is said to be off
+DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
 CLOSE = 1e-3  # of a prior's standard deviation, or of a bound: as near as a fit comes to it
 
 
@@ -58,7 +58,7 @@ class Calibrated:
     @property
     def bent(self) -> bool:
         """Is it further from what was given than a value that was measured well usually is?"""
-        return abs(self.off) > BENT
+        return abs(self.off) > DOUBTED
 
     def as_json(self) -> dict[str, Any]:
         """The keys of one value in `calibration`."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
+from ..engine.innovations import Whitener
 from .cores import each
 from .evidence import Colour, Evidence, RunEvidence, disturbance
 
@@ -41,40 +42,42 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
     """
 
     def misfit(log_ratio: np.ndarray) -> float:
-        ratios = np.exp(np.clip(log_ratio, np.log(LEAST), np.log(MOST)))
+        ratios = np.exp(log_ratio)
         force, moment = ratios * (USUAL_FORCE, USUAL_MOMENT)
         return _misfit(evidence, Colour({}, force=force, moment=moment), t_r) + 2 * float(ratios.sum())
 
     without = _misfit(evidence, Colour({}), t_r)
-    begun = min((np.log(ratios) for ratios in START), key=misfit)
-    if misfit(begun) > without:
+    least, begun = min(((misfit(at), at) for at in np.log(START)), key=lambda tried: tried[0])
+    if least > without:
         return Strength(0.0, 0.0, 0.0)
     found = minimize(
-        misfit, begun, method="Nelder-Mead", options={"xatol": 0.05, "fatol": 0.5, "initial_simplex": _simplex(begun)}
+        misfit,
+        begun,
+        method="Nelder-Mead",
+        bounds=[(np.log(LEAST), np.log(MOST))] * 2,
+        options={"xatol": 0.05, "fatol": 0.5, "initial_simplex": begun + np.array([[0.0, 0.0], [0.7, 0.0], [0.0, 0.7]])},
     )
-    fall = without - float(found.fun)
-    if fall <= 0:
-        return Strength(0.0, 0.0, 0.0)
     ratios = np.exp(found.x)
     force, moment = (
         float(r * usual) if r > 2 * LEAST else 0.0 for r, usual in zip(ratios, (USUAL_FORCE, USUAL_MOMENT), strict=True)
     )
-    return Strength(force, moment, fall)
+    return Strength(force, moment, without - float(found.fun))
 
 
-def _simplex(at: np.ndarray) -> np.ndarray:
-    return at + np.array([[0.0, 0.0], [0.7, 0.0], [0.0, 0.7]])
+def disturbed(e: RunEvidence, colour: Colour, t_r: float) -> tuple[Whitener, np.ndarray]:
+    """The filter of a run with forces as strong as `colour` has them, and where (nx,) it expects the true start, less the
+    simulated one."""
+    filter_ = e.whitener.whitener
+    filter_ = filter_.disturbed(disturbance(colour, len(filter_.noise.pushes), t_r))
+    return filter_, e.offset[: filter_.size[0]]
 
 
 def _misfit(evidence: Evidence, colour: Colour, t_r: float) -> float:
     """−2 log likelihood with forces as strong as `colour` has them, but for a constant."""
 
     def one(e: RunEvidence) -> float:
-        filter_ = e.whitener.whitener
-        pushes = len(filter_.noise.pushes)
-        filter_ = filter_.disturbed(disturbance(colour, pushes, t_r))
-        nx = filter_.noise.start.shape[0]
-        r = filter_((e.measured - e.predicted)[:, :, None], e.offset[:nx])
+        filter_, start = disturbed(e, colour, t_r)
+        r = filter_((e.measured - e.predicted)[:, :, None], start)
         return float(np.nansum(r**2)) + filter_.logdet
 
     return float(sum(each(one, evidence.runs)))

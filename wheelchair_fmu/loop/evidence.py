@@ -32,7 +32,7 @@ POSE_SD = 0.05
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
-LASTING = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
+FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
 FIRST = 0.2  # s of samples that say where a run starts
 
 
@@ -417,7 +417,7 @@ def disturbance(colour: Colour, pushes: int, t_r: float) -> Disturbance:
     on the right wheel, `t_r` apart."""
     as_push = np.zeros((pushes, 2))
     as_push[:2] = [[0.5, 1 / t_r], [0.5, -1 / t_r]]
-    return Disturbance(np.array([colour.force, colour.moment]), np.full(2, LASTING), as_push)
+    return Disturbance(np.array([colour.force, colour.moment]), np.full(2, FORGOTTEN), as_push)
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:

@@ -41,13 +41,12 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
 
 def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
     """Read the pushes in time of the runs that the model with these effects shows to be a little early or late; are there any?
-    Not while a delay of all pushes is in it."""
+    Not while a delay of all pushes is in it, or nobody is to estimate one."""
     w = search.workshop
-    delay = next((e for e in w.catalogue.values() if e.delays_record), None)
-    if delay is None or delay.id in effects:
+    delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
+    if not name or delay in effects:
         return False
-    name = w.parameters(delay.id)[0]
-    found = by_slopes(w.bench((*effects, delay.id)).evidence(w.campaign.runs, base.values, (name,)), name)
+    found = by_slopes(w.bench((*effects, delay)).evidence(w.campaign.runs, base.values, (name,)), name)
     w.retime(found)
     search.retimed |= found
     return bool(found)

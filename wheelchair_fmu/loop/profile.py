@@ -10,7 +10,7 @@ import numpy as np
 from ..model.stage import Effect
 from .diagnose import Search
 from .fit import Fit, prior_of
-from .score import Projector, robust_variance
+from .score import robust_variance
 
 SUPPORTED = 0.9  # of a knot's prior variance that the data must take away, for the knot to be drawn
 
@@ -34,16 +34,17 @@ def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[
     bench = workshop.wide(effects)
     names = [n for effect in free for n in workshop.parameters(effect)]
     evidence = bench.evidence(workshop.campaign.fit, base.values, [*base.names, *names])
-    k = len(base.names)
-    off = Projector(evidence.S[:, :k], prior_of(bench, base.names).slopes)
+    k, off = len(base.names), search.off(bench, base, evidence)
     found = []
     for effect in free:
         own = workshop.parameters(effect)
-        s = off(evidence.S[:, [k + names.index(n) for n in own]])
+        columns = evidence.S[:, [k + names.index(n) for n in own]]
+        s, strained = off(columns), off.strained(columns)
         prior = prior_of(bench, own).sd
-        inverse = np.linalg.inv(s.T @ s + np.diag(prior**-2.0))
-        covariance = inverse @ (robust_variance(evidence, s, evidence.r) + np.diag(prior**-2.0)) @ inverse
+        known = strained.T @ strained + np.diag(prior**-2.0)
+        inverse = np.linalg.inv(s.T @ s + known)
+        covariance = inverse @ (robust_variance(evidence, s, evidence.r) + known) @ inverse
         seen = np.diag(inverse) < (1 - SUPPORTED) * prior**2
-        estimate, se = inverse @ (s.T @ evidence.r), np.sqrt(np.diag(covariance))
+        estimate, se = inverse @ (s.T @ evidence.r + strained.T @ off.rows), np.sqrt(np.diag(covariance))
         found.append(Profile(effect, np.where(seen, estimate, np.nan), np.where(seen, se, np.nan)))
     return found

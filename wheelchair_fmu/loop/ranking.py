@@ -93,7 +93,7 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
 def _estimate(d: Diagnosis, s: Score, c: Candidate | None) -> tuple[np.ndarray, np.ndarray]:
     """Of an effect's parameters, with standard errors: in the last model where it is in that, else in its own."""
     if s.effect in d.included:
-        value, covariance = estimates(d.proposal.fit if d.proposal else d.final, s.names)
+        value, covariance = estimates(d.top, s.names)
         return value, np.sqrt(np.maximum(np.diag(covariance), 0))
     return (c.estimate, c.se) if c else (s.estimate, s.se)
 

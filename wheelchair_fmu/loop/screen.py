@@ -84,7 +84,7 @@ class Screen(Models):
         w = self.workshop
         bench, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
         here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
-        off, unbent = self._off(bench, base, here), self._unbent(bench, base, names)
+        off, unbent = self.off(bench, base, here), self._unbent(bench, base, names)
 
         def screened(effect: str) -> Screened:
             own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
@@ -109,7 +109,7 @@ class Screen(Models):
             except SimulationError:
                 if not at:
                     return []
-        off = self._off(bench, base, here)
+        off = self.off(bench, base, here)
 
         def screened(effect: str) -> Screened | None:
             by = [[self._score(at[0][1], off, effect, S) for S in self._secants(bench, e, values, effect)] for values, e in at]
@@ -121,7 +121,7 @@ class Screen(Models):
 
         return [s for s in each(screened, effects) if s]
 
-    def _off(self, bench: Bench, base: Fit, here: Evidence) -> Projector:
+    def off(self, bench: Bench, base: Fit, here: Evidence) -> Projector:
         """Takes what calibration can imitate off any columns."""
         prior = prior_of(bench, base.names)
         rows = prior.rows(np.array([base.values[n] for n in base.names]))

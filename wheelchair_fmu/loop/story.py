@@ -40,5 +40,5 @@ def _models(d: Diagnosis) -> dict[str, Mapping[str, float]]:
     for i in range(len(d.already) + 1, len(d.included) + 1):
         if d.included[:i] in known:
             models[f"+{d.included[i - 1]}"] = known[d.included[:i]]
-    models[d.ladder[-1].name] = (d.proposal.fit if d.proposal else d.final).values
+    models[d.ladder[-1].name] = d.top.values
     return models

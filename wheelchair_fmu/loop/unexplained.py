@@ -16,8 +16,8 @@ import numpy as np
 
 from ..engine.smoothing import smoothed
 from .cores import each
-from .disturbance import Strength
-from .evidence import Bench, Colour, Evidence, RunEvidence, disturbance
+from .disturbance import Strength, disturbed
+from .evidence import Bench, Colour, Evidence, RunEvidence, pushes_of
 from .fit import Fit
 
 BINS = 8  # of a variable, alike in how much was recorded in each
@@ -117,10 +117,8 @@ def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]
     """The force and moment of each run, by evidence of one model with its filters; `t_r` is the distance (m) between wheels."""
 
     def one(e: RunEvidence) -> Missing:
-        filter_ = e.whitener.whitener
-        noise = strength.put_into(Colour({}))
-        filter_ = filter_.disturbed(disturbance(noise, len(filter_.noise.pushes), t_r))
-        mean, sd = smoothed(filter_, e.measured - e.predicted, e.offset[: filter_.size[0]])
+        filter_, start = disturbed(e, strength.put_into(Colour({})), t_r)
+        mean, sd = smoothed(filter_, e.measured - e.predicted, start)
         both = {name: (mean[:, i], sd[:, i]) for i, name in enumerate(("force", "moment"))}
         return Missing(e.run.name, e.run.time, {n: m for n, (m, _) in both.items()}, {n: s for n, (_, s) in both.items()})
 
@@ -153,7 +151,7 @@ def _words(of: str, name: str, share: float) -> str:
 
 def _shares(going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarray]) -> dict[str, float]:
     """Share of the mean square of a force, (n,) of each run, that each variable foretells, of what a constant leaves; and the
-    constant's own. All are 0 where one run has no others to learn from."""
+    constant's own. None where one run has no others to learn from."""
     if len(going) < 2:
         return {}
     left = {name: _left([g[name] for g in going], values, basis) for name, (_, basis) in VARIABLES.items()}
@@ -197,9 +195,8 @@ def _lone(of: str, found: Sequence[Missing], values: Sequence[np.ndarray]) -> Or
 
 
 def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str, np.ndarray]:
-    """What may order a force in one run, (n,) or (n, 2) by name."""
+    """What may order a force in one run, (n,) by name."""
     at = {name: e.results[:, i] for i, name in enumerate(results)}
-    pushes = [e.run.inputs[n] for n in e.run.inputs if n.startswith("push.") and e.run.inputs[n].any()]
     gaps = np.diff(e.run.time, prepend=e.run.time[0])
     turned = {side: np.cumsum(at[f"sensor.wheel_speed_{side}"] * gaps) / radius for side in ("l", "r")}
     return {
@@ -207,7 +204,7 @@ def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str
         "speed": at["chair.u"],
         "yaw rate": at["chair.psi_dot"],
         "heading": np.mod(at["chair.psi"], 2 * np.pi),
-        "push": sum(pushes) if pushes else np.zeros(len(e.run.time)),
+        "push": sum((e.run.inputs.get(n, 0.0) for n in pushes_of(e.run)), np.zeros(len(e.run.time))),
         "caster angle": 0.5 * (at["caster.fl"] + at["caster.fr"]),
         "time": e.run.time - e.run.time[0],
         "left wheel's angle": turned["l"],

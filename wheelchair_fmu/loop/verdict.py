@@ -73,6 +73,11 @@ class Diagnosis:
     unexplained: Unexplained | None = None
 
     @property
+    def top(self) -> Fit:
+        """The fit at the top of the staircase: the proposal's, where there is one."""
+        return self.proposal.fit if self.proposal else self.final
+
+    @property
     def included(self) -> tuple[str, ...]:
         """The effects that `final`, or the proposal's fit, has in it."""
         return tuple(
@@ -105,7 +110,7 @@ def diagnose(
     def searched(colour: Colour | None, terms: Mapping[str, Effect]) -> Diagnosis:
         workshop = Workshop(campaign, variant or Variant(), fixed, calibrated)
         workshop.colour = colour or workshop.colour
-        return _searched(campaign, Search(workshop, progress), terms, experiments, climbed)
+        return _searched(Search(workshop, progress), terms, experiments, climbed)
 
     found = searched(None, generic or {})
     found = _with_forces(found, lambda colour: searched(colour, {}), progress)
@@ -117,11 +122,11 @@ def _with_forces(found: Diagnosis, again: Callable[[Colour], Diagnosis], say: Ca
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
     before = _strength(found, found.rounds[0].fit)
     if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
-        return replace(found, unexplained=Unexplained(before, _strength(found, found.final), ()))
+        return replace(found, unexplained=Unexplained(before, _strength(found, found.top), ()))
     say("searching again, with forces that nobody recorded")
     second = again(before.put_into(found.search.workshop.colour))
-    after = _strength(second, second.final)
-    left = unexplained(second.search.workshop.bench(second.included), second.final, before, after)
+    after = _strength(second, second.top)
+    left = unexplained(second.search.workshop.bench(second.included), second.top, before, after)
     if left.orders or not left.like_a_floor:
         return replace(found, unexplained=left)
     with_forces = replace(second.ladder[1], name=FORCES)
@@ -133,13 +138,10 @@ def _strength(found: Diagnosis, at: Fit) -> Strength:
 
 
 def _searched(
-    campaign: Campaign,
-    search: Search,
-    generic: Mapping[str, Effect],
-    experiments: Sequence[Experiment],
-    climbed: Callable[[Sequence[Step]], None],
+    search: Search, generic: Mapping[str, Effect], experiments: Sequence[Experiment], climbed: Callable[[Sequence[Step]], None]
 ) -> Diagnosis:
     """The search up the staircase, and the verdict on where it ends."""
+    campaign = search.workshop.campaign
     climb = Climb(search, climbed)
     climb.to_the_top()
     if retime_by_slopes(search, climb.effects, climb.base):
