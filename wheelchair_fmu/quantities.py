@@ -146,6 +146,7 @@ class Input(Quantity):
     lower: float = -inf
     upper: float = inf
     nominal: float = 1.0
+    seldom: bool = False  # most runs leave it at its start, and have a shorter step for that
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.kit import variant_with
+from tests.kit import anywhere, variant_with
+from wheelchair_fmu.engine.kernel import kernel, seldom
 from wheelchair_fmu.engine.simulate import Simulator, Trajectory
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.model.effects import bundled
@@ -153,3 +154,32 @@ def test_not_a_number_is_said_with_its_time():
     w = simulator.inputs(len(t), {"push.F_rl": np.where(t > 0.5, np.nan, 1.0)})
     with pytest.raises(SimulationError, match=r"stops at t = 0.5 s: the equations gave NaN or infinity"):
         simulator.run(t, w)
+
+
+@pytest.mark.parametrize("effects", ["none", "all"])
+def test_the_plain_step_is_the_step_on_a_level_floor_with_open_brakes(effects):
+    rng = np.random.default_rng(3)
+    variant = variant_with(*(() if effects == "none" else bundled()))
+    functions = kernel(variant.model()).functions
+    for _ in range(20):
+        place = anywhere(variant, rng)
+        w1 = place.w + 5 * rng.standard_normal(place.w.shape) * (place.w != 0)
+        for i in seldom(variant.model()):
+            place.w[i] = w1[i] = variant.model().inputs[i].start
+        at = (place.x, place.w, w1, 0.01, place.p)
+        for whole, plain in zip(functions["step"](*at), functions["plain"](*at), strict=True):
+            np.testing.assert_allclose(np.array(plain), np.array(whole), rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["brake.rl", "brake.rr", "floor.slope_x", "floor.slope_y", "floor.rolling_factor"])
+def test_no_input_is_overlooked_because_most_runs_leave_it_at_rest(name):
+    """From rest to somewhere, and from somewhere to rest, within one step."""
+    simulator = Simulator()
+    rest = next(i for i in simulator.model.inputs if i.name == name).start
+    t, size = np.linspace(0, 0.02, 3), {"brake.rl": 0.3, "brake.rr": 0.3}.get(name, 0.05)
+    w = simulator.inputs(3, {"push.F_rl": 12.0, "push.F_rr": 9.0, name: rest + size * np.array([0.0, 1.0, 0.0])})
+    plain = simulator.inputs(3, {"push.F_rl": 12.0, "push.F_rr": 9.0})
+    x0 = simulator.run(t, plain).states[0]
+    moved, unmoved = (simulator.run(t, inputs, start=x0, grid=0.01).states for inputs in (w, plain))
+    first, second = np.abs(np.diff(moved - unmoved, axis=0)).max(axis=1)
+    assert first > 1e-6 and second > 1e-6

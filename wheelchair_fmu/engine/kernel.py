@@ -3,18 +3,19 @@
     start(p, w)                          → x     states at the start, algebraic ones not yet in place
     project(x, w, p)                     → x     one Newton step that puts algebraic rows right
     step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
+    plain(x, w0, w1, h, p)               → the same, on a level floor with open brakes, which is a third less work
     output(x, w, p)                      → y
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
     mass(p)                              → m     of each row; zero where it is algebraic
 
-These seven are all that the Python tools and the FMUs run; the report page takes the same steps in loops over
+These are all that the Python tools and the FMUs run; the report page takes the same steps in loops over
 their stages (`csrc/rodas.c`), which is less code.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as cs
 
@@ -24,7 +25,7 @@ from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
 
-NAMES = ("start", "project", "step", "output", "forward", "rate", "mass")
+NAMES = ("start", "project", "step", "plain", "output", "forward", "rate", "mass")
 
 
 @dataclass(frozen=True)
@@ -38,17 +39,33 @@ class Kernel:
 def kernel(model: Model) -> Kernel:
     """Derive the functions of a model."""
     x, w, p = model.x, model.w, model.p
-    s = step(model)
     functions = {
         "start": cs.Function("start", [p, w], [model.start]),
         "project": cs.Function("project", [x, w, p], [_projected(model)]),
-        "step": cs.Function("step", [x, w, s.w1, s.h, p], cs.cse([s.x1, s.error, s.d2, s.d3])),
+        "step": _step(model, "step"),
+        "plain": _step(_plain(model), "plain"),
         "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
         "forward": _forward(model),
         "rate": cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
         "mass": cs.Function("mass", [p], [cs.densify(model.mass)]),
     }
     return Kernel(model, functions)
+
+
+def seldom(model: Model) -> list[int]:
+    """Places of the inputs that most runs leave at their start."""
+    return [i for i, u in enumerate(model.inputs) if u.seldom]
+
+
+def _plain(model: Model) -> Model:
+    """M x' = f with those inputs at their starts; its results are left as they are."""
+    places = seldom(model)
+    return replace(model, f=cs.substitute(model.f, model.w[places], cs.DM([model.inputs[i].start for i in places])))
+
+
+def _step(model: Model, name: str) -> cs.Function:
+    s = step(model)
+    return cs.Function(name, [model.x, model.w, s.w1, s.h, model.p], cs.cse([s.x1, s.error, s.d2, s.d3]))
 
 
 def algebraic(model: Model) -> list[int]:

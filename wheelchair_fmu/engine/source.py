@@ -10,7 +10,7 @@ import casadi as cs
 
 from . import rodas
 from .inverses import dividing_once
-from .kernel import NAMES, Kernel
+from .kernel import NAMES, Kernel, seldom
 from .tangent import NAMES as TANGENT_NAMES
 from .tangent import Tangent
 
@@ -19,9 +19,10 @@ NOTHING = "0"  # instead of a function that nobody calls
 RECORD = """
 #include "advance.h"
 
-static const double {prefix}_nominal[] = {{{nominal}}};
+static const double {prefix}_nominal[] = {{{nominal}}}, {prefix}_resting[] = {{{resting}}};
+static const int {prefix}_seldom[] = {{{places}}};
 WC_LOCAL const wc_kernel {prefix}_kernel = {{
-    {states}, {inputs}, {parameters}, {outputs}, {prefix}_nominal,
+    {states}, {inputs}, {parameters}, {outputs}, {prefix}_nominal, {seldom}, {prefix}_seldom, {prefix}_resting,
     {functions}}};
 """
 
@@ -45,6 +46,7 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
     names = [name for name in NAMES if name not in by_hand]
     text = _generated(kernel.functions, names, prefix) + _declared(by_hand)
     nominal = [s.nominal for s in model.states for _ in s.names]
+    places = seldom(model)
     return text + RECORD.format(
         prefix=prefix,
         nominal=", ".join(map(repr, nominal)) or "0",
@@ -52,6 +54,9 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
         inputs=model.w.numel(),
         parameters=model.p.numel(),
         outputs=model.y.numel(),
+        seldom=len(places),
+        places=", ".join(map(str, places)) or "0",
+        resting=", ".join(repr(model.inputs[i].start) for i in places) or "0",
         functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in NAMES),
     )
 

@@ -195,6 +195,7 @@ INPUTS = (
         lower=0.0,
         upper=1.0,
         symbol="brake_rl",
+        seldom=True,
     ),
     Input(
         "brake.rr",
@@ -204,6 +205,7 @@ INPUTS = (
         lower=0.0,
         upper=1.0,
         symbol="brake_rr",
+        seldom=True,
     ),
     Input(
         "floor.slope_x",
@@ -212,6 +214,7 @@ INPUTS = (
         lower=-STEEPEST,
         upper=STEEPEST,
         nominal=0.05,
+        seldom=True,
     ),
     Input(
         "floor.slope_y",
@@ -221,6 +224,7 @@ INPUTS = (
         lower=-STEEPEST,
         upper=STEEPEST,
         nominal=0.05,
+        seldom=True,
     ),
     Input(
         "floor.rolling_factor",
@@ -229,6 +233,7 @@ INPUTS = (
         start=1.0,
         lower=0.0,
         upper=100.0,
+        seldom=True,
     ),
 )
 

@@ -21,7 +21,8 @@ typedef struct {
     int unseen; /* nobody looks at the states before the end */
 } stretch;
 
-static double shape_of(double s, double a, double b) { return (1 - s) * a + s * b; }
+/* Exactly what both are where they are equal: what rests goes on resting. */
+static double shape_of(double s, double a, double b) { return a == b ? a : (1 - s) * a + s * b; }
 
 /* Of all rows, or where their masses are given, of those that are integrated. */
 static double error_norm(const wc_kernel *k, double tolerance, const double *mass, const double *x, const double *x1,
@@ -51,12 +52,23 @@ static void fill_rows(const wc_kernel *k, stretch *s, double done, double h, con
     }
 }
 
+/* What takes a step while the inputs go from w0 to w1. */
+static wc_function step_between(const wc_kernel *k, const double *w0, const double *w1) {
+    if (!k->plain) return k->step;
+    for (int i = 0; i < k->seldom; i++) {
+        int at = k->seldom_inputs[i];
+        if (w0[at] != k->resting[i] || w1[at] != k->resting[i]) return k->step;
+    }
+    return k->plain;
+}
+
 /* Goes the whole stretch in steps of the size the error allows; *h is the first to try and the next. */
 static wc_status go(const wc_kernel *k, const double *p, double tolerance, stretch *s, double *x, double *h,
                     long *steps) {
     double wa[WC_MAX_INPUTS], wb[WC_MAX_INPUTS];
     double x1[WC_MAX_STATES], e[WC_MAX_STATES], d2[WC_MAX_STATES], d3[WC_MAX_STATES], masses[WC_MAX_STATES];
     const double *mass = 0;
+    wc_function step = step_between(k, s->w0, s->w1);
     double done = 0;
     while (done < s->length) {
         double left = s->length - done;
@@ -68,7 +80,7 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
         }
         const double *arg[] = {x, wa, wb, &now, p};
         double *res[] = {x1, e, d2, d3};
-        k->step(arg, res, 0, 0, 0);
+        step(arg, res, 0, 0, 0);
         double error = error_norm(k, tolerance, mass, x, x1, e);
         if (!(error <= 1) && s->unseen && !mass) {
             /* No step carries the error of an algebraic row on, so it is enough to put these rows right at the end. Where

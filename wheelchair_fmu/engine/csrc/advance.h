@@ -20,7 +20,10 @@ typedef int (*wc_function)(const double **arg, double **res, long long *iw, doub
 typedef struct {
     int states, inputs, parameters, outputs;
     const double *nominal; /* the size of each state, against which errors are measured */
-    wc_function start, project, step, output, forward, rate, mass;
+    int seldom; /* how many inputs most runs leave at rest, which they are, and where they rest */
+    const int *seldom_inputs;
+    const double *resting;
+    wc_function start, project, step, plain, output, forward, rate, mass; /* `plain`, where given: a step while they rest */
 } wc_kernel;
 
 typedef enum {
