@@ -24,6 +24,8 @@ enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_R
 static const double CREEP = 0.002;      /* m/s, within which rolling resistance changes its sign */
 static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel bearing */
 static const double SCRUB_CREEP = 0.01; /* rad/s, the same for the yaw of the patches */
+static const double TURN_STILL = 0.02;  /* m/s, below which a wheel counts as standing where its patch is turned */
+static const double TURN_LENGTH = 0.6, CASTER_TURN_LENGTH = 0.1; /* m, radius of a path round which a patch half slides */
 static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
 
@@ -42,6 +44,11 @@ static Tyre tyre(double e, double vx, double vy, double stiffness, double sigma,
     out.deflection_rate = -vy + (speed - STILL) * lean - fade * e;
     out.force = limit * tanh(stiffness / sigma * (e + standing * out.deflection_rate) / limit);
     return out;
+}
+
+/* Torque that a patch resists with while it turns at `rate` and its wheel rolls at `speed`; `most` on the spot. */
+static double turned(double most, double length, double rate, double speed) {
+    return -most * tanh(length * rate / sqrt(speed * speed + TURN_STILL * TURN_STILL));
 }
 
 /* A wheel's part of its axle's load; at least 1 N, as this chair does not tip over. */
@@ -100,7 +107,8 @@ static void rates(const double *p, const double *s, const double *F, const doubl
             double slip = s[E_RR + i] / p[P_sigma];
             double trail = p[P_C_m_lambda] / p[P_C_lambda] / sqrt(1 + p[P_inv_slip] * p[P_inv_slip] * slip * slip)
                 / (p[P_pressure] * sqrt(p[P_pressure]));
-            double moment = forward(vx) * (-trail * (t.force - p[P_C_phi] * camber[i]) + p[P_C_m_phi] * camber[i]);
+            double moment = forward(vx) * (-trail * (t.force - p[P_C_phi] * camber[i]) + p[P_C_m_phi] * camber[i])
+                + turned(p[P_turn], TURN_LENGTH, r, sqrt(vx * vx + vy * vy));
             double rolling = tanh(vx / CREEP);
             double drag = (p[P_f_r] * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * vx;
             if (i == 0) drag += p[P_sticky] * rolling * 0.5 * (1 + tanh(r / 0.02));
@@ -129,7 +137,8 @@ static void rates(const double *p, const double *s, const double *F, const doubl
             MZ += a * fy - y_f[i] * fx - bearing;
             d[E_FR + i] = t.deflection_rate;
             d[SWIVEL_R + 2 * i] = rate;
-            d[SWIVEL_RATE_R + 2 * i] = (bearing - p[P_trail] * t.force) / p[P_I_swivel];
+            d[SWIVEL_RATE_R + 2 * i] = (bearing - p[P_trail] * t.force + turned(p[P_turn_f], CASTER_TURN_LENGTH, r + rate, vx))
+                / p[P_I_swivel];
         }
         { /* the spin of both rear wheels counts along their headings only */
             double half = p[P_m_spin] / 2, sum = y_r[0] + y_r[1], squares = y_r[0] * y_r[0] + y_r[1] * y_r[1];

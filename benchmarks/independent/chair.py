@@ -82,6 +82,8 @@ class Chair:
     toe_l: float = 0.0
     scrub: float = 0.0
     scrub_viscous: float = 0.0
+    turn: float = 0.0
+    turn_f: float = 0.0
     slip_compliance: float = 0.0
     h_x: float = 0.0
     h_y: float = 0.0

@@ -155,6 +155,12 @@ EFFECTS: dict[str, Effect] = {
     "scrub_torque_viscous": Effect(
         _one("d", "chair.scrub_viscous", "N m s", 0.2, "positive opposes the yaw rate, in proportion")
     ),
+    "turn_slip": Effect(
+        {
+            "M": Parameter("chair.turn", "N m", 0.5, "each rear wheel on the spot, opposes the yaw rate, less on wider arcs"),
+            "M_f": Parameter("chair.turn_f", "N m", 0.1, "each caster on the spot, opposes its turning on the floor", pattern=0.5),
+        }
+    ),
     "longitudinal_slip": Effect(
         _one("compliance", "chair.slip_compliance", "1/N", 1e-4, "a driven wheel turns faster than its hub moves")
     ),

@@ -15,6 +15,7 @@ ALL = (
     "rolling_resistance_speed",
     "scrub_torque",
     "scrub_torque_viscous",
+    "turn_slip",
 )
 
 
@@ -164,3 +165,48 @@ def test_across_a_slope_a_chair_is_kept_straight_by_the_arm_of_its_tyres():
     assert result["chair.psi_dot"][-1] == pytest.approx(0, abs=1e-5)
     assert result["slip.rl"][-1] == pytest.approx(slip, rel=1e-4)
     assert result["sensor.a_y"][-1] == pytest.approx(-G * np.sin(0.02), rel=1e-4)
+
+
+@pytest.mark.effect("turn_slip")
+@pytest.mark.parametrize("way", [1, -1])
+def test_turned_patches_slow_a_spin_evenly(way):
+    """On the spot each hub goes round at t_r/2 whatever the rate, so the torque is constant: M / √(1 + (t_r/2L)²) each."""
+    M, L, spin = 1.5, 0.4, 2.0
+    values = {"effect.turn_slip.M": M, "effect.turn_slip.L": L, "effect.turn_slip.rate": 1e-5}
+    result = drive({**TOP, "start.psi_dot": way * spin, **values}, T=1.0)
+    slowing = 2 * M / np.sqrt(1 + (T_R / 2 / L) ** 2) / I_Z
+    np.testing.assert_allclose(result["chair.psi_dot"], way * (spin - slowing * result.time), rtol=1e-6)
+
+
+@pytest.mark.effect("turn_slip")
+@pytest.mark.parametrize("u", [0.5, -0.5, 2.0])
+def test_a_patch_on_a_wide_arc_resists_by_its_curvature(u):
+    """Twice as fast a yaw at twice the speed is the same arc, and the same torque M L / R of each wheel."""
+    M, L, radius = 2.0, 0.6, 50.0
+    motion = {"start.u": u, "start.psi_dot": abs(u) / radius, "tyre.C_m_lambda": 0.0}
+    torque = snapshot({**SMOOTH, **motion, "effect.turn_slip.M": M, "effect.turn_slip.L": L, "effect.turn_slip.rate": 1e-5})[
+        "M_t"
+    ]
+    hub = radius + np.array([T_R / 2, -T_R / 2]) * np.sign(u)
+    np.testing.assert_allclose(torque, -M * L / hub, rtol=1e-3)
+
+
+@pytest.mark.effect("turn_slip")
+@pytest.mark.parametrize("law", ["ideal", "swivelling"])
+def test_a_turned_caster_is_held_by_a_force_behind_its_pivot(law):
+    """In a steady turn both laws give F = T / c across each caster, and no moment at its bearing."""
+    T, L, trail, u, turn = 0.8, 0.1, 0.05, 1.0, 0.5
+    values = {"caster.trail": trail, "start.u": u, "start.psi_dot": turn}
+    if law == "swivelling":
+        values |= {"effect.caster_trail.c": trail - 1e-3}
+    now, without = (
+        snapshot({**SMOOTH, **values, "effect.turn_slip.M_f": M, "effect.turn_slip.L_f": L, "effect.turn_slip.rate": 1e-5})
+        for M in (T, 0.0)
+    )
+    across = np.hypot(now["F_xf"] - without["F_xf"], now["F_yf"] - without["F_yf"])
+    pivot = np.hypot(now["v_xf"], now["v_yf"])
+    turning = now["psi_dot"] if law == "ideal" else now["turning"]
+    rolling = pivot if law == "ideal" else now["rolling"]
+    expected = T * L * np.abs(turning) / np.hypot(rolling, L * turning)
+    np.testing.assert_allclose(across * trail, expected, rtol=1e-6)
+    np.testing.assert_allclose(now["M_f"], 0.0, atol=1e-12)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import FRONT, N_M, RAD, M, N, Parameter
+from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter
+from ..chassis import per_wheel
 from ..smooth import speed
 from ..stage import Alternative, define, stage
 
@@ -30,6 +31,16 @@ def angles(v_xf, v_yf, drag_eps):
     return cs.atan2(v_yf, v_xf + tiny)  # (9), (10)
 
 
+@stage(
+    define("turning", RAD_S, "rate at which each caster's patch turns on the floor", "-swap", FRONT),
+    define("rolling", M_S, "speed at which each caster rolls along its heading", "+swap", FRONT),
+    define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT),
+)
+def patches(v_xf, v_yf, psi_dot, drag_eps):
+    """As in a steady turn: an ideal caster's angle jumps with its pivot's velocity and has no rate."""
+    return per_wheel(psi_dot), cs.sqrt(v_xf * v_xf + v_yf * v_yf + drag_eps * drag_eps), per_wheel(1.0)
+
+
 @stage(define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT))
 def bearing(delta):
     return 0 * delta
@@ -48,4 +59,4 @@ def casters(v_xf, v_yf, D_f, d_f, M_w, trail, drag_eps):
     return -drag * v_xf - lateral * v_yf, -drag * v_yf + lateral * v_xf, -M_w
 
 
-LAW = Alternative("ideal", (angles, bearing, casters), PARAMETERS)
+LAW = Alternative("ideal", (angles, patches, bearing, casters), PARAMETERS)

@@ -73,6 +73,14 @@ def swivelling(v_xf, v_yf, psi_dot, swivel, c):
     return slip, slip / c
 
 
+@stage(
+    define("turning", RAD_S, "rate at which each caster's patch turns on the floor", "-swap", FRONT),
+    define("rolling", M_S, "speed at which each caster rolls along its heading", "+swap", FRONT),
+)
+def patches(v_xf, v_yf, psi_dot, swivel, swivel_rate):
+    return psi_dot + swivel_rate, v_xf * cs.cos(swivel) + v_yf * cs.sin(swivel)
+
+
 @stage(define("delta", RAD, "caster angles", "-swap", FRONT))
 def turned(swivel):
     return swivel
@@ -83,10 +91,9 @@ def turned(swivel):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(delta, v_xf, v_yf, D_f, d_f, M_w, c, passed, drag_eps):
+def casters(delta, rolling, D_f, d_f, M_w, c, passed, drag_eps):
     """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
-    rolling = v_xf * forward + v_yf * right
     drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
     torque = passed * M_w
     lateral = torque / c  # (8)
@@ -105,7 +112,7 @@ def trailing(v_xf, v_yf, v_eps):
 
 LAW = Alternative(
     "swivelling",
-    (kinematic_trail, leverage, swivelling, turned, ideal.bearing, casters),
+    (kinematic_trail, leverage, swivelling, patches, turned, ideal.bearing, casters),
     PARAMETERS,
     (Row(SWIVEL, mass=lambda c: c, rate=lambda swivel_slip: swivel_slip, start=trailing),),
 )
