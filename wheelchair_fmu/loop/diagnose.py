@@ -75,13 +75,14 @@ class Candidate:
     small: bool  # surely
     large: bool  # enough, by its estimate, to be named
     lawful: bool
+    stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
 
     @property
     def proven(self) -> bool:
         """There, visible, and it predicts runs it has not seen."""
         predicts = self.gain is None or self.gain[1] > 0 or (self.p < PLAIN and self.gain[2] > 0)
         shows = self.visible > VISIBLE and self.falls
-        return self.lawful and self.p < SIGNIFICANT and shows and predicts
+        return self.lawful and not self.stretched and self.p < SIGNIFICANT and shows and predicts
 
     @property
     def found(self) -> bool:
@@ -229,7 +230,8 @@ class Search(Screen):
     ) -> Candidate:
         """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
-        one_sided = np.array([self.records[n].lower == 0 for n in names])
+        lower, upper = (np.array([getattr(self.records[n], side) for n in names]) for side in ("lower", "upper"))
+        one_sided, near = lower == 0, 1e-6 * delta
         in_deltas = estimate / delta, covariance / np.outer(delta, delta)
         along, spread = seen_directions(*in_deltas)
         small = _small(along, spread)
@@ -254,7 +256,8 @@ class Search(Screen):
             heldout=held.brief() if held is not None else None,
             small=small,
             large=not small and size_seen(*in_deltas) >= (AS_LARGE if at_the_floor(base.evidence, base_held) else SURELY),
-            lawful=not bool(np.all((estimate <= 1e-6 * delta) & one_sided)),
+            lawful=not bool(np.all((estimate <= near) & one_sided)),
+            stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         )
 
     def small(self, found: Fit, effect: str) -> bool:

@@ -17,9 +17,9 @@ TORQUE = Parameter(
     off=0.0,
     smallest_interesting=0.5,
     lower=0.0,
-    upper=20.0,
+    upper=8.0,
     symbol="M_turn",
-    source="chosen; Fallot2021: less the wider the path, Lin2015: a large part of what a turning chair loses",
+    source="chosen; at most what μN has at half a patch; Fallot2021: less the wider the path",
 )
 CASTER_TORQUE = Parameter(
     "M_f",
@@ -28,7 +28,7 @@ CASTER_TORQUE = Parameter(
     off=0.0,
     smallest_interesting=0.1,
     lower=0.0,
-    upper=5.0,
+    upper=2.0,
     symbol="M_turn_f",
     source="chosen; Fallot2021: less than a rear wheel's",
 )
