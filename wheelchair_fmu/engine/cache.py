@@ -17,7 +17,7 @@ from ..model.expression import ExpressionLaw
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
-from .kernel import kernel
+from .kernel import at_rest, kernel
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import tangent
@@ -30,7 +30,8 @@ LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "
 def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None) -> ctypes.CDLL:
     """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions.
 
-    With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s.
+    With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s. Then the chair is on a
+    level floor with open brakes, whatever the inputs say: derivatives are for recorded runs, and half as much work so.
     """
     effects = sorted(effects, key=lambda e: e.id)
     words = "\n".join((_toolchain(), repr(choice), repr(columns), *map(effect_key, effects)))
@@ -61,6 +62,8 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, target: Path) -> None:
     model = assemble(choice, effects)
+    if columns is not None:
+        model = at_rest(model)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
         texts["tangent_model"] = tangent_source(tangent(model, columns), "tangent")

@@ -3,7 +3,8 @@
     start(p, w)                          → x     states at the start, algebraic ones not yet in place
     project(x, w, p)                     → x     one Newton step that puts algebraic rows right
     step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
-    plain(x, w0, w1, h, p)               → the same, on a level floor with open brakes, which is a third less work
+    plain(x, w0, w1, h, p)               → the same, on a level floor with open brakes, which is a third less work;
+                                           none where the model is such a chair's anyway (`at_rest`)
     output(x, w, p)                      → y
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
@@ -43,24 +44,28 @@ def kernel(model: Model) -> Kernel:
         "start": cs.Function("start", [p, w], [model.start]),
         "project": cs.Function("project", [x, w, p], [_projected(model)]),
         "step": _step(model, "step"),
-        "plain": _step(_plain(model), "plain"),
         "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
         "forward": _forward(model),
         "rate": cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
         "mass": cs.Function("mass", [p], [cs.densify(model.mass)]),
     }
+    if seldom(model):
+        functions["plain"] = _step(at_rest(model), "plain")
     return Kernel(model, functions)
 
 
 def seldom(model: Model) -> list[int]:
-    """Places of the inputs that most runs leave at their start."""
-    return [i for i, u in enumerate(model.inputs) if u.seldom]
+    """Places of the inputs that move the model, and that most runs leave at their start."""
+    moves = cs.vertcat(model.f, model.y)
+    return [i for i, u in enumerate(model.inputs) if u.seldom and cs.depends_on(moves, model.w[i])]
 
 
-def _plain(model: Model) -> Model:
-    """M x' = f with those inputs at their starts; its results are left as they are."""
+def at_rest(model: Model) -> Model:
+    """The model with those inputs at their starts, whatever they are: a chair on a level floor with open brakes."""
     places = seldom(model)
-    return replace(model, f=cs.substitute(model.f, model.w[places], cs.DM([model.inputs[i].start for i in places])))
+    starts = cs.DM([model.inputs[i].start for i in places])
+    f, y, start = cs.substitute([model.f, model.y, model.start], [model.w[places]], [starts])
+    return replace(model, f=f, y=y, start=start)
 
 
 def _step(model: Model, name: str) -> cs.Function:

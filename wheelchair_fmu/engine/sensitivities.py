@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..model.variant import Variant
 from . import cache
-from .simulate import WHY, Simulator
+from .simulate import WHY, Simulator, refuse_unrest
 from .tangent import PUSHES, differentiable, sensed
 
 
@@ -73,9 +73,10 @@ class Sensitivities:
     ) -> Linearised:
         """Simulate over `time` (n,) with inputs (n, nw) linear between samples; derivatives `by` these parameters.
 
-        Raises SimulationError, naming the time, where the model cannot go on.
+        Raises SimulationError, naming the time, where the model cannot go on, and ValueError for inputs that brake or slope.
         """
         t, w, p = (np.ascontiguousarray(a, float) for a in (time, inputs, parameters))
+        refuse_unrest(self.model, w)
         which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
         n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
         x, y = np.empty((n, nx)), np.empty((n, ny))

@@ -42,11 +42,12 @@ class Trajectory:
 class Simulator:
     """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
 
-    `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway.
+    `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway. It is
+    for a level floor and open brakes, and `run` raises ValueError for other inputs.
     """
 
     def __init__(self, variant: Variant = Variant(), columns: Sequence[str] | None = None):
-        self.variant = variant
+        self.variant, self._with_derivatives = variant, columns is not None
         self._library = cache.library(variant.choice, variant.active(), columns)
         self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
 
@@ -87,6 +88,8 @@ class Simulator:
         y = np.empty((len(t), self.model.y.numel()))
         if w.shape != (len(t), self.model.w.numel()) or p.shape != (self.model.p.numel(),):
             raise ValueError(f"inputs {w.shape} and parameters {p.shape} do not fit {len(t)} times and this model")
+        if self._with_derivatives:
+            refuse_unrest(self.model, w)
         reached, steps = ctypes.c_long(), ctypes.c_long()
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
@@ -121,6 +124,13 @@ class Simulator:
     @staticmethod
     def _at(symbol: ctypes.c_char) -> ctypes.c_void_p:
         return ctypes.c_void_p(ctypes.addressof(symbol))
+
+
+def refuse_unrest(model: Model, inputs: np.ndarray) -> None:
+    """Raise ValueError where `inputs` (n, nw) brake, slope or change the floor, which models with derivatives do not follow."""
+    moved = [u.name for u, column in zip(model.inputs, inputs.T, strict=True) if u.seldom and np.any(column != u.start)]
+    if moved:
+        raise ValueError(f"derivatives are those of a level floor and open brakes; leave {', '.join(moved)} at rest")
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

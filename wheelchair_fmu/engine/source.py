@@ -42,7 +42,8 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
 
     `by_hand` names C functions that stand for some of the kernel's.
     """
-    model, by_hand = kernel.model, by_hand or {}
+    model = kernel.model
+    by_hand = {name: NOTHING for name in NAMES if name not in kernel.functions} | dict(by_hand or {})
     names = [name for name in NAMES if name not in by_hand]
     text = _generated(kernel.functions, names, prefix) + _declared(by_hand)
     nominal = [s.nominal for s in model.states for _ in s.names]

@@ -15,7 +15,7 @@ from ..errors import BuildError
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import cache, compiler
-from .kernel import kernel
+from .kernel import at_rest, kernel
 from .source import CSRC, NOTHING, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import tangent
@@ -47,7 +47,8 @@ _deriving = Lock()  # CasADi's objects are not for several threads
 
 
 def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str]) -> list[bytes]:
-    """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`.
+    """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`, for recorded runs:
+    on a level floor with open brakes.
 
     What is not cached is compiled side by side. The first of all on a machine waits for ziglang to build its C library.
 
@@ -81,7 +82,7 @@ def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], targ
 def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], place: Path) -> list[Path]:
     """The model's C files, and what they need beside them."""
     with _deriving:
-        model = assemble(choice, effects)
+        model = at_rest(assemble(choice, effects))
         sources = {
             "model.c": c_source(kernel(model), "model", KERNEL),
             "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT),
