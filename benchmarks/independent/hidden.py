@@ -158,7 +158,9 @@ EFFECTS: dict[str, Effect] = {
     "turn_slip": Effect(
         {
             "M": Parameter("chair.turn", "N m", 0.5, "each rear wheel on the spot, opposes the yaw rate, less on wider arcs"),
-            "M_f": Parameter("chair.turn_f", "N m", 0.1, "each caster on the spot, opposes its turning on the floor", pattern=0.5),
+            "M_f": Parameter(
+                "chair.turn_f", "N m", 0.1, "each caster on the spot, opposes its turning on the floor", pattern=0.5
+            ),
         }
     ),
     "longitudinal_slip": Effect(

@@ -156,10 +156,11 @@ def test_not_a_number_is_said_with_its_time():
         simulator.run(t, w)
 
 
-@pytest.mark.parametrize("effects", ["none", "all"])
-def test_the_plain_step_is_the_step_on_a_level_floor_with_open_brakes(effects):
+@pytest.mark.parametrize(("name", "effects", "size"), [("plain", "none", 0), ("plain", "all", 1), ("bare", "all", 0)])
+def test_shorter_steps_are_the_step_on_a_level_floor_with_open_brakes(name, effects, size):
+    """And the bare one, with all effects off besides."""
     rng = np.random.default_rng(3)
-    variant = variant_with(*(() if effects == "none" else bundled()))
+    variant = variant_with(*(() if effects == "none" else bundled()), size=size)
     functions = kernel(variant.model()).functions
     for _ in range(20):
         place = anywhere(variant, rng)
@@ -167,8 +168,8 @@ def test_the_plain_step_is_the_step_on_a_level_floor_with_open_brakes(effects):
         for i in seldom(variant.model()):
             place.w[i] = w1[i] = variant.model().inputs[i].start
         at = (place.x, place.w, w1, 0.01, place.p)
-        for whole, plain in zip(functions["step"](*at), functions["plain"](*at), strict=True):
-            np.testing.assert_allclose(np.array(plain), np.array(whole), rtol=1e-9, atol=1e-12)
+        for whole, short in zip(functions["step"](*at), functions[name](*at), strict=True):
+            np.testing.assert_allclose(np.array(short), np.array(whole), rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["brake.rl", "brake.rr", "floor.slope_x", "floor.slope_y", "floor.rolling_factor"])
@@ -183,3 +184,19 @@ def test_no_input_is_overlooked_because_most_runs_leave_it_at_rest(name):
     moved, unmoved = (simulator.run(t, inputs, start=x0, grid=0.01).states for inputs in (w, plain))
     first, second = np.abs(np.diff(moved - unmoved, axis=0)).max(axis=1)
     assert first > 1e-6 and second > 1e-6
+
+
+def test_a_run_with_an_effect_that_is_hardly_on_is_a_run_without():
+    """No step is taken without the effects where one of them is on, however little."""
+    simulator = Simulator(variant_with("floor_slope", "turn_slip", size=0))
+    t = np.linspace(0, 2, 41)
+    w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 9.0})
+    at = {p.name: i for i, p in enumerate(simulator.model.parameters)}
+    runs = []
+    for size in (0.0, 1e-9, 1e-3):
+        p = simulator.variant.vector()
+        p[at["effect.turn_slip.M"]] = p[at["effect.floor_slope.x"]] = size
+        runs.append(simulator.run(t, w, p, grid=0.01).states)
+    off, hardly, on = runs
+    assert 0 < np.abs(hardly - off).max() < 1e-7
+    assert np.abs(on - off).max() > 1e-4

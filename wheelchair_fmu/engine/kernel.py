@@ -5,6 +5,7 @@
     step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
     plain(x, w0, w1, h, p)               → the same, on a level floor with open brakes, which is a third less work;
                                            none where the model is such a chair's anyway (`at_rest`)
+    bare(x, w0, w1, h, p)                → the same, and all effects off besides
     output(x, w, p)                      → y
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
@@ -26,7 +27,7 @@ from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
 
-NAMES = ("start", "project", "step", "plain", "output", "forward", "rate", "mass")
+NAMES = ("start", "project", "step", "plain", "bare", "output", "forward", "rate", "mass")
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,8 @@ def kernel(model: Model) -> Kernel:
     }
     if seldom(model):
         functions["plain"] = _step(at_rest(model), "plain")
+        if switches(model):
+            functions["bare"] = _step(_off(at_rest(model)), "bare")
     return Kernel(model, functions)
 
 
@@ -68,6 +71,18 @@ def at_rest(model: Model) -> Model:
     return replace(model, f=f, y=y, start=start)
 
 
+def switches(model: Model) -> list[int]:
+    """Places of the parameters that are zero where all effects are off."""
+    return [i for i, p in enumerate(model.parameters) if p.off is not None]
+
+
+def _off(model: Model) -> Model:
+    """The model with its effects off, whatever their parameters are."""
+    places = switches(model)
+    f, mass = cs.substitute([model.f, model.mass], [model.p[places]], [cs.DM.zeros(len(places))])
+    return replace(model, f=f, mass=mass)
+
+
 def _step(model: Model, name: str) -> cs.Function:
     s = step(model)
     return cs.Function(name, [model.x, model.w, s.w1, s.h, model.p], cs.cse([s.x1, s.error, s.d2, s.d3]))
@@ -79,7 +94,7 @@ def algebraic(model: Model) -> list[int]:
     return [i for i in rows if model.mass[i].is_zero() or not model.mass[i].is_constant()]
 
 
-def _off(model: Model, places: list[int]) -> cs.SX:
+def _resting(model: Model, places: list[int]) -> cs.SX:
     """1 where the mass is zero as the parameters stand, else 0."""
     return cs.vertcat(*(model.mass[i] == 0 for i in places))
 
@@ -89,7 +104,7 @@ def _algebraic_change(model: Model, residual: cs.SX) -> cs.SX:
     places = algebraic(model)
     change = cs.SX.zeros(*residual.shape)
     if places:
-        off = _off(model, places)
+        off = _resting(model, places)
         jacobian = cs.jacobian(model.f[places], model.x[places])
         identity = cs.SX.eye(len(places))
         gated = cs.diag(off) @ jacobian + cs.diag(1 - off) @ identity
@@ -108,7 +123,7 @@ def _forward(model: Model) -> cs.Function:
     places = algebraic(model)
     if places:
         dx_given = cs.SX(dx)
-        dx_given[places] = (1 - _off(model, places)) * dx[places]
+        dx_given[places] = (1 - _resting(model, places)) * dx[places]
     else:
         dx_given = dx
     everything = cs.vertcat(*at)

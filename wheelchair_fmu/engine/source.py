@@ -10,7 +10,7 @@ import casadi as cs
 
 from . import rodas
 from .inverses import dividing_once
-from .kernel import NAMES, Kernel, seldom
+from .kernel import NAMES, Kernel, seldom, switches
 from .tangent import NAMES as TANGENT_NAMES
 from .tangent import Tangent
 
@@ -20,9 +20,10 @@ RECORD = """
 #include "advance.h"
 
 static const double {prefix}_nominal[] = {{{nominal}}}, {prefix}_resting[] = {{{resting}}};
-static const int {prefix}_seldom[] = {{{places}}};
+static const int {prefix}_seldom[] = {{{places}}}, {prefix}_switches[] = {{{switches}}};
 WC_LOCAL const wc_kernel {prefix}_kernel = {{
     {states}, {inputs}, {parameters}, {outputs}, {prefix}_nominal, {seldom}, {prefix}_seldom, {prefix}_resting,
+    {switched}, {prefix}_switches,
     {functions}}};
 """
 
@@ -47,7 +48,7 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
     names = [name for name in NAMES if name not in by_hand]
     text = _generated(kernel.functions, names, prefix) + _declared(by_hand)
     nominal = [s.nominal for s in model.states for _ in s.names]
-    places = seldom(model)
+    places, off = seldom(model), switches(model)
     return text + RECORD.format(
         prefix=prefix,
         nominal=", ".join(map(repr, nominal)) or "0",
@@ -58,6 +59,8 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
         seldom=len(places),
         places=", ".join(map(str, places)) or "0",
         resting=", ".join(repr(model.inputs[i].start) for i in places) or "0",
+        switched=len(off),
+        switches=", ".join(map(str, off)) or "0",
         functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in NAMES),
     )
 

@@ -53,13 +53,16 @@ static void fill_rows(const wc_kernel *k, stretch *s, double done, double h, con
 }
 
 /* What takes a step while the inputs go from w0 to w1. */
-static wc_function step_between(const wc_kernel *k, const double *w0, const double *w1) {
+static wc_function step_between(const wc_kernel *k, const double *p, const double *w0, const double *w1) {
     if (!k->plain) return k->step;
     for (int i = 0; i < k->seldom; i++) {
         int at = k->seldom_inputs[i];
         if (w0[at] != k->resting[i] || w1[at] != k->resting[i]) return k->step;
     }
-    return k->plain;
+    if (!k->bare) return k->plain;
+    for (int i = 0; i < k->switches; i++)
+        if (p[k->switch_parameters[i]] != 0) return k->plain;
+    return k->bare;
 }
 
 /* Goes the whole stretch in steps of the size the error allows; *h is the first to try and the next. */
@@ -68,7 +71,7 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
     double wa[WC_MAX_INPUTS], wb[WC_MAX_INPUTS];
     double x1[WC_MAX_STATES], e[WC_MAX_STATES], d2[WC_MAX_STATES], d3[WC_MAX_STATES], masses[WC_MAX_STATES];
     const double *mass = 0;
-    wc_function step = step_between(k, s->w0, s->w1);
+    wc_function step = step_between(k, p, s->w0, s->w1);
     double done = 0;
     while (done < s->length) {
         double left = s->length - done;

@@ -23,7 +23,10 @@ typedef struct {
     int seldom; /* how many inputs most runs leave at rest, which they are, and where they rest */
     const int *seldom_inputs;
     const double *resting;
-    wc_function start, project, step, plain, output, forward, rate, mass; /* `plain`, where given: a step while they rest */
+    int switches; /* how many parameters put effects on, and which they are */
+    const int *switch_parameters;
+    /* `plain`, where given: a step while those inputs rest; `bare`: and while no effect is on */
+    wc_function start, project, step, plain, bare, output, forward, rate, mass;
 } wc_kernel;
 
 typedef enum {

@@ -6,8 +6,9 @@ A caster turns with δ' + ψ'; an ideal one, whose angle has no rate of its own,
 to a caster's patch its bearing does not feel: it is held by a lateral force at the trail's length, (8).
 """
 
+import casadi as cs
+
 from ...quantities import N_M, RAD_S, M, Parameter
-from ..smooth import magnitude
 from ..stage import Effect, adds
 
 TORQUE = Parameter(
@@ -65,7 +66,8 @@ RATE = Parameter(
 
 def resistance(torque, length, yaw_rate, v, rate):
     """M_z of a patch that turns with `yaw_rate` while its wheel moves with v."""
-    return -torque * length * yaw_rate / magnitude(v, length * magnitude(yaw_rate, rate))
+    swept = length * length * (yaw_rate * yaw_rate + rate * rate)
+    return -torque * length * yaw_rate / cs.sqrt(v * v + swept)
 
 
 def rear(M_turn, L_turn, psi_dot, v_xw, rate):
