@@ -1,8 +1,8 @@
 """What one step of the native FMU costs a host without Python: set two inputs, doStep(1 ms), get eight outputs.
 
 The host is the one of the tests, compiled here. It times each of 2 000 steps in five repeats, keeps each step's least, and
-prints median and worst of these; it is run five times. As FMUs are built their effects are off, and steps have shortcuts for that;
-one more row has an effect on.
+prints median and worst of these; it is run five times. As FMUs are built their effects are off, for which there is a
+shorter step; one more row has an effect on.
 """
 
 from __future__ import annotations
