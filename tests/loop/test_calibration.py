@@ -10,6 +10,7 @@ from benchmarks.independent.campaigns import make, truth
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.loop.calibration import calibration, doubts
 from wheelchair_fmu.loop.models import Models
+from wheelchair_fmu.loop.story import story
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.loop.workshop import MEASURED, Workshop
 from wheelchair_fmu.model.variant import Variant
@@ -54,3 +55,15 @@ def test_a_gyro_is_not_told_from_a_tread_that_is_a_little_off(tmp_path):
     assert max(found.rounds[0].scores, key=lambda s: s.drop).effect == "gyro_scale"
     values = {c.record.name: c for c in found.calibration}
     assert abs(values["chair.t_r"].value - 0.55) > 0.01
+
+
+def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
+    """In everyday turns another place of the CM does as well as patches that resist being turned. No tape is so far off, and
+    what lets it back is named with its size."""
+    found = diagnose(read(make(tmp_path / "c", {"turn_slip": {"M": 1.5, "M_f": 0.15}}, seed=1)))
+    if found.verdict == "outside":
+        assert "chair.a" in next(c.record.name for c in found.calibration if c.beyond)
+        assert [note for note in found.notes if note.startswith("with turn_slip chair.a comes out at 0.2")]
+        assert story(found)["calibration"]["chair.a"]["beyond"]
+    else:
+        assert "turn_slip" in found.effects

@@ -83,6 +83,16 @@ def test_what_helps_is_named_with_its_ties():
     assert said.endswith("what helps but does not suffice: air that resists and a floor that slopes or toe.")
 
 
+def test_an_error_that_only_bent_values_bring_down_is_said_so():
+    calibration = {"chair.a": {"beyond": True}, "chair.m": {"beyond": False}}
+    low = [{"step": "calibrated", "fit": 0.99, "heldout": 1.01}]
+    said = sentence(told("outside", calibration=calibration) | {"ladder": low}, TITLES)
+    assert said.startswith("The error comes down to the noise only with chair.a as nobody would have measured it")
+    for more in ({"ladder": [low[0] | {"heldout": 1.2}]}, {"ladder": low, "leftover": {"proposal": {"term": "odd"}}}):
+        other = sentence(told("outside", calibration=calibration) | more, TITLES)
+        assert other.startswith("Something is left")
+
+
 def test_the_sizes_and_the_fall_come_next():
     records = {
         "effect.drag.k": Parameter("effect.drag.k", N_S_M, "size of the drag"),

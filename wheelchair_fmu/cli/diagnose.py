@@ -21,7 +21,7 @@ from ..model.effects import bundled
 from ..model.generic import VARIABLES, library, profiles, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
-from ..report.words import helpers, probability, tied, verdict_words
+from ..report.words import helpers, outside, probability, tied, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -35,7 +35,6 @@ SENTENCES = {
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
     "cannot_see": "Nothing was found, but these runs could not have shown most effects of interesting size.",
-    "outside": "Something is left that no effect in the catalogue explains.",
 }
 
 
@@ -87,7 +86,8 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         out.print(f"note: {note}")
     listed = ", ".join(d.effects)
     ids = {e: e for e in d.effects}
-    said = tied(d.effects, d.ties, ids) if d.verdict == "tie" else SENTENCES[d.verdict].format(effects=listed)
+    sentences = {**SENTENCES, "outside": outside(content), "tie": tied(d.effects, d.ties, ids) if d.ties else ""}
+    said = sentences[d.verdict].format(effects=listed)
     out.print(f"{d.campaign}: {said}")
     if d.verdict == "outside" and d.effects:
         out.print(f"These help but do not suffice: {helpers(d.effects, d.ties, ids)}.")

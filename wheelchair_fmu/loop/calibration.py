@@ -68,6 +68,7 @@ class Calibrated:
             "prior": self.prior,
             "prior_sd": self.prior_sd if np.isfinite(self.prior_sd) else None,
             "at_bound": self.at_bound,
+            "beyond": self.beyond,
         }
 
 

@@ -25,6 +25,7 @@ from .interval import profile_interval
 from .joint import explains
 from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
+from .relief import reliefs
 from .screen import AT_THE_FLOOR
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
@@ -166,7 +167,8 @@ def _searched(
     settle_clocks(search, base.evidence, climb.held)
     thinned = (campaign.thinned,) if campaign.thinned else ()
     beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
-    notes = (*thinned, *search.notes, *search.noise_notes, *doubts(values), *beyond_limits)
+    doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
+    notes = (*thinned, *search.notes, *search.noise_notes, *doubtful, *beyond_limits)
     return Diagnosis(
         campaign.name,
         verdict,

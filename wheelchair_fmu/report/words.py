@@ -10,6 +10,7 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 LEAST = 1e-300  # of probabilities that are printed
 HELPERS = 3  # that are named, and rivals of each
+NEAR_THE_FLOOR = 1.06  # whitened RMS error, of fitted and of held-out runs: next to nothing is left
 SEEN = 0.05  # a probability below which the data show something like the effect
 
 
@@ -25,9 +26,21 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
         "small": f"The model is adequate: {_listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
-        "outside": "Something is left that no effect in the catalogue explains"
+        "outside": outside(diagnosis).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
+
+
+def outside(diagnosis: Mapping[str, Any]) -> str:
+    """What "outside" means here: an error that nothing brings down, or one that only values bring down that nobody measured."""
+    bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+    last, left = diagnosis["ladder"][-1], (diagnosis.get("leftover") or {}).get("proposal")
+    if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > NEAR_THE_FLOOR:
+        return "Something is left that no effect in the catalogue explains."
+    return (
+        f"The error comes down to the noise only with {_listed(bent, 'and')} as nobody would have measured it: "
+        "what was given is wrong, or it stands in for what the model lacks."
+    )
 
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
