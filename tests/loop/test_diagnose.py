@@ -122,6 +122,7 @@ def test_an_effect_is_judged_from_its_own_starts(tmp_path):
     assert found.final.values["effect.wheel_radius_error.r"] == pytest.approx(0.03, abs=0.004)
 
 
+@pytest.mark.nightly
 def test_another_effect_may_overtake_what_was_found_first(tmp_path):
     """A gain of the force sensors does alone more than heavy wheels, as it stands in for load transfer, too; with that
     in, it does less. Mass and geometry are known exactly here: else a gain is a mass that was weighed wrongly."""
@@ -220,6 +221,7 @@ def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
     assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}
 
 
+@pytest.mark.nightly
 def test_effects_that_explain_anything_only_together_are_found_together(tmp_path):
     """Casters that are heavy to turn, in runs where they swing round. That chair has a trail and some friction too, and without
     these a model with the inertia is as far off as one without."""

@@ -77,6 +77,7 @@ def test_the_proposed_runs_break_the_tie(tmp_path):
     assert decided.rounds[0].candidates[0].effect == "aerodynamic_drag"
 
 
+@pytest.mark.nightly
 def test_improve_adds_the_term_it_proposes(tmp_path):
     campaign = measured("open-09-outside")
     better = tmp_path / "better.toml"
