@@ -8,7 +8,9 @@ import pytest
 from tests.kit import variant_with
 from wheelchair_fmu.engine.sensitivities import Sensitivities
 from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.engine.tangent import sensed
 from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
 
 CALIBRATED = (
     "tyre.C_lambda",
@@ -94,3 +96,22 @@ def test_the_run_itself_is_the_simulators():
     w = simulator.inputs(len(t), {"push.F_rl": SLALOM[1](t), "push.F_rr": SLALOM[2](t)})
     run = Sensitivities(variant).run(t, w, variant.vector())
     np.testing.assert_array_equal(run.results, simulator.run(t, w).results)
+
+
+def test_brakes_that_a_run_records_move_it_and_its_derivatives():
+    """What moves is named when the model is compiled; else it is refused, not overlooked."""
+    t, by = np.linspace(0, 2, 201), ("brake.F_max",)
+    simulator = Simulator(Variant())
+    w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 12.0, "brake.rl": 0.02 * (t > 0.5)})
+    p = simulator.variant.vector()
+    braked = Sensitivities(Variant(), by, moving=("brake.rl",)).run(t, w, p, by)
+    np.testing.assert_allclose(braked.results, simulator.run(t, w).results, rtol=1e-4, atol=1e-5)
+    at = [i.name for i in simulator.model.parameters].index("brake.F_max")
+    more, less = p.copy(), p.copy()
+    more[at], less[at] = p[at] + 0.1, p[at] - 0.1
+    rows = list(sensed(simulator.model))
+    expected = (simulator.run(t, w, more).results - simulator.run(t, w, less).results)[:, rows] / 0.2
+    assert np.abs(expected).max() > 1e-4
+    np.testing.assert_allclose(braked.by_parameter[:, :, 0], expected, atol=1e-3 * np.abs(expected).max())
+    with pytest.raises(ValueError, match=r"leave brake\.rl at rest"):
+        Sensitivities(Variant(), by).run(t, w, p, by)

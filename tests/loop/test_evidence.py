@@ -160,3 +160,14 @@ def test_long_run_variance_is_bartletts_sum():
         c = q[lag:].T @ q[:-lag]
         total = total + (1 - lag / (lags + 1)) * (c + c.T)
     np.testing.assert_allclose(_long_run_variance(q, lags), total, rtol=1e-10)
+
+
+def test_a_recorded_brake_brakes(short):
+    """The first run was coasted without: a brake in the record of one wheel is an error, with derivatives and without."""
+    first = short.fit[0]
+    pulled = replace(first, inputs={**first.inputs, "brake.rl": np.full(len(first.time), 0.02)})
+    bench = Bench(replace(short, runs=(pulled, *short.runs[1:])), Variant())
+    before = Bench(short, Variant()).evidence([first], {}, NAMES)
+    braked = bench.evidence([pulled], {}, NAMES)
+    assert braked.rms > 1.5 * before.rms
+    assert bench.again(braked, {}).rms == pytest.approx(braked.rms, rel=1e-6)

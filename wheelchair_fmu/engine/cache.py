@@ -17,7 +17,7 @@ from ..model.expression import ExpressionLaw
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
-from .kernel import at_rest, kernel
+from .kernel import at_rest, kernel, seldom_among
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import tangent
@@ -27,16 +27,19 @@ PACKAGE = Path(__file__).parent.parent
 LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "-O3", "rodas": "-O3"}
 
 
-def library(choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None) -> ctypes.CDLL:
+def library(
+    choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None, moving: Iterable[str] = ()
+) -> ctypes.CDLL:
     """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions.
 
     With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s. Then the chair is on a
-    level floor with open brakes, whatever the inputs say: derivatives are for recorded runs, and half as much work so.
+    level floor with open brakes but for inputs that are `moving`, whatever the others say: half the work, for recorded runs.
     """
     effects = sorted(effects, key=lambda e: e.id)
-    words = "\n".join((_toolchain(), repr(choice), repr(columns), *map(effect_key, effects)))
+    moved = seldom_among(moving) if columns is not None else []
+    words = "\n".join((_toolchain(), repr(choice), repr(columns), repr(moved), *map(effect_key, effects)))
     key = hashlib.sha256(words.encode()).hexdigest()[:24]
-    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(choice, effects, columns, path)))
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(choice, effects, columns, moved, path)))
 
 
 def helper(name: str) -> ctypes.CDLL:
@@ -60,10 +63,10 @@ def _loaded(path: Path) -> ctypes.CDLL:
         ) from error
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, target: Path) -> None:
+def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, moving: Sequence[str], target: Path) -> None:
     model = assemble(choice, effects)
     if columns is not None:
-        model = at_rest(model)
+        model = at_rest(model, moving)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
         texts["tangent_model"] = tangent_source(tangent(model, columns), "tangent")

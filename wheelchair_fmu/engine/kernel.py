@@ -17,12 +17,13 @@ their stages (`csrc/rodas.c`), which is less code.
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, replace
 
 import casadi as cs
 
 from ..errors import ModelError
-from ..model.chassis import ROWS
+from ..model.chassis import INPUTS, ROWS
 from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
@@ -63,9 +64,15 @@ def seldom(model: Model) -> list[int]:
     return [i for i, u in enumerate(model.inputs) if u.seldom and cs.depends_on(moves, model.w[i])]
 
 
-def at_rest(model: Model) -> Model:
-    """The model with those inputs at their starts, whatever they are: a chair on a level floor with open brakes."""
-    places = seldom(model)
+def seldom_among(inputs: Iterable[str]) -> list[str]:
+    """Those of these inputs, in order, that most runs leave at their start."""
+    return sorted({i.name for i in INPUTS if i.seldom}.intersection(inputs))
+
+
+def at_rest(model: Model, moving: Container[str] = ()) -> Model:
+    """The model with those inputs, but for the `moving` ones, at their starts whatever they are: a chair on a level floor with
+    open brakes."""
+    places = [i for i in seldom(model) if model.inputs[i].name not in moving]
     starts = cs.DM([model.inputs[i].start for i in places])
     f, y, start = cs.substitute([model.f, model.y, model.start], [model.w[places]], [starts])
     return replace(model, f=f, y=y, start=start)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,18 +52,19 @@ class Linearised:
 
 class Sensitivities:
     """A variant, compiled with its derivatives by all parameters that a fit may touch, or by some `columns` of them: the
-    fewer, the faster; with none, only its `simulator` runs. Instances may run in parallel threads."""
+    fewer, the faster; with none, only its `simulator` runs. Of brakes, slopes and floors only those named as `moving` may leave
+    their start. Instances may run in parallel threads."""
 
-    def __init__(self, variant: Variant, columns: Sequence[str] | None = None):
+    def __init__(self, variant: Variant, columns: Sequence[str] | None = None, moving: Collection[str] = ()):
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
-        self.simulator = Simulator(variant, self.columns or None)
+        self.simulator, self._moving = Simulator(variant, self.columns or None, moving), moving
         self.simulator.model = self.model  # which takes as long to assemble as ten runs
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
         self.results = tuple(o.name for o in self.model.outputs)
         if self.columns:
-            self._library = cache.library(variant.choice, variant.active(), self.columns)
+            self._library = cache.library(variant.choice, variant.active(), self.columns, moving)
             self._library.wc_tangent_work.restype = ctypes.c_long
             self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
             self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
@@ -73,10 +74,11 @@ class Sensitivities:
     ) -> Linearised:
         """Simulate over `time` (n,) with inputs (n, nw) linear between samples; derivatives `by` these parameters.
 
-        Raises SimulationError, naming the time, where the model cannot go on, and ValueError for inputs that brake or slope.
+        Raises SimulationError, naming the time, where the model cannot go on, and ValueError for inputs that move
+        without being `moving`.
         """
         t, w, p = (np.ascontiguousarray(a, float) for a in (time, inputs, parameters))
-        refuse_unrest(self.model, w)
+        refuse_unrest(self.model, w, self._moving)
         which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
         n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
         x, y = np.empty((n, nx)), np.empty((n, ny))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..errors import SimulationError
+from ..model.chassis import INPUTS
 from ..model.variant import Variant
 from ..model.wheelchair import Model
 from . import cache
@@ -43,12 +44,12 @@ class Simulator:
     """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
 
     `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway. It is
-    for a level floor and open brakes, and `run` raises ValueError for other inputs.
+    for a level floor and open brakes but for inputs that are `moving`, and `run` raises ValueError for others.
     """
 
-    def __init__(self, variant: Variant = Variant(), columns: Sequence[str] | None = None):
-        self.variant, self._with_derivatives = variant, columns is not None
-        self._library = cache.library(variant.choice, variant.active(), columns)
+    def __init__(self, variant: Variant = Variant(), columns: Sequence[str] | None = None, moving: Collection[str] = ()):
+        self.variant, self._moving = variant, moving if columns is not None else [i.name for i in INPUTS]
+        self._library = cache.library(variant.choice, variant.active(), columns, moving)
         self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
 
     @cached_property
@@ -88,8 +89,7 @@ class Simulator:
         y = np.empty((len(t), self.model.y.numel()))
         if w.shape != (len(t), self.model.w.numel()) or p.shape != (self.model.p.numel(),):
             raise ValueError(f"inputs {w.shape} and parameters {p.shape} do not fit {len(t)} times and this model")
-        if self._with_derivatives:
-            refuse_unrest(self.model, w)
+        refuse_unrest(self.model, w, self._moving)
         reached, steps = ctypes.c_long(), ctypes.c_long()
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
@@ -126,11 +126,14 @@ class Simulator:
         return ctypes.c_void_p(ctypes.addressof(symbol))
 
 
-def refuse_unrest(model: Model, inputs: np.ndarray) -> None:
-    """Raise ValueError where `inputs` (n, nw) brake, slope or change the floor, which models with derivatives do not follow."""
-    moved = [u.name for u, column in zip(model.inputs, inputs.T, strict=True) if u.seldom and np.any(column != u.start)]
+def refuse_unrest(model: Model, inputs: np.ndarray, moving: Container[str]) -> None:
+    """Raise ValueError where `inputs` (n, nw) brake, slope or change the floor, and none of the `moving` does so."""
+    resting = [(u, column) for u, column in zip(model.inputs, inputs.T, strict=True) if u.seldom and u.name not in moving]
+    moved = [u.name for u, column in resting if np.any(column != u.start)]
     if moved:
-        raise ValueError(f"derivatives are those of a level floor and open brakes; leave {', '.join(moved)} at rest")
+        raise ValueError(
+            f"this model has a level floor and open brakes; leave {', '.join(moved)} at rest, or name it as moving"
+        )
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

@@ -15,7 +15,7 @@ from ..errors import BuildError
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import cache, compiler
-from .kernel import at_rest, kernel
+from .kernel import at_rest, kernel, seldom_among
 from .source import CSRC, NOTHING, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import tangent
@@ -46,9 +46,11 @@ TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_a
 _deriving = Lock()  # CasADi's objects are not for several threads
 
 
-def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str]) -> list[bytes]:
-    """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`, for recorded runs:
-    on a level floor with open brakes.
+def modules(
+    models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str], moving: Iterable[str] = ()
+) -> list[bytes]:
+    """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`, on a level floor
+    with open brakes but for inputs that are `moving`.
 
     What is not cached is compiled side by side. The first of all on a machine waits for ziglang to build its C library.
 
@@ -58,31 +60,34 @@ def modules(models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence
         raise BuildError(
             "the model is compiled to WebAssembly by ziglang, which is not installed; pip install 'wheelchair-fmu[report]'"
         )
+    moved = seldom_among(moving)
     with side_by_side() as pool:
         waiting = []
         for choice, some in models:
             effects = sorted(some, key=lambda e: e.id)
-            make = partial(_compile, choice, effects, columns)
-            waiting.append(pool.submit(kept, _name(choice, effects, columns), ".wasm", make))
+            make = partial(_compile, choice, effects, columns, moved)
+            waiting.append(pool.submit(kept, _name(choice, effects, columns, moved), ".wasm", make))
         return [w.result().read_bytes() for w in waiting]
 
 
-def _name(choice: Choice, effects: list[Effect], columns: Sequence[str]) -> str:
-    words = "\n".join((cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), *map(cache.effect_key, effects)))
+def _name(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str]) -> str:
+    words = "\n".join(
+        (cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), repr(moving), *map(cache.effect_key, effects))
+    )
     return hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], target: Path) -> None:
-    files = _written(choice, effects, columns, target.parent)
+def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], target: Path) -> None:
+    files = _written(choice, effects, columns, moving, target.parent)
     by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
     flags = [*FLAGS, f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
     compiler.compile_wasm([*files, *by_hand], target, flags)
 
 
-def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], place: Path) -> list[Path]:
+def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], place: Path) -> list[Path]:
     """The model's C files, and what they need beside them."""
     with _deriving:
-        model = at_rest(assemble(choice, effects))
+        model = at_rest(assemble(choice, effects), moving)
         sources = {
             "model.c": c_source(kernel(model), "model", KERNEL),
             "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT),

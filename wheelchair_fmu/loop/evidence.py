@@ -202,6 +202,11 @@ class Evidence:
         return Evidence(tuple(replace(e, S=e.S[:, :, at]) for e in self.runs), tuple(names))
 
 
+def driven(campaign: Campaign) -> frozenset[str]:
+    """The inputs that some run records, by FMU name."""
+    return frozenset(name for run in campaign.runs for name in run.inputs)
+
+
 class Bench:
     """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
 
@@ -222,7 +227,7 @@ class Bench:
     ):
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
         wanted = None if columns is None else (*columns, *START)
-        self.sensitivities = Sensitivities(self.variant, wanted if derives else ())
+        self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
         self.colour = colour or Colour(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
         self.offsets = offsets_of(campaign)

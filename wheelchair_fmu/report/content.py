@@ -14,7 +14,7 @@ from ..campaign.channels import PUSHES
 from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
-from ..loop.evidence import SETTLED, START, TOLERANCE, Colour, prior_start, start_sd
+from ..loop.evidence import SETTLED, START, TOLERANCE, Colour, driven, prior_start, start_sd
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
 from ..loop.workshop import Workshop
@@ -37,7 +37,7 @@ def content(
     campaign = replace(campaign, runs=tuple(_in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
     workshop = Workshop(campaign, variant, fixed)
     variants = [variant.with_effects(ids) for ids in layers(workshop, campaign.effects, diagnosis["effects"])]
-    compiled = modules([(v.choice, v.active()) for v in variants], START)
+    compiled = modules([(v.choice, v.active()) for v in variants], START, driven(campaign))
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
