@@ -224,7 +224,7 @@ def test_each_model_is_small_and_simulates_in_no_time(reader):
         for values in brought
     ]
     print("\nWebAssembly: " + ", ".join(f"{b} bytes and {ms:.1f} ms" for b, ms in zip(sizes, times, strict=True)))
-    assert max(sizes) <= 110_000
+    assert max(sizes) <= 100_000
 
 
 def test_one_file_small_and_shut(report_file):
