@@ -11,7 +11,7 @@ help:
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    all tests"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
-	@echo "make docs    write the pages that are made from records: docs/campaign.md"
+	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
@@ -46,6 +46,7 @@ demo: setup
 
 docs: setup
 	$(BIN)/python -m wheelchair_fmu.campaign.reference docs/campaign.md
+	$(BIN)/python -m wheelchair_fmu.model.catalogue_page docs/effects.md
 
 test: setup
 	$(BIN)/python -m pytest -n 2

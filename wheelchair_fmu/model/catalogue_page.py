@@ -1,0 +1,75 @@
+"""docs/effects.md: every effect of the catalogue with its law, its parameters and what it acts on, from their records.
+
+`python -m wheelchair_fmu.model.catalogue_page docs/effects.md` writes it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+
+from ..quantities import Parameter, Quantity
+from ..writing import written
+from . import effects as package
+from .effects import bundled
+from .stage import Effect
+from .wheelchair import Choice, assemble
+
+HEAD = """# The effects
+
+Each adds one thing to [the model](physics.md) that the paper leaves out. A parameter is zero where its effect is off, and `δ`
+is its smallest size of interest, against which a diagnosis calls it missing or small. In the FMU a parameter is
+`effect.<id>.<name>`. The page is written by `make docs` from the files in `wheelchair_fmu/model/effects`;
+[your own](your-own-effect.md) is one more such file.
+"""
+
+
+def page() -> str:
+    """The whole page."""
+    catalogue = bundled()
+    contents = "\n".join(f"- [`{id}`](#{id}): {effect.title}" for id, effect in catalogue.items())
+    return "\n\n".join([HEAD.rstrip(), contents, *(section(e) for e in catalogue.values())]) + "\n"
+
+
+def section(effect: Effect) -> str:
+    """One effect: what its file says of it, its parameters, what it acts on and what it needs."""
+    said = inspect.getdoc(import_module(f"{package.__name__}.{effect.id}")) or ""
+    parts = [f"## {effect.id}", said, _table(effect.parameters), f"Acts on {_targets(effect)}.{_needs(effect)}"]
+    if effect.constants:
+        constants = "; ".join(f"`{c.name}` = {c.default:g} {c.unit.name}, {c.meaning} ({c.source})" for c in effect.constants)
+        parts.append(f"Not estimated: {constants}.")
+    return "\n\n".join(parts)
+
+
+def _table(parameters: Sequence[Parameter]) -> str:
+    head = "| parameter | unit | meaning | δ | bounds | source |\n|---|---|---|---|---|---|"
+    rows = (
+        f"| `{p.name}` | {p.unit.name} | {p.meaning} | {p.smallest_interesting:g} | {p.lower:g} to {p.upper:g} | {p.source} |"
+        for p in parameters
+    )
+    return "\n".join([head, *rows])
+
+
+def _targets(effect: Effect) -> str:
+    if effect.delays_record:
+        return "the recorded pushes, which it shifts in time; it is no part of the FMU"
+    known = _quantities(effect)
+    return "; ".join(dict.fromkeys(f"`{c.to}`, {known[c.to].meaning}" for c in effect.contributions))
+
+
+def _quantities(effect: Effect) -> dict[str, Quantity]:
+    return dict(assemble(Choice(**effect.needs), [effect]).records)
+
+
+def _needs(effect: Effect) -> str:
+    needs = "".join(f" Needs the {kind} law `{name}`." for kind, name in effect.needs.items())
+    states = ", ".join(f"`{row.state.name}`" for row in effect.rows)
+    return needs + (f" Brings the state {states}." if states else "")
+
+
+if __name__ == "__main__":
+    with written(Path(sys.argv[1])) as beside:
+        beside.write_text(page(), encoding="utf-8")
