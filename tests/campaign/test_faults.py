@@ -160,6 +160,12 @@ TOML_FAULTS = [
         "line 7: no run has the column 'speed_l' that [columns] gives for u; did you mean 'wheel_speed_l [m/s]'?",
     ),
     (
+        "a speed away from the centre of mass",
+        lambda h, r: (h + "[sensor]\nu = { at = [-0.2, 0.0] }\n", r),
+        "line 7: [sensor] u is away from the centre of mass, but the model says where that is and how fast; move the column "
+        "there, or give markers.axle_l and markers.axle_r in [[recording]]",
+    ),
+    (
         "radius not positive",
         lambda h, r: (h + '[columns]\nF_rl = { column = "F_rl [N]", radius = 0 }\n', r),
         "line 7: [columns] F_rl: radius = 0; give a radius above 0, in m",

@@ -273,7 +273,8 @@ OPEN = (
     ),
     TableRecord(
         "sensor",
-        "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m.",
+        "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m. It matters for "
+        "a_x and a_y; positions and speeds (x, y, u, v) are those of the centre of mass itself.",
         (),
         open=True,
     ),

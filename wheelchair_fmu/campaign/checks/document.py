@@ -20,6 +20,7 @@ from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING
 
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
+OF_THE_CM = ("x", "y", "u", "v")  # channels that are another at another point; an accelerometer's point is a parameter
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
@@ -157,6 +158,10 @@ def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
         elif point_of(entry) is None:
             cure = f"write sensor.{name}.at = [x, y], in m forward and to the right of the centre of mass"
             yield doc.fault(f"sensor.{name}", f"[sensor] {name} = {entry!r} is no point", cure)
+        elif name in OF_THE_CM and any(point_of(entry) or ()):
+            fact = f"[sensor] {name} is away from the centre of mass, but the model says where that is and how fast"
+            cure = "move the column there, or give markers.axle_l and markers.axle_r in [[recording]]"
+            yield doc.fault(f"sensor.{name}", fact, cure)
 
 
 def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
