@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from ..independent.campaigns import CHANNELS
 from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, usual
 
 SIZES = (0.25, 1.0, 3.0)  # of δ
@@ -35,6 +36,11 @@ class Case:
     def name(self) -> str:
         what = "+".join(self.effects) or "none"
         return f"{self.kind}-{what}-{self.times:g}-{self.noise}-{self.manoeuvres}-{self.seed}"
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The usual ones, and those that show what is hidden."""
+        return (*CHANNELS, *dict.fromkeys(c for e in self.effects for c in EFFECTS[e].channels))
 
     @property
     def hidden(self) -> Mapping[str, Mapping[str, float]]:

@@ -26,7 +26,9 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
     chair = Variant(catalogue=catalogue)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "campaign"
-        campaign = read(make(folder, case.hidden, noise=case.noise, manoeuvres=case.manoeuvres, seed=case.seed))
+        campaign = read(
+            make(folder, case.hidden, noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
+        )
         began = time.process_time()
         found = diagnose(campaign, chair, library())
         said = as_json(found)

@@ -29,6 +29,8 @@ class Instruments:
     bias_y: float = 0.0
     offset_x: float = 0.0
     offset_y: float = 0.0
+    marker_x: float = 0.0
+    marker_y: float = 0.0
     roll: float = 0.0
     pitch: float = 0.0
     speed_r: float = 0.0
@@ -53,8 +55,16 @@ class Instruments:
             "yaw_rate": (1 + self.gyro_scale) * true["yaw_rate"] + self.gyro_bias,
             "a_x": a_x,
             "a_y": a_y,
-            **{name: true[name] for name in ("x", "y", "yaw", "u", "v")},
+            "yaw": true["yaw"],
+            **self._marker(true),
         }
+
+    def _marker(self, true: Mapping[str, np.ndarray]) -> Columns:
+        """Where the marker is and how fast, as complex numbers: x + i y, in which turning clockwise is a factor e^(i yaw)."""
+        point = self.marker_x + 1j * self.marker_y
+        place = true["x"] + 1j * true["y"] + point * np.exp(1j * true["yaw"])
+        speed = true["u"] + 1j * true["v"] + 1j * true["yaw_rate"] * point
+        return {"x": place.real, "y": place.imag, "u": speed.real, "v": speed.imag}
 
     def _accelerometer(self, true: Mapping[str, np.ndarray], g: float) -> tuple[np.ndarray, np.ndarray]:
         """Specific force at the mounting point, turned into the tilted sensor's axes (first pitch, then roll)."""
@@ -111,6 +121,7 @@ class Effect:
     sees: str = "everyday"
     catalogued: bool = True
     of_nobody: bool = False  # what no effect should be blamed for
+    channels: tuple[str, ...] = ()  # that show it, besides the usual ones
 
 
 def _one(name: str, where: str, unit: str, delta: float, sign: str, **more: object) -> dict[str, Parameter]:
@@ -200,6 +211,10 @@ EFFECTS: dict[str, Effect] = {
     "accelerometer_bias": Effect(_two(("x", "y"), "instruments.bias_{}", "m/s2", 0.03, "added to the reading", 0.5)),
     "accelerometer_offset": Effect(
         _two(("x", "y"), "instruments.offset_{}", "m", 0.03, "where it sits from the CM, forward and right", 1.0)
+    ),
+    "marker_offset": Effect(
+        _two(("x", "y"), "instruments.marker_{}", "m", 0.01, "where it sits from the CM, forward and right", -0.5),
+        channels=("x", "y", "yaw"),
     ),
     "accelerometer_tilt": Effect(
         _two(("roll", "pitch"), "instruments.{}", "rad", 0.005, "right side down: a_y - g roll; front up: a_x + g pitch", 0.6)

@@ -160,10 +160,15 @@ TOML_FAULTS = [
         "line 7: no run has the column 'speed_l' that [columns] gives for u; did you mean 'wheel_speed_l [m/s]'?",
     ),
     (
-        "a speed away from the centre of mass",
-        lambda h, r: (h + "[sensor]\nu = { at = [-0.2, 0.0] }\n", r),
-        "line 7: [sensor] u is away from the centre of mass, but the model says where that is and how fast; move the column "
-        "there, or give markers.axle_l and markers.axle_r in [[recording]]",
+        "a speed off the chair",
+        lambda h, r: (h + "[sensor]\nu = { at = [-200, 0.0] }\n", r),
+        "line 7: [sensor] u.at = [-200, 0.0] is more than 2 m from the centre of mass, off any chair; write it in m",
+    ),
+    (
+        "one marker in two places",
+        lambda h, r: (h + "[sensor]\nx = { at = [-0.2, 0.0] }\ny = { at = [-0.2, 0.1] }\n", r),
+        "line 8: [sensor] x is at [-0.2, 0.0] and y at [-0.2, 0.1]; give them one point, and leave out the columns of the "
+        "other",
     ),
     (
         "radius not positive",

@@ -58,6 +58,7 @@ IDS = {
     "gyro_scale",
     "accelerometer_bias",
     "accelerometer_offset",
+    "marker_offset",
     "accelerometer_tilt",
     "wheel_radius_error",
 }
@@ -88,7 +89,9 @@ def test_three_times_the_smallest_interesting_size_is_seen(effect):
     runs = pick(EFFECTS[effect].sees)
     for run in sorted(runs, key=lambda r: r.manoeuvre == "coast-down" or r.role == "holdout"):
         one, other = record(run, true).columns, without(run).columns
-        if any(np.max(np.abs(one[c] - other[c])) > 0.2 * NOISE[c] for c in (*CHANNELS, "F_rl", "F_rr")):
+        if any(
+            np.max(np.abs(one[c] - other[c])) > 0.2 * NOISE[c] for c in (*CHANNELS, *EFFECTS[effect].channels, "F_rl", "F_rr")
+        ):
             return
     pytest.fail(f"{effect} is invisible")
 

@@ -135,8 +135,26 @@ CHANNELS: tuple[Channel, ...] = (
         drifts=True,
         starts="start.psi",
     ),
-    Channel("u", M_S, "chair.u", "speed of the centre of mass, forward", -15.0, 15.0, wrong_unit="km/h", starts="start.u"),
-    Channel("v", M_S, "chair.v", "speed of the centre of mass, to the right", -15.0, 15.0, -1, wrong_unit="km/h"),
+    Channel(
+        "u",
+        M_S,
+        "sensor.u",
+        "speed of the centre of mass, or of the point it is `at`, forward",
+        -15.0,
+        15.0,
+        wrong_unit="km/h",
+        starts="start.u",
+    ),
+    Channel(
+        "v",
+        M_S,
+        "sensor.v",
+        "speed of the centre of mass, or of the point it is `at`, to the right",
+        -15.0,
+        15.0,
+        -1,
+        wrong_unit="km/h",
+    ),
 )
 
 INPUTS: tuple[Channel, ...] = tuple(
@@ -164,4 +182,5 @@ SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.s
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
+MOUNTED = {"accelerometer_offset": ("a_x", "a_y"), "marker_offset": ("x", "y", "u", "v")}  # what has one point together
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

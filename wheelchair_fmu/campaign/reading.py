@@ -13,7 +13,7 @@ from ..errors import CampaignError
 from ..faults import ERROR, SHOWN, Fault, once
 from ..given import what_is
 from .axes import SAE
-from .channels import BY_NAME, CHANNEL_NAMES, PUSH_NAMES
+from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
 from .devices import Part, parts, point_of
@@ -179,11 +179,14 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
 
 
 def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:
-    """Where the accelerometers sit, as the parameters that say so."""
+    """Where the accelerometers and the markers sit, as the parameters that say so."""
     points = {name: d.part.device.at for run in runs for d in run.drafts for name in d.channels}
     points |= {name: point for name, entry in doc.table("sensor").items() if (point := point_of(entry))}
-    at = next((points[name] for name in ("a_x", "a_y") if points.get(name)), None)
-    return {} if at is None else {f"effect.accelerometer_offset.{axis}": value for axis, value in zip("xy", at, strict=True)}
+    known: dict[str, float] = {}
+    for effect, names in MOUNTED.items():
+        at = next((points[name] for name in names if points.get(name)), None)
+        known |= {} if at is None else {f"effect.{effect}.{axis}": value for axis, value in zip("xy", at, strict=True)}
+    return known
 
 
 def _numbers(table: Mapping[str, Any]) -> dict[str, float]:

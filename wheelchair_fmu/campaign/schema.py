@@ -274,7 +274,7 @@ OPEN = (
     TableRecord(
         "sensor",
         "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m. It matters for "
-        "a_x and a_y; positions and speeds (x, y, u, v) are those of the centre of mass itself.",
+        "a_x and a_y, which have one point together, and for x, y, u and v, which have another; the rest is the same anywhere.",
         (),
         open=True,
     ),

@@ -40,7 +40,6 @@ from .kernel import _algebraic_change
 
 NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses", "begin")
 SENSORS = "sensor."
-SENSED = ("chair.u", "chair.v")  # results that are also measured directly
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
 
 
@@ -75,7 +74,7 @@ def differentiable(model: Model, names: Sequence[str] | None = None) -> tuple[Pa
 
 def sensed(model: Model) -> tuple[int, ...]:
     """Places of the results that instruments read."""
-    return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS) or o.name in SENSED)
+    return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS))
 
 
 def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import cos, sin
 
 import numpy as np
 
@@ -457,9 +458,18 @@ def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
         return float(values.mean()) if len(values) else known.get(name, 0.0)
 
     found = {name: mean(name, channel.name) for name, channel in TELLS.items()}
+    found = _of_the_cm(run, found, known)
     if run.u0 is not None:
         found["start.u"] = run.u0
     return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in START}
+
+
+def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) -> dict[str, float]:
+    """The start of the CM, where position and speed were read at another point of the frame."""
+    x, y = (known.get(f"effect.marker_offset.{axis}", 0.0) for axis in "xy")
+    psi, turn = found["start.psi"], found["start.psi_dot"]
+    lever = {"start.x": x * cos(psi) - y * sin(psi), "start.y": x * sin(psi) + y * cos(psi), "start.u": -y * turn}
+    return {name: value - lever.get(name, 0.0) * (TELLS[name].name in run.channels) for name, value in found.items()}
 
 
 def start_sd(run: Run) -> dict[str, float]:

@@ -14,7 +14,9 @@ from .stage import define, stage
     define("read_x", M, "x of the CM in the room"),
     define("read_y", M, "y of the CM in the room", "-"),
     define("read_yaw", RAD, "yaw angle", "-"),
+    define("read_u", M_S, "speed of the CM along x_m"),
+    define("read_v", M_S, "speed of the CM along y_m", "-"),
 )
-def sensors(v_xw, locked, psi_dot, a_x, a_y, g_x, g_y, x, y, psi):
+def sensors(v_xw, locked, psi_dot, a_x, a_y, g_x, g_y, x, y, psi, u, v):
     """Wheels roll without longitudinal slip unless they are locked; an accelerometer does not feel gravity along its axis."""
-    return (1 - locked) * v_xw, psi_dot, a_x - g_x, a_y - g_y, x, y, psi
+    return (1 - locked) * v_xw, psi_dot, a_x - g_x, a_y - g_y, x, y, psi, u, v

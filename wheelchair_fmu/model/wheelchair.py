@@ -94,6 +94,8 @@ OUTPUTS = (
     Output("sensor.x", M, "x as a tracking system reads it", symbol="read_x"),
     Output("sensor.y", M, "y as a tracking system reads it", "-", symbol="read_y"),
     Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw", nominal=0.5),
+    Output("sensor.u", M_S, "forward speed as a tracking system reads it", symbol="read_u"),
+    Output("sensor.v", M_S, "lateral speed as a tracking system reads it, to the right", "-", symbol="read_v", nominal=0.01),
 )
 
 REGIMES = {  # what to sort errors by: name -> result

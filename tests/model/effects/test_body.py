@@ -170,6 +170,8 @@ def test_instruments_on_the_frame_tell_one_story(u):
     assert np.quantile(np.abs(off[inside]), 0.99) < 2e-4  # but for the moments in which drag turns round with a wheel
     wheels = (result["sensor.wheel_speed_l"] + result["sensor.wheel_speed_r"]) / 2
     np.testing.assert_allclose(wheels[inside], (velocity / to_room).real[inside], atol=2e-5)
+    seen = result["sensor.u"] + 1j * result["sensor.v"]
+    np.testing.assert_allclose(seen[inside], (velocity / to_room)[inside], atol=2e-5)
 
 
 @pytest.mark.effect("trunk_motion")

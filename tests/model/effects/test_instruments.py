@@ -22,6 +22,7 @@ ALL = (
     "accelerometer_tilt",
     "gyro_bias",
     "gyro_scale",
+    "marker_offset",
     "push_force_gain",
     "wheel_radius_error",
 )
@@ -75,6 +76,18 @@ def test_an_accelerometer_beside_the_cm_feels_its_own_path():
     felt = specific_force(result, 0.4, -0.3)
     assert np.abs(felt - specific_force(result)).max() > 0.1
     np.testing.assert_allclose(readings(result)[SETTLED], felt[SETTLED], atol=2e-6)
+
+
+@pytest.mark.effect("marker_offset")
+def test_a_marker_beside_the_cm_draws_its_own_path():
+    """It stays as far from the CM as it was mounted, and its path's slope, turned into the chair, is the speed it has."""
+    result = lively({"marker_offset.x": -0.2, "marker_offset.y": 0.15})
+    to_room = np.exp(1j * result["chair.psi"])
+    marker, cm = (result[f"{of}.x"] + 1j * result[f"{of}.y"] for of in ("sensor", "chair"))
+    np.testing.assert_allclose(np.abs(marker - cm), 0.25, rtol=1e-9)
+    np.testing.assert_allclose(((marker - cm) / to_room).imag, 0.15, atol=1e-9)
+    speed = np.gradient(marker, result.time, edge_order=2) / to_room
+    np.testing.assert_allclose((result["sensor.u"] + 1j * result["sensor.v"])[SETTLED], speed[SETTLED], atol=2e-6)
 
 
 @pytest.mark.effect("accelerometer_tilt")

@@ -9,7 +9,7 @@ from ...faults import SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
 from ...units import UnitError
 from ..axes import ISO, SAE
-from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
+from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
 from ..devices import devices, parts, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
@@ -20,7 +20,7 @@ from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING
 
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
-OF_THE_CM = ("x", "y", "u", "v")  # channels that are another at another point; an accelerometer's point is a parameter
+FARTHEST = 2.0  # m from the centre of mass, of anything on a chair
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
@@ -158,10 +158,19 @@ def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
         elif point_of(entry) is None:
             cure = f"write sensor.{name}.at = [x, y], in m forward and to the right of the centre of mass"
             yield doc.fault(f"sensor.{name}", f"[sensor] {name} = {entry!r} is no point", cure)
-        elif name in OF_THE_CM and any(point_of(entry) or ()):
-            fact = f"[sensor] {name} is away from the centre of mass, but the model says where that is and how fast"
-            cure = "move the column there, or give markers.axle_l and markers.axle_r in [[recording]]"
-            yield doc.fault(f"sensor.{name}", fact, cure)
+        elif max(map(abs, point_of(entry) or (0.0,))) > FARTHEST:
+            fact = f"[sensor] {name}.at = {entry['at']} is more than {FARTHEST:g} m from the centre of mass, off any chair"
+            yield doc.fault(f"sensor.{name}", fact, "write it in m")
+
+
+def two_points(doc: Document, known: Known | None) -> Iterator[Fault]:
+    """Channels of one instrument that are said to sit in two places."""
+    points = {name: point_of(entry) for name, entry in doc.table("sensor").items()}
+    for names in MOUNTED.values():
+        first, *others = [name for name in names if points.get(name)] or [""]
+        for other in (o for o in others if points[o] != points[first]):
+            fact = f"[sensor] {first} is at {list(points[first] or ())} and {other} at {list(points[other] or ())}"
+            yield doc.fault(f"sensor.{other}", fact, "give them one point, and leave out the columns of the other")
 
 
 def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -381,6 +390,7 @@ DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...]
     bad_recording,
     bad_files,
     bad_point,
+    two_points,
     no_file,
     missing_file,
     bad_role,

@@ -99,6 +99,8 @@ EFFECT = Effect(
         adds("read_a_y", felt_aside),
         adds("read_x", lambda lean, psi: -lean * cs.cos(psi)),
         adds("read_y", lambda lean, psi: -lean * cs.sin(psi)),
+        adds("read_u", recoil),
+        adds("read_v", lambda lean, psi_dot: -lean * psi_dot),
     ),
     rows=(
         Row(
