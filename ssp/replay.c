@@ -39,5 +39,6 @@ static int recorded_forward(const double **arg, double **res, long long *iw, dou
 }
 
 WC_LOCAL const wc_kernel replay_kernel = {
-    SIZES, unrecorded_nominal, unrecorded_start, unrecorded_project, unrecorded_step, recorded_output, recorded_forward,
-    unrecorded_rate, unrecorded_mass};
+    SIZES, unrecorded_nominal,
+    .start = unrecorded_start, .project = unrecorded_project, .step = unrecorded_step, .output = recorded_output,
+    .forward = recorded_forward, .rate = unrecorded_rate, .mass = unrecorded_mass};

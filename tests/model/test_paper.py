@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.contracts.places import Place, evaluate
+from wheelchair_fmu.engine.kernel import kernel
 from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
-from wheelchair_fmu.model.wheelchair import Choice
+from wheelchair_fmu.model.wheelchair import Choice, assemble
 
 PAPER = Variant(Choice(equations="paper"))
 
@@ -158,3 +160,16 @@ def test_slips_in_the_slalom_are_asymmetric():
     last = slice(-400, None)
     assert run["slip.rr"][last].mean() > 1e-5 > -1e-5 > run["slip.rl"][last].mean()
     assert np.degrees(np.abs([run["slip.rl"], run["slip.rr"]]).max()) < 1
+
+
+def test_every_light_effect_can_be_put_into_the_papers_equations():
+    """Off it changes nothing: the paper's steady turn is the same to rounding with all of them in the model."""
+    light = [e for e in bundled().values() if e.stateless]
+    models = [assemble(Choice(equations="paper"), effects) for effects in ([], light)]
+    rates = []
+    for model in models:
+        defaults = np.array([p.default for p in model.parameters])
+        start = kernel(model).functions["start"](defaults, [i.start for i in model.inputs])
+        inputs = [10.0, 8.0, *(i.start for i in model.inputs[2:])]
+        rates.append(np.array(kernel(model).functions["rate"](start, inputs, defaults)[0]).ravel())
+    np.testing.assert_allclose(rates[1][:6], rates[0][:6], rtol=1e-12, atol=1e-12)

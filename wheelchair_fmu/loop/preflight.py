@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from ..campaign.recorded import PUSHES_CLOCK
 from .diagnose import Search, Step
 from .evidence import Evidence
-from .fit import Fit
+from .fit import Fit, Problem
 from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring
 
@@ -46,7 +48,10 @@ def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
     delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
     if not name or delay in effects:
         return False
-    found = by_slopes(w.bench((*effects, delay)).evidence(w.campaign.runs, base.values, (name,)), name)
+    bench, theta = w.bench((*effects, delay)), np.array([base.values[n] for n in base.names])
+    prior = Problem(bench, base.names).prior
+    evidence = bench.evidence(w.campaign.runs, base.values, (*base.names, name))
+    found = by_slopes(evidence, prior.rows(theta), prior.slopes)
     w.retime(found)
     search.retimed |= found
     return bool(found)

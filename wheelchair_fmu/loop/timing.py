@@ -7,7 +7,7 @@ when the chair felt them. No run is left out for it. What all runs share is the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,6 +29,7 @@ EXPLAINED = 0.25  # share of the mean square innovation that may remain,
 HOPEFUL = 0.6  # or so near it
 APART = 0.3  # s from the best shift, from where another
 UNIQUE = 2.0  # must leave so many times as much, or nobody knows which of them it was
+MOST_OF = 0.5  # of what a model leaves above the noise
 LEAST_SD = 0.002  # s: no smoother tells a clock better
 
 
@@ -66,34 +67,63 @@ def by_model(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> d
     return found
 
 
-def by_slopes(evidence: Evidence, delay: str) -> dict[str, Late]:
-    """Runs whose pushes are a little early or late beside those of the others, where a model explains the rest: `evidence` has
-    sensitivities by the parameter `delay`, by which all pushes would be felt later."""
-    shifts = {e.run.name: _by_slope(e, evidence.by.index(delay)) for e in evidence.runs if _one_clock(e.run) and _pushes(e.run)}
-    told = {name: late for name, late in shifts.items() if late is not None}
-    found = {}
-    for name, late in told.items():
-        others = [o for n, o in told.items() if n != name]
+def by_slopes(evidence: Evidence, prior_rows: np.ndarray, prior_slopes: np.ndarray) -> dict[str, Late]:
+    """Runs whose pushes are a little early or late, where a model explains the rest: `evidence` has sensitivities by what was
+    calibrated, of which something was known with residuals (m,) and slopes (m, m), and last by a delay, by which all pushes
+    would be felt later.
+
+    One run's shift bends what is calibrated, so calibration is free to go back. Either one run stands out among the shifts of
+    all runs, or the shift of one alone explains most of what is left, and of no other nearly as much.
+    """
+    parts = {e.run.name: (e, part) for e, _, part in evidence.parts() if _one_clock(e.run) and _pushes(e.run)}
+    m, n = len(prior_rows), len(evidence.r)
+    A = np.zeros((n + m, m + len(parts)))
+    A[:n, :m], A[n:, :m] = evidence.S[:, :m], prior_slopes
+    for i, (_, part) in enumerate(parts.values()):
+        A[part, m + i] = evidence.S[part, -1]
+    r = np.concatenate([evidence.r, prior_rows])
+    told = [name for i, name in enumerate(parts) if A[:, m + i].any()]
+    A = A[:, [*range(m), *(m + i for i, name in enumerate(parts) if name in told)]]
+    return _standing_out(A, r, [parts[name] for name in told]) or _explaining(A, r, told, float(r @ r) - n)
+
+
+def _standing_out(A: np.ndarray, r: np.ndarray, parts: Sequence[tuple[RunEvidence, slice]]) -> dict[str, Late]:
+    """Runs that are early or late beside the others, where the last columns of A are by the shift of each; errors that last
+    count as fewer."""
+    inverse = np.linalg.pinv(A.T @ A, hermitian=True)
+    found = inverse @ (A.T @ r)
+    left, shifts, m = r - A @ found, {}, A.shape[1] - len(parts)
+    for i, (e, part) in enumerate(parts, m):
+        spread = max(1.0, float(np.mean(left[part] ** 2))) * correlation_time(Evidence((e,), ()))
+        shifts[e.run.name] = Late(float(found[i]), float(np.sqrt(spread * inverse[i, i])))
+    odd = {}
+    for name, late in shifts.items():
+        others = [o for n, o in shifts.items() if n != name]
         if len(others) + 1 < ENOUGH:
             continue
         common, se = weighted_median([o.seconds for o in others], [o.sd for o in others])
         away, sd = late.seconds - common, float(np.hypot(late.sd, se))
         if abs(away) > max(ODD * sd, LEAST):
-            found[name] = Late(away, abs(away))  # a first step, from readings that the fit has as well: they settle it
-    return found if 2 * len(found) < len(told) else {}
+            odd[name] = Late(away, abs(away))  # a first step, from readings that the fit has as well: they settle it
+    return odd if 2 * len(odd) < len(shifts) else {}
 
 
-def _by_slope(e: RunEvidence, column: int) -> Late | None:
-    """How much later the readings of one run want its pushes, to first order; errors that last count as fewer."""
-    good = np.isfinite(e.r)
-    r, later = e.r[good], e.S[:, :, column][good]
-    told = float(later @ later)
-    if told <= 0:
-        return None
-    seconds = float(later @ r) / told
-    left = r - later * seconds
-    spread = max(1.0, float(np.mean(left**2))) * correlation_time(Evidence((e,), ()))
-    return Late(seconds, float(np.sqrt(spread / told)))
+def _explaining(A: np.ndarray, r: np.ndarray, names: Sequence[str], squares: float) -> dict[str, Late]:
+    """The run whose shift alone explains most of these `squares` above the noise's, if there is one."""
+    H, g, m = A.T @ A, A.T @ r, A.shape[1] - len(names)
+    without = float(g[:m] @ np.linalg.pinv(H[:m, :m], hermitian=True) @ g[:m])
+    falls, shifts = [], []
+    for i in range(m, A.shape[1]):
+        some = [*range(m), i]
+        found = np.linalg.pinv(H[np.ix_(some, some)], hermitian=True) @ g[some]
+        falls.append(float(g[some] @ found) - without)
+        shifts.append(float(found[-1]))
+    if len(names) < ENOUGH:
+        return {}
+    next_best, best = np.argsort(falls)[-2:]
+    plain = falls[best] > MOST_OF * (squares - without) and falls[best] > UNIQUE * falls[next_best]
+    late = Late(shifts[best], abs(shifts[best]))
+    return {names[best]: late} if plain and abs(late.seconds) > LEAST else {}
 
 
 def retimed(run: Run, late: Late) -> Run:

@@ -1,9 +1,21 @@
-"""Casters as in the paper to the letter: (9), (10) with small angles and forward motion only."""
+"""Casters as in the paper to the letter: (9), (10) with small angles and forward motion only; (8) for what effects add."""
 
 from __future__ import annotations
 
-from ...quantities import FRONT, N_M, RAD, N
+from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, N
+from ..chassis import per_wheel
 from ..stage import Alternative, define, stage
+
+
+@stage(
+    define("turning", RAD_S, "rate at which each caster's patch turns on the floor", "-swap", FRONT),
+    define("rolling", M_S, "speed at which each caster rolls along its heading", "+swap", FRONT),
+    define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT),
+    define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT),
+)
+def patches(v_xf, psi_dot):
+    """As in a steady turn, and with no torque."""
+    return per_wheel(psi_dot), v_xf, per_wheel(1.0), per_wheel(0.0)
 
 
 @stage(
@@ -12,10 +24,11 @@ from ..stage import Alternative, define, stage
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f, d_f):
+def casters(v_xf, v_yf, D_f, d_f, M_w, trail):
     delta = v_yf / v_xf  # (9), (10)
     drag = D_f + d_f * v_xf
-    return delta, -drag, -drag * delta, 0 * D_f  # the drag terms of (20), (21)
+    lateral = M_w / trail  # (8)
+    return delta, -drag - lateral * delta, -drag * delta + lateral, -M_w  # the drag terms of (20), (21)
 
 
-LAW = Alternative("paper", (casters,))
+LAW = Alternative("paper", (patches, casters))
