@@ -13,6 +13,7 @@ import pytest
 from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.campaign.angles import cleaned, glitches, unwrapped, wheel_speed
 from wheelchair_fmu.campaign.formats import open_recording
+from wheelchair_fmu.campaign.formats.mdf import FORMAT
 
 from . import loggers
 
@@ -185,3 +186,22 @@ def test_wheel_speed_from_a_wrapped_angle_with_a_glitch_at_its_index():
     np.testing.assert_allclose(
         np.diff(unwrapped(np.delete(signed, at), 360.0)), np.diff(unwrapped(np.delete(angle, at), 360.0)), atol=1e-9
     )
+
+
+def test_channels_of_two_rates_are_not_interpolated(tmp_path):
+    """An MDF file with pushes at 100 Hz and a gyro at 40 Hz: each has the readings it was written with, and gaps between."""
+    asammdf = pytest.importorskip("asammdf")
+    quick, slow = np.arange(200) / 100, np.arange(80) / 40 + 0.0013
+    with asammdf.MDF() as mdf:
+        mdf.append([asammdf.Signal(np.sin(quick), quick, name="F_rl", unit="N")])
+        mdf.append([asammdf.Signal(np.cos(slow), slow, name="yaw_rate", unit="rad/s")])
+        mdf.save(tmp_path / "two.mf4", overwrite=True)
+    table, faults = FORMAT.read(tmp_path / "two.mf4", "two.mf4", {})
+    assert not faults
+    time, push, rate = (
+        np.array(table.frame.iloc[:, table.headers.index(name)], float) for name in ("time [s]", *table.headers[1:])
+    )
+    np.testing.assert_allclose(time[np.isfinite(push)], quick, atol=1e-9)
+    np.testing.assert_allclose(push[np.isfinite(push)], np.sin(quick))
+    np.testing.assert_allclose(time[np.isfinite(rate)], slow, atol=1e-9)
+    np.testing.assert_allclose(rate[np.isfinite(rate)], np.cos(slow))

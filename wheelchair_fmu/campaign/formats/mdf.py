@@ -19,7 +19,7 @@ def _recognises(path: Path, head: bytes) -> bool:
 def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
     def read(library: Any) -> Read:
         with library.MDF(str(path)) as mdf:
-            frame = mdf.to_dataframe()
+            frame = mdf.to_dataframe(use_interpolation=False)  # a channel of another rate has gaps, not made-up readings
             units = [_unit(mdf, str(name)) for name in frame.columns]
             started = getattr(mdf, "start_time", None)
         if frame.empty:
@@ -46,7 +46,7 @@ FORMAT = Format(
     "mdf",
     "MDF 3 and 4",
     (".mf4", ".mdf"),
-    "All channels on one axis of time, each with the unit that the file gives it.",
+    "All channels on one axis of time, each with the unit that the file gives it, and with gaps where it was not sampled.",
     (),
     "asammdf",
     _recognises,
