@@ -47,7 +47,7 @@ class _Mdf:
     def __exit__(self, *_):
         return None
 
-    def to_dataframe(self):
+    def to_dataframe(self, use_interpolation):
         data = motion()
         return pd.DataFrame(data[:, 1:], columns=[h.split()[0] for h in SI[1:]], index=data[:, 0])
 
