@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter
+from ...quantities import FRONT, M_S, N_M, RAD, RAD_S, M, N, Parameter
 from ..chassis import per_wheel
 from ..smooth import speed
 from ..stage import Alternative, define, stage
@@ -34,16 +34,19 @@ def angles(v_xf, v_yf, drag_eps):
 @stage(
     define("turning", RAD_S, "rate at which each caster's patch turns on the floor", "-swap", FRONT),
     define("rolling", M_S, "speed at which each caster rolls along its heading", "+swap", FRONT),
-    define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT),
 )
 def patches(v_xf, v_yf, psi_dot, drag_eps):
     """As in a steady turn: an ideal caster's angle jumps with its pivot's velocity and has no rate."""
-    return per_wheel(psi_dot), cs.sqrt(v_xf * v_xf + v_yf * v_yf + drag_eps * drag_eps), per_wheel(1.0)
+    return per_wheel(psi_dot), cs.sqrt(v_xf * v_xf + v_yf * v_yf + drag_eps * drag_eps)
 
 
-@stage(define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT))
-def bearing(delta):
-    return 0 * delta
+@stage(
+    define("M_w", N_M, "torque of the bearing on each caster", "-swap", FRONT),
+    define("M_p", N_M, "torque on each caster that its bearing does not feel", "-swap", FRONT),
+)
+def torques():
+    """None: a caster without friction or inertia."""
+    return per_wheel(0.0), per_wheel(0.0)
 
 
 @stage(
@@ -51,12 +54,12 @@ def bearing(delta):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f, d_f, M_w, trail, drag_eps):
-    """Rolling resistance against the pivot's velocity, M_w / c across it."""
+def casters(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps):
+    """Rolling resistance against the pivot's velocity, torque / c across it."""
     speed_squared = v_xf * v_xf + v_yf * v_yf
     drag = D_f / speed(speed_squared, drag_eps) + d_f  # per speed
-    lateral = M_w / trail / cs.sqrt(speed_squared + drag_eps * drag_eps)  # (8)
+    lateral = (M_w + M_p) / trail / rolling  # (8)
     return -drag * v_xf - lateral * v_yf, -drag * v_yf + lateral * v_xf, -M_w
 
 
-LAW = Alternative("ideal", (angles, patches, bearing, casters), PARAMETERS)
+LAW = Alternative("ideal", (angles, patches, torques, casters), PARAMETERS)

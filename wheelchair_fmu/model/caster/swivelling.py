@@ -91,13 +91,12 @@ def turned(swivel):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(delta, rolling, D_f, d_f, M_w, c, passed, drag_eps):
+def casters(delta, rolling, D_f, d_f, M_w, M_p, c, passed, drag_eps):
     """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
     drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
-    torque = passed * M_w
-    lateral = torque / c  # (8)
-    return drag * forward - lateral * right, drag * right + lateral * forward, -torque
+    lateral = passed * (M_w + M_p) / c  # (8)
+    return drag * forward - lateral * right, drag * right + lateral * forward, -passed * M_w
 
 
 def trailing(v_xf, v_yf, v_eps):
@@ -112,7 +111,7 @@ def trailing(v_xf, v_yf, v_eps):
 
 LAW = Alternative(
     "swivelling",
-    (kinematic_trail, leverage, swivelling, patches, turned, ideal.bearing, casters),
+    (kinematic_trail, leverage, swivelling, patches, turned, ideal.torques, casters),
     PARAMETERS,
     (Row(SWIVEL, mass=lambda c: c, rate=lambda swivel_slip: swivel_slip, start=trailing),),
 )

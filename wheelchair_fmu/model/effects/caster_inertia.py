@@ -1,8 +1,7 @@
 """Swivel inertia of the casters: turning one takes a lateral force at its patch,  c F = −I (δ'' + ψ''), (8).
 
-No bearing turns the caster, so the chair feels the force at the pivot and no moment: what the inertia adds to the torque M_w
-it takes off the moment M_f. The acceleration is that of the swivel rate through a short filter,
-Ω' = (δ' + ψ' − Ω)/τ, because the rate itself may jump with the pushes.
+No bearing turns the caster, so the chair feels the force at the pivot and no moment. The acceleration is that of the swivel
+rate through a short filter, Ω' = (δ' + ψ' − Ω)/τ, because the rate itself may jump with the pushes.
 """
 
 import casadi as cs
@@ -49,10 +48,6 @@ def reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter):  # noqa: E741
     return -I * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter)
 
 
-def unborne(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: E741
-    return passed * reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter)
-
-
 def spun(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: E741
     """Of ½ I Ω², as far as the trail passes it on."""
     return cs.sum1(passed * I * smoothed_rate * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter))
@@ -63,7 +58,7 @@ EFFECT = Effect(
     "swivel inertia of the casters",
     parameters=(INERTIA,),
     constants=(FILTER,),
-    contributions=(adds("M_w", reaction), adds("M_f", unborne)),
+    contributions=(adds("M_p", reaction),),
     rows=(Row(RATE, lambda: 1.0, acceleration),),
     needs={"caster": "swivelling"},
     absorbs=spun,

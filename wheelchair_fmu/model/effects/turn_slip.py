@@ -78,14 +78,10 @@ def front(M_turn_f, L_turn_f, turning, rolling, rate):
     return resistance(M_turn_f, L_turn_f, turning, rolling, rate)
 
 
-def unborne(M_turn_f, L_turn_f, turning, rolling, rate, passed):
-    return passed * front(M_turn_f, L_turn_f, turning, rolling, rate)
-
-
 EFFECT = Effect(
     "turn_slip",
     "contact patches that resist being turned",
     parameters=(TORQUE, CASTER_TORQUE),
     constants=(LENGTH, CASTER_LENGTH, RATE),
-    contributions=(adds("M_t", rear, opposes="psi_dot"), adds("M_w", front, opposes="turning"), adds("M_f", unborne)),
+    contributions=(adds("M_t", rear, opposes="psi_dot"), adds("M_p", front, opposes="turning")),
 )
