@@ -28,15 +28,15 @@ LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "
 
 
 def library(
-    choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None, moving: Iterable[str] = ()
+    choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None, moving: Iterable[str] | None = None
 ) -> ctypes.CDLL:
     """The loaded shared library of a model, with `wc_kernel model_kernel` and `advance.h`'s functions.
 
-    With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s. Then the chair is on a
-    level floor with open brakes but for inputs that are `moving`, whatever the others say: half the work, for recorded runs.
+    With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s. With
+    `moving`, inputs, the chair is on a level floor with open brakes but for these, whatever the others say: half the work.
     """
     effects = sorted(effects, key=lambda e: e.id)
-    moved = seldom_among(moving) if columns is not None else []
+    moved = None if moving is None else seldom_among(moving)
     words = "\n".join((_toolchain(), repr(choice), repr(columns), repr(moved), *map(effect_key, effects)))
     key = hashlib.sha256(words.encode()).hexdigest()[:24]
     return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(choice, effects, columns, moved, path)))
@@ -63,9 +63,11 @@ def _loaded(path: Path) -> ctypes.CDLL:
         ) from error
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str] | None, moving: Sequence[str], target: Path) -> None:
+def _compile(
+    choice: Choice, effects: list[Effect], columns: Sequence[str] | None, moving: Sequence[str] | None, target: Path
+) -> None:
     model = assemble(choice, effects)
-    if columns is not None:
+    if moving is not None:
         model = at_rest(model, moving)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:

@@ -52,9 +52,10 @@ def kernel(model: Model) -> Kernel:
         "mass": cs.Function("mass", [p], [cs.densify(model.mass)]),
     }
     if seldom(model):
-        functions["plain"] = _step(at_rest(model), "plain")
+        resting = at_rest(model)
+        functions["plain"] = _step(resting, "plain")
         if switches(model):
-            functions["bare"] = _step(_off(at_rest(model)), "bare")
+            functions["bare"] = _step(_off(resting), "bare")
     return Kernel(model, functions)
 
 

@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import SimulationError
-from ..model.chassis import INPUTS
 from ..model.variant import Variant
 from ..model.wheelchair import Model
 from . import cache
@@ -43,12 +42,15 @@ class Trajectory:
 class Simulator:
     """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
 
-    `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway. It is
-    for a level floor and open brakes but for inputs that are `moving`, and `run` raises ValueError for others.
+    `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway.
+    `moving`: the only inputs that may brake, slope or change the floor, and `run` raises ValueError for others; all may if it
+    is not given.
     """
 
-    def __init__(self, variant: Variant = Variant(), columns: Sequence[str] | None = None, moving: Collection[str] = ()):
-        self.variant, self._moving = variant, moving if columns is not None else [i.name for i in INPUTS]
+    def __init__(
+        self, variant: Variant = Variant(), columns: Sequence[str] | None = None, moving: Collection[str] | None = None
+    ):
+        self.variant, self._moving = variant, moving
         self._library = cache.library(variant.choice, variant.active(), columns, moving)
         self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
 
@@ -89,7 +91,8 @@ class Simulator:
         y = np.empty((len(t), self.model.y.numel()))
         if w.shape != (len(t), self.model.w.numel()) or p.shape != (self.model.p.numel(),):
             raise ValueError(f"inputs {w.shape} and parameters {p.shape} do not fit {len(t)} times and this model")
-        refuse_unrest(self.model, w, self._moving)
+        if self._moving is not None:
+            refuse_unrest(self.model, w, self._moving)
         reached, steps = ctypes.c_long(), ctypes.c_long()
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
