@@ -83,7 +83,7 @@ def test_the_verdict_is_the_same_and_the_shift_is_told(sample, name, seconds):
     assert told == pytest.approx(seconds, abs=0.01) or (told is None and seconds < 0.05)
 
 
-@pytest.mark.parametrize(("name", "seconds"), [("straight-strokes", 0.3), ("steady-right", 0.1)])
+@pytest.mark.parametrize(("name", "seconds"), [("straight-strokes", 0.3), ("steady-right", 0.1), ("slalom-quick", 0.02)])
 def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds):
-    """Strokes that are all alike, and a turn that hides its shift behind the missing effect."""
+    """Strokes that are all alike, a turn that hides its shift behind the missing effect, and a slalom whose shift bends C_λ."""
     assert same_verdict(sample, name, seconds) == pytest.approx(seconds, abs=0.01)

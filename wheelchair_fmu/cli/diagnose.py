@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -84,11 +84,8 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     out = console()
     for note in d.notes:
         out.print(f"note: {note}")
-    listed = ", ".join(d.effects)
     ids = {e: e for e in d.effects}
-    sentences = {**SENTENCES, "outside": outside(content), "tie": tied(d.effects, d.ties, ids) if d.ties else ""}
-    said = sentences[d.verdict].format(effects=listed)
-    out.print(f"{d.campaign}: {said}")
+    out.print(f"{d.campaign}: {_verdict(d, content, ids)}")
     if d.verdict == "outside" and d.effects:
         out.print(f"These help but do not suffice: {helpers(d.effects, d.ties, ids)}.")
     if d.proposal:
@@ -108,6 +105,12 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
         out.print(f"Measure next, {times}: {n['manoeuvre']}, for {' and '.join(n['separates'])}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
+
+
+def _verdict(d: Diagnosis, content: Mapping[str, Any], ids: Mapping[str, str]) -> str:
+    if d.verdict == "tie":
+        return tied(d.effects, d.ties, ids)
+    return outside(content) if d.verdict == "outside" else SENTENCES[d.verdict].format(effects=", ".join(d.effects))
 
 
 def _show_bootstrap(b: Bootstrap) -> None:

@@ -22,13 +22,14 @@ def neutral(subject: Subject) -> list[Breach]:
     """With its parameters at zero the chair moves as without the effect."""
     rng = np.random.default_rng(11)
     worst: list[Far] = []
+    model = subject.model
+    settled = Settler(model)
     for speed in SPEEDS:
         there = anywhere(subject.bare, subject.values(0.0)[: len(subject.bare.parameters)], rng, speed)
         before = evaluate(subject.bare, there, subject.bare.f, subject.bare.y)
-        model = subject.model
         x = np.concatenate([there.x, np.zeros(model.x.numel() - len(there.x))])
         p = np.concatenate([there.p, subject.values(0.0)[len(there.p) :]])
-        after = evaluate(model, Settler(model)(Place(x, there.w, p))[0], model.f, model.y)
+        after = evaluate(model, settled(Place(x, there.w, p))[0], model.f, model.y)
         for records, is_, should in zip((subject.bare.states, subject.bare.outputs), after, before, strict=True):
             worst += _furthest(records, is_[: len(should)], should)
     if not worst:

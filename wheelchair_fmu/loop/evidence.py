@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import cos, sin
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from ..campaign.channels import BY_FMU_NAME, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
+from ..model.frames import to_room, velocity_at
 from ..model.variant import Variant
 from ..quantities import Parameter
 from .cores import each
@@ -468,7 +468,8 @@ def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) ->
     """The start of the CM, where position and speed were read at another point of the frame."""
     x, y = (known.get(f"effect.marker_offset.{axis}", 0.0) for axis in "xy")
     psi, turn = found["start.psi"], found["start.psi_dot"]
-    lever = {"start.x": x * cos(psi) - y * sin(psi), "start.y": x * sin(psi) + y * cos(psi), "start.u": -y * turn}
+    lever = dict(zip(("start.x", "start.y"), to_room(x, y, psi), strict=True))
+    lever["start.u"], _ = velocity_at(x, y, 0.0, 0.0, turn)
     return {name: value - lever.get(name, 0.0) * (TELLS[name].name in run.channels) for name, value in found.items()}
 
 

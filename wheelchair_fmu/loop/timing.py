@@ -75,16 +75,17 @@ def by_slopes(evidence: Evidence, prior_rows: np.ndarray, prior_slopes: np.ndarr
     One run's shift bends what is calibrated, so calibration is free to go back. Either one run stands out among the shifts of
     all runs, or the shift of one alone explains most of what is left, and of no other nearly as much.
     """
-    parts = {e.run.name: (e, part) for e, _, part in evidence.parts() if _one_clock(e.run) and _pushes(e.run)}
+    timed = ((e, part) for e, _, part in evidence.parts() if _one_clock(e.run) and _pushes(e.run))
+    parts = [(e, part) for e, part in timed if evidence.S[part, -1].any()]
+    if len(parts) < ENOUGH:
+        return {}
     m, n = len(prior_rows), len(evidence.r)
     A = np.zeros((n + m, m + len(parts)))
     A[:n, :m], A[n:, :m] = evidence.S[:, :m], prior_slopes
-    for i, (_, part) in enumerate(parts.values()):
-        A[part, m + i] = evidence.S[part, -1]
+    for i, (_, part) in enumerate(parts, m):
+        A[part, i] = evidence.S[part, -1]
     r = np.concatenate([evidence.r, prior_rows])
-    told = [name for i, name in enumerate(parts) if A[:, m + i].any()]
-    A = A[:, [*range(m), *(m + i for i, name in enumerate(parts) if name in told)]]
-    return _standing_out(A, r, [parts[name] for name in told]) or _explaining(A, r, told, float(r @ r) - n)
+    return _standing_out(A, r, parts) or _explaining(A, r, [e.run.name for e, _ in parts], float(r @ r) - n)
 
 
 def _standing_out(A: np.ndarray, r: np.ndarray, parts: Sequence[tuple[RunEvidence, slice]]) -> dict[str, Late]:
@@ -99,8 +100,6 @@ def _standing_out(A: np.ndarray, r: np.ndarray, parts: Sequence[tuple[RunEvidenc
     odd = {}
     for name, late in shifts.items():
         others = [o for n, o in shifts.items() if n != name]
-        if len(others) + 1 < ENOUGH:
-            continue
         common, se = weighted_median([o.seconds for o in others], [o.sd for o in others])
         away, sd = late.seconds - common, float(np.hypot(late.sd, se))
         if abs(away) > max(ODD * sd, LEAST):
@@ -118,8 +117,6 @@ def _explaining(A: np.ndarray, r: np.ndarray, names: Sequence[str], squares: flo
         found = np.linalg.pinv(H[np.ix_(some, some)], hermitian=True) @ g[some]
         falls.append(float(g[some] @ found) - without)
         shifts.append(float(found[-1]))
-    if len(names) < ENOUGH:
-        return {}
     next_best, best = np.argsort(falls)[-2:]
     plain = falls[best] > MOST_OF * (squares - without) and falls[best] > UNIQUE * falls[next_best]
     late = Late(shifts[best], abs(shifts[best]))

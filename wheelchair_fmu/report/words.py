@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..loop.ties import grouped
+from ..loop.verdict import A_LITTLE
 from ..quantities import DisplayUnit, Quantity, Unit
 
 LEAST = 1e-300  # of probabilities that are printed
 HELPERS = 3  # that are named, and rivals of each
-NEAR_THE_FLOOR = 1.06  # whitened RMS error, of fitted and of held-out runs: next to nothing is left
 SEEN = 0.05  # a probability below which the data show something like the effect
 
 
@@ -35,7 +35,7 @@ def outside(diagnosis: Mapping[str, Any]) -> str:
     """What "outside" means here: an error that nothing brings down, or one that only values bring down that nobody measured."""
     bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
     last, left = diagnosis["ladder"][-1], (diagnosis.get("leftover") or {}).get("proposal")
-    if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > NEAR_THE_FLOOR:
+    if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > A_LITTLE:
         return "Something is left that no effect in the catalogue explains."
     return (
         f"The error comes down to the noise only with {_listed(bent, 'and')} as nobody would have measured it: "
