@@ -15,10 +15,11 @@ from tests.loop.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
-from wheelchair_fmu.loop.diagnose import Round, Search, Step
+from wheelchair_fmu.loop.diagnose import Round, Search
 from wheelchair_fmu.loop.interval import half_width
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.ranking import as_json
+from wheelchair_fmu.loop.staircase import Step
 from wheelchair_fmu.loop.statistics import sandwich, size_seen
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
 from wheelchair_fmu.loop.workshop import MEASURED, Workshop

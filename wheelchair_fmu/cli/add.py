@@ -14,7 +14,7 @@ from ..report.words import value_text
 from .files import print_json
 from .group import Progress, console, working
 from .settings import catalogue, subject
-from .staircase import staircase_table, write_improved
+from .staircase import physical_staircase, staircase_table, write_improved
 from .terminal import announce
 
 
@@ -42,13 +42,15 @@ def add(
     files = write_improved(output, better.variant, better.ladder)
     if as_json:
         steps = [step.as_json() for step in better.ladder]
+        values, physical = dict(better.variant.values), better.ladder[-1].physical
         print_json(
-            {"ladder": steps, "values": dict(better.variant.values), "variant": str(output), "notes": list(better.notes)}
+            {"ladder": steps, "physical": physical, "values": values, "variant": str(output), "notes": list(better.notes)}
         )
         return
     for note in better.notes:
         console().print(f"note: {note}")
     console().print(staircase_table(better.ladder))
+    console().print(physical_staircase(better.ladder))
     for name, se in standard_errors(better.fit).items():
         console().print(f"{name} = {value_text(better.fit.values[name], se, better.records[name].unit)}")
     for file in files:

@@ -20,6 +20,7 @@ from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of, together
 from ..loop.evidence import START, Bench
 from ..loop.fit import fit, start_value
+from ..loop.physical import as_json as physical
 from ..loop.statistics import finite
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
@@ -31,6 +32,7 @@ from ..writing import written
 from .files import print_json
 from .group import console, working
 from .settings import subject
+from .staircase import physical_table
 from .terminal import announce
 
 TUNING = 2  # how often the start of each run is moved to where its readings want it
@@ -131,6 +133,7 @@ def _content(measured: Campaign, c: Comparison, values: dict[str, float], calibr
         "campaign": measured.name,
         "rms": {"fit": finite(c.rms("fit")), "holdout": finite(c.rms("holdout"))},
         "runs": [{"run": r.name, "role": r.role, "rms": r.rms} for r in c.runs],
+        "physical": physical(c.physical("fit"), c.physical("holdout")),
         "excess": {n: [{"from": a, "to": b, "share": s} for a, b, s in c.excess_by(n)] for n in c.runs[0].regime},
         "values": values,
         "calibrated": [n for n in calibrate.split(",") if n],
@@ -153,6 +156,7 @@ def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate
     for role in ("fit", "holdout"):
         if np.isfinite(c.rms(role)):
             out.print(f"{'fitted' if role == 'fit' else 'held-out'} runs together: {c.rms(role):.3f}")
+    out.print(physical_table([("error", physical(c.physical("fit"), c.physical("holdout")))]))
     run, channel, value = c.worst()
     out.print(f"largest: {channel} in {run}, {value:.2f}")
     for name in c.runs[0].regime:

@@ -26,7 +26,7 @@ from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
 from .settings import subject
-from .staircase import staircase_table
+from .staircase import physical_staircase, staircase_table
 from .terminal import announce
 
 LIKELIEST = 8  # effects, of which the table tells
@@ -94,6 +94,7 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         lead = "The term that helps most, and does not suffice either" if insufficient(d.ladder) else "What would explain it"
         out.print(f"{lead}: {term.words}, {size}.")
     out.print(staircase_table(d.ladder))
+    out.print(physical_staircase(d.ladder))
     for words in d.unexplained.words if d.unexplained else ():
         out.print(words)
     out.print(_ranking(content, set(d.search.workshop.catalogue) - set(bundled())))

@@ -15,9 +15,9 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from ..contracts.own import load
 from ..handling.experiments import experiments
-from ..loop.diagnose import Step
 from ..loop.improve import after, with_proposal
 from ..loop.ranking import as_json
+from ..loop.staircase import Step
 from ..loop.verdict import diagnose
 from ..model.generic import library
 from .diagnose import show, write_proposal

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from .diagnose import VISIBLE, Candidate, Round, Search, Step
+from .diagnose import VISIBLE, Candidate, Round, Search
 from .fit import Fit
 from .joint import together
 from .preflight import begin, first_steps
 from .screen import AT_THE_FLOOR
+from .staircase import Step
 from .ties import beside, overtaker
 
 MOST_EFFECTS = 4
@@ -120,7 +121,7 @@ class Climb:
         joined = together(self.search, self.effects, self.base, now.scores)
         if not joined:
             return None
-        self.ladder += [Step(f"+{r.effects[-1]}", r.fit.evidence.rms, r.heldout.rms) for r in joined[1:]]
+        self.ladder += [Step.of(f"+{r.effects[-1]}", r.fit.evidence, r.heldout) for r in joined[1:]]
         self.helping |= {c.effect for r in joined for c in r.candidates if c.small}
         self.rounds[-1:] = joined
         return joined[-1].candidates[0]
@@ -140,13 +141,13 @@ class Climb:
         base, _, self.ladder = first_steps(self.search)
         for i in range(1, len(self.effects)):
             base, held = self.search.with_given(self.effects[:i], replace(found, values={**found.values, **base.values}))
-            self.ladder.append(Step(f"+{self.effects[i - 1]}", base.evidence.rms, held.rms))
+            self.ladder.append(Step.of(f"+{self.effects[i - 1]}", base.evidence, held))
         self.base, self.held = self.search.settled(self.effects, found)
         self.ladder.append(self._top())
         self._tell()
 
     def _top(self) -> Step:
-        return Step(f"+{self.effects[-1]}", self.base.evidence.rms, self.held.rms)
+        return Step.of(f"+{self.effects[-1]}", self.base.evidence, self.held)
 
     def _tell(self) -> None:
         self._climbed(tuple(self.ladder))

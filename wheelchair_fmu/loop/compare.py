@@ -9,13 +9,15 @@ from itertools import pairwise
 import numpy as np
 
 from .evidence import RunEvidence
+from .physical import ChannelError, pooled, run_errors
 
 BINS = 4
 
 
 @dataclass(frozen=True)
 class RunErrors:
-    """Errors of one run, e (n, nz), measured less predicted in standard deviations; NaN in gaps."""
+    """Errors of one run, e (n, nz), measured less predicted in standard deviations; NaN in gaps. `physical` is what is left of
+    each channel in its own unit."""
 
     name: str
     role: str
@@ -23,6 +25,7 @@ class RunErrors:
     e: np.ndarray
     predicted: np.ndarray
     regime: Mapping[str, np.ndarray]  # by name, (n,)
+    physical: Mapping[str, ChannelError]
 
     def brief(self) -> RunErrors:
         """The same without predictions, which only figures ask for."""
@@ -38,6 +41,10 @@ class Comparison:
     """Whitened errors of a campaign: 1.0 is the noise floor."""
 
     runs: tuple[RunErrors, ...]
+
+    def physical(self, role: str) -> dict[str, dict[str, ChannelError]]:
+        """By run and channel, of the runs with this role."""
+        return {r.name: dict(r.physical) for r in self.runs if r.role == role}
 
     def rms(self, role: str | None = None) -> float:
         """Over all channels of all runs, or of those with this role; NaN where there are none."""
@@ -74,7 +81,8 @@ def errors_of(
     if pushes:
         where["push"] = np.sum(pushes, axis=0)
     e = evidence.errors(there)
-    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where)
+    physical = run_errors(evidence.channels, evidence.measured, there)
+    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where, physical)
 
 
 def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
@@ -87,5 +95,10 @@ def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
 
     regime = {name: joined(piece.regime[name] for piece in pieces) for name in pieces[0].regime}
     return replace(
-        pieces[0], name=name, e=joined(p.e for p in pieces), predicted=joined(p.predicted for p in pieces), regime=regime
+        pieces[0],
+        name=name,
+        e=joined(p.e for p in pieces),
+        predicted=joined(p.predicted for p in pieces),
+        regime=regime,
+        physical=pooled(p.physical for p in pieces),
     )

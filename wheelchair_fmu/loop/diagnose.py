@@ -17,7 +17,7 @@ from .fit import Fit
 from .score import Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
-from .statistics import correlation_time, decisive, estimates, finite, held_out_gain, seen_directions, size_seen
+from .statistics import correlation_time, decisive, estimates, held_out_gain, seen_directions, size_seen
 
 SIGNIFICANT = 0.05
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
@@ -38,24 +38,6 @@ ENDED = 3  # refits go on to their end
 HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
 # where less is promised no refit starts, and if no size at all promises so much, refits start from
 GRID = (1.0, 2.0, 4.0)  # of δ as well
-
-
-@dataclass(frozen=True)
-class Step:
-    """One step of the staircase: whitened RMS on fitted and on held-out runs."""
-
-    name: str
-    fit: float
-    heldout: float
-
-    @property
-    def left(self) -> float:
-        """What is left on fitted and on held-out runs alike."""
-        return min(self.fit, self.heldout) if np.isfinite(self.heldout) else self.fit
-
-    def as_json(self) -> dict[str, str | float | None]:
-        """The keys that are fixed for a step of the `ladder`."""
-        return {"step": self.name, "fit": self.fit, "heldout": finite(self.heldout)}
 
 
 @dataclass(frozen=True)

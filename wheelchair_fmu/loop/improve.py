@@ -9,10 +9,11 @@ from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.variant import Variant
 from ..quantities import Parameter
-from .diagnose import Search, Step
+from .diagnose import Search
 from .evidence import Evidence
 from .fit import Fit
 from .preflight import begin, settle_clocks
+from .staircase import Step
 from .statistics import standard_errors
 from .verdict import Diagnosis
 from .workshop import Workshop
@@ -44,7 +45,7 @@ def add(
         say(f"refitting with {one}")
         base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
         on = (*on, one)
-        ladder.append(Step(f"+{one}", base.evidence.rms, held.rms))
+        ladder.append(Step.of(f"+{one}", base.evidence, held))
     settle_clocks(search, base.evidence, held)
     notes = (*search.notes, *search.noise_notes)
     return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder), notes)

@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..campaign.recorded import PUSHES_CLOCK
-from .diagnose import Search, Step
+from .diagnose import Search
 from .evidence import Evidence
 from .fit import Fit, Problem
+from .staircase import Step
 from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring
 
@@ -66,7 +67,7 @@ def settle_clocks(search: Search, *evidence: Evidence) -> None:
 def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
     """The calibrated fit, its held-out evidence, and the staircase up to there, with the noise as it is known."""
     base, held, nominal, nominal_held = search.calibrate()
-    return base, held, [Step("nominal", nominal.rms, nominal_held.rms), Step("calibrated", base.evidence.rms, held.rms)]
+    return base, held, [Step.of("nominal", nominal, nominal_held), Step.of("calibrated", base.evidence, held)]
 
 
 def _late(run: str, late: Late, unique: bool) -> str:

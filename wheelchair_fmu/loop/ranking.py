@@ -34,6 +34,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "baseline": {
             run: {push: dict(found) for push, found in of.items()} for run, of in d.search.workshop.campaign.rims.items()
         },
+        "physical": d.ladder[-1].physical,
         "disturbance": d.unexplained.as_json() if d.unexplained else None,
         "calibration": {c.record.name: c.as_json() for c in d.calibration},
         "notes": list(d.notes),

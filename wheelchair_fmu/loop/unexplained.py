@@ -85,11 +85,10 @@ class Unexplained:
         return told + [f"{o.words[0].upper()}{o.words[1:]}." for o in self.orders]
 
     def as_json(self) -> dict[str, Any]:
-        """The key `disturbance`: standard deviations in N and N m, and the same in words."""
-        sizes = {
-            name: {"force": s.force, "moment": s.moment} for name, s in (("calibrated", self.before), ("final", self.after))
-        }
-        return {**sizes, "orders": [o.as_json() for o in self.orders], "words": self.words}
+        """The key `disturbance`: standard deviations in N and N m that the model needs in the end, the same as `calibrated`,
+        what orders them, and all in words."""
+        in_the_end, calibrated = ({"force": s.force, "moment": s.moment} for s in (self.after, self.before))
+        return {**in_the_end, "calibrated": calibrated, "orders": [o.as_json() for o in self.orders], "words": self.words}
 
 
 def _size(s: Strength) -> str:

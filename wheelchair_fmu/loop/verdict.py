@@ -16,7 +16,7 @@ from ..model.stage import Effect
 from ..model.variant import Variant
 from .calibration import Calibrated, calibration, doubts
 from .climb import Climb
-from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, Step, at_the_floor
+from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, at_the_floor
 from .disturbance import Strength, strength
 from .evidence import Colour, Evidence
 from .experiment import Experiment, reveal, separate
@@ -27,6 +27,7 @@ from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
 from .relief import reliefs
 from .screen import AT_THE_FLOOR
+from .staircase import Step
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
 from .unexplained import Unexplained, geometry, unexplained
@@ -289,7 +290,7 @@ def _settle(
     estimate, covariance = estimates(found, wider.workshop.parameters(proposal.effect))
     kept = every[:-1]
     steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
-    steps.append(Step(f"+{proposal.effect}", found.evidence.rms, held.rms))
+    steps.append(Step.of(f"+{proposal.effect}", found.evidence, held))
     settled = replace(proposal, fit=found, heldout=held, estimate=estimate, se=np.sqrt(np.diag(covariance)))
     return kept, settled, steps
 

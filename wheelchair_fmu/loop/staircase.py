@@ -1,0 +1,45 @@
+"""The staircase: what is left after each thing that was done to a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .evidence import Evidence
+from .physical import Errors, as_json, channel_errors
+from .statistics import finite
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the staircase: whitened RMS on fitted and on held-out runs, and the errors of both by run and channel."""
+
+    name: str
+    fit: float
+    heldout: float
+    fit_errors: Errors = field(default_factory=dict)
+    heldout_errors: Errors = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, name: str, fitted: Evidence, held: Evidence) -> Step:
+        """The step up to a model that leaves this on fitted and on held-out runs."""
+        return cls(name, fitted.rms, held.rms, channel_errors(fitted), channel_errors(held))
+
+    @property
+    def left(self) -> float:
+        """What is left on fitted and on held-out runs alike."""
+        return min(self.fit, self.heldout) if np.isfinite(self.heldout) else self.fit
+
+    @property
+    def physical(self) -> Mapping[str, Mapping[str, Any]]:
+        """What is left of each channel, in its unit; see `physical.as_json`."""
+        return as_json(self.fit_errors, self.heldout_errors)
+
+    def as_json(self) -> dict[str, Any]:
+        """The keys that are fixed for a step of the `ladder`, and by channel the error in its unit: on held-out runs, or on
+        fitted ones where none were held out."""
+        told = {c: e["fit_rms"] if e["heldout_rms"] is None else e["heldout_rms"] for c, e in self.physical.items()}
+        return {"step": self.name, "fit": self.fit, "heldout": finite(self.heldout), "physical": told}
