@@ -86,6 +86,8 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         out.print(f"note: {note}")
     ids = {e: e for e in d.effects}
     out.print(f"{d.campaign}: {_verdict(d, content, ids)}")
+    for odds in content["odds"]:
+        out.print("the odds: " + ", ".join(f"{effect} {share:.2f}" for effect, share in odds.items()))
     if d.verdict == "outside" and d.effects:
         out.print(f"These help but do not suffice: {helpers(d.effects, d.ties, ids)}.")
     if d.proposal:
@@ -129,18 +131,19 @@ def _show_bootstrap(b: Bootstrap) -> None:
 def _ranking(content: dict[str, Any], own: Container[str]) -> Table:
     """One line per parameter of the likeliest effects, and of all of the user's own."""
     table = Table(box=box.SIMPLE)
-    for title in ("effect", "parameter", "estimate", "of interest", "p", "power", "Δ(−2 log L)", "verdict"):
-        right = title in ("p", "power", "Δ(−2 log L)")
+    for title in ("effect", "parameter", "estimate", "of interest", "P(larger)", "p", "power", "Δ(−2 log L)", "verdict"):
+        right = title in ("P(larger)", "p", "power", "Δ(−2 log L)")
         table.add_column(title, no_wrap=True, justify="right" if right else "left")
     for place, row in enumerate(content["ranking"]):
         if place >= LIKELIEST and row["effect"] not in own:
             continue
-        figures = (probability(row["p"]), f"{row['power']:.2f}", f"{row['lr']:.0f}", verdict_words(row))
+        larger = "" if row["probability"] is None else f"{row['probability']:.2f}"
+        figures = (larger, probability(row["p"]), f"{row['power']:.2f}", f"{row['lr']:.0f}", verdict_words(row))
         for i, (name, v) in enumerate(row["parameters"].items()):
             se = f"{v['se']:.2g}" if v["se"] is not None else "?"
             size = f"{v['estimate']:.3g} ± {se} {v['unit']}".removesuffix(" 1")
             about = (name, size, f"{v['smallest_interesting']:g}")
-            table.add_row("" if i else row["effect"], *about, *(("",) * 4 if i else figures))
+            table.add_row("" if i else row["effect"], *about, *(("",) * 5 if i else figures))
     return table
 
 

@@ -14,10 +14,10 @@ from .chance import chance_beyond
 from .cores import each
 from .evidence import Bench, Evidence
 from .fit import Fit
-from .score import Score
+from .score import RUNS, Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
-from .statistics import correlation_time, decisive, estimates, held_out_gain, seen_directions, size_seen
+from .statistics import between_runs, correlation_time, decisive, estimates, held_out_gain, seen_directions, size_seen
 
 SIGNIFICANT = 0.05
 VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
@@ -48,7 +48,11 @@ class Candidate:
     fit: Fit
     drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
     estimate: np.ndarray
-    se: np.ndarray
+    covariance: np.ndarray  # (k, k) of the estimate
+    between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
+    delta: np.ndarray
+    dispersion: float  # mean square innovation
+    correlation: float  # samples per independent one
     p: float
     falls: bool  # does the RMS over all fitted runs, or over those held out, not rise?
     visible: float  # largest fall of a channel's RMS in a run
@@ -58,6 +62,11 @@ class Candidate:
     large: bool  # enough, by its estimate, to be named
     lawful: bool
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
+
+    @property
+    def se(self) -> np.ndarray:
+        """Standard errors (k,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0))
 
     @property
     def proven(self) -> bool:
@@ -218,11 +227,8 @@ class Search(Screen):
         along, spread = seen_directions(*in_deltas)
         small = _small(along, spread)
         dispersion = float(np.mean(found.evidence.r**2))
-        drop = (base.misfit - found.misfit) / dispersion
-        p = max(
-            chance_beyond(float(np.sum(along**2 / spread)), len(spread)),
-            chance_beyond(drop / correlation_time(found.evidence), len(spread)),
-        )
+        drop, correlation = (base.misfit - found.misfit) / dispersion, correlation_time(found.evidence)
+        p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
         if len(names) == 1 and one_sided[0]:
             p /= 2
         return Candidate(
@@ -230,7 +236,11 @@ class Search(Screen):
             fit=replace(found, evidence=found.evidence.brief()),
             drop=drop,
             estimate=estimate,
-            se=np.sqrt(np.maximum(np.diag(covariance), 0)),
+            covariance=covariance,
+            between=_between(found, names, covariance),
+            delta=delta,
+            dispersion=dispersion,
+            correlation=correlation,
             p=min(1.0, tests * p),
             falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
             visible=base.evidence.fall_to(found.evidence),
@@ -298,6 +308,14 @@ def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
     against = [s.delta - 2 * one for one in alone] if both else []
     multiples = (f * d for d in (s.delta, *alone, *against) for f in SIZES if f > 0 or both)
     return [np.clip(size, lower, upper) for size in (expected, *multiples)]
+
+
+def _between(found: Fit, names: Sequence[str], otherwise: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of some of a fit's parameters between runs, if there are enough of these."""
+    if len(found.evidence.runs) < RUNS:
+        return otherwise
+    at = [found.names.index(n) for n in names]
+    return between_runs(found)[np.ix_(at, at)]
 
 
 def at_the_floor(fitted: Evidence, held: Evidence | None) -> bool:

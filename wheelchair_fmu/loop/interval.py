@@ -18,11 +18,11 @@ from .chance import student, value_beyond
 from .cores import each
 from .evidence import Bench
 from .fit import Fit, Problem
+from .score import RUNS
 from .statistics import between_runs, degrees_between_runs, sandwich
 
 LEVEL = 0.95
 NORMAL = value_beyond(1 - LEVEL, 1) ** 0.5  # standard errors, at LEVEL
-RUNS = 4  # from which on they tell how far a parameter differs from one to the other
 FARTHEST = 6.0  # robust standard errors; what is further off is not looked for
 PRECISE = 0.03  # of a standard error
 JUMP = 0.5  # of a standard error, within which no smooth likelihood falls so far

@@ -23,6 +23,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "verdict": d.verdict,
         "effects": list(d.effects),
         "ties": [list(t) for t in d.ties],
+        "odds": list(d.odds),
         "ranking": ranking(d),
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
@@ -80,6 +81,8 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
     return {
         "effect": s.effect,
         "parameters": parameters,
+        "probability": belief.large if (belief := d.beliefs.get(s.effect)) else None,
+        "probability_there": belief.there if belief else None,
         "p": c.p if c else min(1.0, s.p * len(r.scores)),
         "power": s.power,
         "lr": c.drop if c else s.drop,

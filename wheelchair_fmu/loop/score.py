@@ -18,6 +18,8 @@ from .evidence import Evidence
 
 LAG = 0.5  # s over which residuals may be correlated
 LEVEL = 0.05  # of the test whose power is told
+BLIND = 1e6  # δ²: variance along directions that the data say nothing of
+RUNS = 4  # from which on they tell how far an estimate differs from one to the other
 SEEN = 0.25  # a direction counts as seen when δ along it would be at least this many standard deviations, squared
 
 
@@ -35,6 +37,8 @@ class Score:
     visible: float  # expected fall of the RMS innovation, in the channel and run where it falls most
     hidden: float  # share of its signature that calibration can imitate
     signature: np.ndarray  # (N,) unit vector of the projected expected change
+    delta: np.ndarray
+    covariance: np.ndarray  # (k, k) of the estimate, in units of δ; where the data see nothing as large as BLIND
 
 
 class Projector:
@@ -77,6 +81,20 @@ def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
     return moving.T @ moving / width
 
 
+def _spread(
+    evidence: Evidence, s: np.ndarray, strained: np.ndarray, information: np.ndarray, r: np.ndarray, rows: np.ndarray
+) -> np.ndarray:
+    """Covariance (m, m) of the expected change, by what it leaves: residuals r (N,), `rows` of what was known beforehand. The
+    larger of what lasting residuals make it, and of how far runs would have it apart, which shows where no model is exact."""
+    known, inverse = strained.T @ strained, np.diag(1 / information)
+    lasting = inverse @ (robust_variance(evidence, s, r) + known) @ inverse
+    pulls = np.array([s[part].T @ r[part] for _, _, part in evidence.parts()])
+    if len(pulls) < RUNS:
+        return lasting
+    between = inverse @ (pulls.T @ pulls * len(pulls) / (len(pulls) - 1) + known) @ inverse
+    return max(lasting, between, key=np.trace)
+
+
 def score(
     evidence: Evidence,
     off: Projector,
@@ -96,7 +114,8 @@ def score(
     hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
     if not seen.any():
         nothing = np.zeros(len(delta))
-        return Score(effect, tuple(names), nothing, np.full(len(delta), np.inf), 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0])
+        unknown, blind = np.full(len(delta), np.inf), BLIND * np.eye(len(delta))
+        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0], delta, blind)
     V = axes[:, seen]
     s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
     U = s_V.T @ r + strained_V.T @ off.rows
@@ -128,4 +147,7 @@ def score(
         visible,
         hidden,
         direction / length if length > 0 else direction,
+        delta,
+        V @ _spread(evidence, s_V, strained_V, I_V, r - direction, off.rows - strained_V @ change) @ V.T
+        + BLIND * (np.eye(len(delta)) - V @ V.T),
     )

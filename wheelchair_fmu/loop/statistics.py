@@ -91,12 +91,12 @@ def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]
 
 def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sizes and variances, in units of δ, along the directions that the data can see at all (one at least)."""
-    axes, spread = _seen_axes(covariance)
+    axes, spread = seen_axes(covariance)
     return axes.T @ size, spread
 
 
-def _seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Those directions (k, m), and the variances along them."""
+def seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The directions (k, m) that the data can see at all, one at least, and the variances along them, in units of δ."""
     spread, axes = np.linalg.eigh(covariance)
     spread = np.maximum(spread, 1e-12)
     seen = (spread < 1 / SEEN) | (spread == spread.min())
@@ -106,7 +106,7 @@ def _seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def size_seen(size: np.ndarray, covariance: np.ndarray) -> float:
     """How large an effect of this size, in units of δ, is along the directions that the data can see, beside δ of the one
     parameter that shows most in these: for left and right camber, of which only the sum shows, (right + left) / δ."""
-    seen = _seen_axes(covariance)[0]
+    seen = seen_axes(covariance)[0]
     return float(np.linalg.norm(seen.T @ size) / np.linalg.norm(seen, axis=1).max())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain
 from typing import Any
 
@@ -25,6 +26,7 @@ from .interval import profile_interval
 from .joint import explains
 from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
+from .probability import Belief, beliefs, shared
 from .relief import reliefs
 from .screen import AT_THE_FLOOR
 from .staircase import Step
@@ -78,6 +80,29 @@ class Diagnosis:
     def top(self) -> Fit:
         """The fit at the top of the staircase: the proposal's, where there is one."""
         return self.proposal.fit if self.proposal else self.final
+
+    @cached_property
+    def beliefs(self) -> dict[str, Belief]:
+        """How probable it is that each effect is there, and larger than δ."""
+        found = {e: self._decided(e) for e in self.included if e not in self.already}
+        return beliefs(found, self.rounds[-1], self._one_sided)
+
+    @property
+    def odds(self) -> tuple[dict[str, float], ...]:
+        """Of each group of effects that are tied, the probability that it is each of them."""
+        return tuple(shared(group, self._decided(group[0]), self._one_sided) for group in self.ties)
+
+    @property
+    def _one_sided(self) -> dict[str, np.ndarray]:
+        """By effect, which of its parameters (k,) may only be positive."""
+        w, records = self.search.workshop, self.search.records
+        return {e: np.array([records[n].lower == 0 for n in w.parameters(e)], bool) for e in w.catalogue}
+
+    def _decided(self, effect: str) -> Round:
+        """The round that judges an effect of the final model, beside all others of it where there is such a round."""
+        again = (r for r in self.beside if {*r.effects, effect} == set(self.included) and effect not in r.effects)
+        first = (r for r in reversed(self.rounds) if effect not in r.effects and any(c.effect == effect for c in r.candidates))
+        return next(again, None) or next(first)
 
     @property
     def included(self) -> tuple[str, ...]:
@@ -291,7 +316,7 @@ def _settle(
     kept = every[:-1]
     steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
     steps.append(Step.of(f"+{proposal.effect}", found.evidence, held))
-    settled = replace(proposal, fit=found, heldout=held, estimate=estimate, se=np.sqrt(np.diag(covariance)))
+    settled = replace(proposal, fit=found, heldout=held, estimate=estimate, covariance=covariance)
     return kept, settled, steps
 
 
