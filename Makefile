@@ -23,14 +23,11 @@ help:
 
 setup: $(VENV)/.ready
 
-# Without a C compiler on PATH, PyPI's ziglang serves as one.
+# Without a C compiler on PATH, PyPI's ziglang serves as one, which [dev] has.
 $(VENV)/.ready: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python %d.%d is too old: give 3.11 or newer, as in make setup PYTHON=python3.12" % sys.version_info[:2])'
 	$(PYTHON) -m venv $(VENV)
-	@extras=dev,ssp; \
-	if [ -z "$$CC" ] && ! { command -v cc || command -v gcc || command -v clang; } >/dev/null; then extras=dev,ssp,zig; fi; \
-	echo "installing the package with [$$extras]"; \
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[$$extras]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev,ssp]"
 	@touch $@
 
 demo: setup
@@ -90,7 +87,6 @@ NIGHTLY_SEED ?= 1
 nightly: TRIALS := --seeds $(NIGHTLY_SEED) --every 20 --out out/nightly-diagnosis
 nightly: setup $(VENV)-importers/.ready
 	@echo "seeds: NIGHTLY_SEED=$(NIGHTLY_SEED), trials $(TRIALS)"
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
 	@failed=; \
 	NIGHTLY_SEED=$(NIGHTLY_SEED) IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly \
 		|| failed="$$failed tests"; \
