@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
+.PHONY: help setup demo docs site release test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -12,6 +12,8 @@ help:
 	@echo "make test    all tests"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md"
+	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
+	@echo "make release     in dist/release: wheel, sdist, FMUs for five platforms, list of components, documentation, checksums"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
@@ -44,6 +46,15 @@ demo: setup
 docs: setup
 	$(BIN)/python -m wheelchair_fmu.campaign.reference docs/campaign.md
 	$(BIN)/python -m wheelchair_fmu.model.catalogue_page docs/effects.md
+
+site: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[site]"
+	.ci/site out/site
+
+# The wheel is tried in an empty environment, in another folder, before anything else is made.
+release: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[release]"
+	.ci/release dist/release
 
 test: setup
 	$(BIN)/python -m pytest -n 2
