@@ -129,6 +129,25 @@ class Campaign:
 
         return diagnose(self, variant, values=values, own_effects=own_effects, progress=progress)
 
+    def export(
+        self, folder: str | Path, variant: Variant | str | Path | None = None, *, fit: Sequence[str] = ()
+    ) -> tuple[Path, ...]:
+        """Write the problem of fitting a chair to this campaign for other programs, and return the paths, problem.yaml first.
+
+        Tables are after PEtab 2: parameters with bounds and priors (what is calibrated, those of the effects named in `fit`,
+        and each run's start), conditions, experiments, measurements, observables and a mapping to FMI names; runs held out are
+        in holdout.tsv. The model is an FMU 2.0, and inputs/ has each run's pushes, both of which PEtab itself has not.
+
+        Raises UsageError for an unknown effect, and where the campaign leaves a sensor's offset open.
+
+        >>> campaign.export("problem", fit=["rolling_resistance_asymmetry"])[0].name
+        'problem.yaml'
+        """
+        from .problems import export
+        from .variants import plain
+
+        return export(self._record, plain(variant), tuple(fit), Path(folder))
+
     def _run(self, name: str) -> measured.Run:
         found = {r.name: r for r in self._record.runs}
         if name not in found:
