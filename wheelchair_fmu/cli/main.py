@@ -37,6 +37,7 @@ COMMANDS = {
     "export": "Write a campaign as a problem of parameter estimation, for other programs.",
     "workbench": "Do all of this in a browser, from recordings dropped in.",
     "effects": "The physical effects that the chair can have.",
+    "quantities": "What the equations speak of, for laws of your own.",
     "ssp": "Systems of FMUs: the chair with a pusher and a floor.",
 }
 
