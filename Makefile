@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
+.PHONY: help setup demo docs site release test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -11,7 +11,9 @@ help:
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    all tests"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
-	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md"
+	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/quantities.md"
+	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
+	@echo "make release     in dist/release: wheel, sdist, FMUs for five platforms, list of components, documentation, checksums"
 	@echo "make lint    ruff, mypy, import-linter"
 	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
@@ -23,14 +25,11 @@ help:
 
 setup: $(VENV)/.ready
 
-# Without a C compiler on PATH, PyPI's ziglang serves as one.
+# Without a C compiler on PATH, PyPI's ziglang serves as one, which [dev] has.
 $(VENV)/.ready: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python %d.%d is too old: give 3.11 or newer, as in make setup PYTHON=python3.12" % sys.version_info[:2])'
 	$(PYTHON) -m venv $(VENV)
-	@extras=dev,ssp; \
-	if [ -z "$$CC" ] && ! { command -v cc || command -v gcc || command -v clang; } >/dev/null; then extras=dev,ssp,zig; fi; \
-	echo "installing the package with [$$extras]"; \
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[$$extras]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev,ssp]"
 	@touch $@
 
 demo: setup
@@ -47,6 +46,16 @@ demo: setup
 docs: setup
 	$(BIN)/python -m wheelchair_fmu.campaign.reference docs/campaign.md
 	$(BIN)/python -m wheelchair_fmu.model.catalogue_page docs/effects.md
+	$(BIN)/wheelchair quantities --page docs/quantities.md
+
+site: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[site]"
+	.ci/site out/site
+
+# The wheel is tried in an empty environment, in another folder, before anything else is made.
+release: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[release]"
+	.ci/release dist/release
 
 test: setup
 	$(BIN)/python -m pytest -n 2
@@ -90,7 +99,6 @@ NIGHTLY_SEED ?= 1
 nightly: TRIALS := --seeds $(NIGHTLY_SEED) --every 20 --out out/nightly-diagnosis
 nightly: setup $(VENV)-importers/.ready
 	@echo "seeds: NIGHTLY_SEED=$(NIGHTLY_SEED), trials $(TRIALS)"
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[zig]"
 	@failed=; \
 	NIGHTLY_SEED=$(NIGHTLY_SEED) IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m pytest -m nightly \
 		|| failed="$$failed tests"; \

@@ -105,7 +105,7 @@ def test_leaving_the_models_range_is_said_on_stderr(tmp_path):
         (["slalom", "--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
         (["slalom", "--equations", "papr"], 2, "did you mean 'paper'?"),
         (["slalom", "--variant", "none.toml"], 1, "none.toml: no such file"),
-        (["slalom", "--fmu", "none.fmu"], 1, "none.fmu: no such file; build one with `python build_fmu.py`"),
+        (["slalom", "--fmu", "none.fmu"], 1, "none.fmu: no such file; build one with `wheelchair build`"),
         (["start-stop", "--equations", "paper", "--effects", "none"], 1, "the equations give NaN or infinity"),
         (["slalom", "--colour", "red"], 2, "No such option"),
     ],

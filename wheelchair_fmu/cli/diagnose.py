@@ -10,16 +10,14 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..api.diagnoses import missing
+from ..api.diagnosing import searched
 from ..campaign import windows
-from ..handling.experiments import experiments
 from ..loop.bootstrap import Bootstrap, bootstrap
-from ..loop.profile import profiles as estimate_profiles
-from ..loop.story import story
 from ..loop.verdict import Diagnosis, insufficient
-from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled
-from ..model.generic import VARIABLES, library, profiles, terms
-from ..report.figures import missing_figure, staircase_figure
+from ..model.generic import terms
+from ..report.figures import staircase_figure
 from ..report.saving import save
 from ..report.words import helpers, outside, probability, tied, verdict_words
 from ..writing import written
@@ -64,8 +62,7 @@ def diagnose(
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     measured = windows(measured)  # here already, so that the rest is not kept in memory
     with working("reading", lines=progress) as say:
-        found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
-    content = story(found)
+        found, content = searched(measured, chair, fixed, say)
     stable = bootstrap(found, resamples) if resamples else None
     if stable:
         content["bootstrap"] = stable.as_json()
@@ -155,23 +152,10 @@ def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
             save(figure, beside)
     if d.proposal:
         files.append(write_proposal(d, folder / "effects")[1])
-        files.append(_missing_picture(d, folder / "missing.png"))
+        files.append(folder / "missing.png")
+        with written(files[-1]) as beside:
+            save(missing(d), beside)
     return files
-
-
-def _missing_picture(d: Diagnosis, file: Path) -> Path:
-    """The proposed term's quantity as the data would have it, against each variable."""
-    assert d.proposal is not None
-    term = terms()[d.proposal.effect]
-    free = profiles(term)
-    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, free)
-    panels = [
-        {"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
-        for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
-    ]
-    with written(file) as beside:
-        save(missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels), beside)
-    return file
 
 
 def write_proposal(d: Diagnosis, folder: Path) -> tuple[str, Path]:

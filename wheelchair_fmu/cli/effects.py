@@ -13,21 +13,22 @@ from rich.table import Table
 
 from ..contracts.own import catalogue
 from ..errors import UsageError, unknown
-from ..model.dimensions import targets, vocabulary
 from ..model.effects import NAME, bundled
 from ..model.stage import Effect
-from ..model.wheelchair import Choice, assemble
 from ..quantities import Parameter
 from ..writing import written
 from . import templates
 from .files import print_json
 from .group import console
+from .quantities import quantities
 from .terminal import announce
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
 KINDS = ("force", "moment", "reading", "state")
 Own = Annotated[Path | None, typer.Option("--effects", metavar="DIR", help="A folder with effect files of your own.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+app.command()(quantities)
 
 
 def register(parent: typer.Typer) -> None:
@@ -115,36 +116,6 @@ def template(kind: str, effect: str) -> str:
     """An effect of one of the KINDS to begin with, under this id."""
     text = files(templates).joinpath(f"{kind}.py").read_text(encoding="utf-8")
     return text.replace('"my_effect"', f'"{effect}"')
-
-
-@app.command()
-def quantities(as_json: AsJson = False) -> None:
-    """What a law of your own may read, by its symbol, and what an effect may act on."""
-    told: list[dict[str, Any]] = []
-    usual, swivelling = (assemble(Choice(caster=name)) for name in ("ideal", "swivelling"))
-    common = vocabulary(usual)
-    for symbol, q in (vocabulary(swivelling) | common).items():
-        components = ", ".join(q.components)
-        told.append(
-            {
-                "symbol": symbol,
-                "unit": q.unit.name,
-                "components": components,
-                "meaning": q.meaning,
-                "acted_on": symbol in targets(swivelling) or symbol in targets(usual),
-                "needs": {} if symbol in common else {"caster": "swivelling"},
-            }
-        )
-    if as_json:
-        print_json(told)
-        return
-    table = Table(box=box.SIMPLE)
-    for title in ("symbol", "unit", "of", "may be acted on", "what it is"):
-        table.add_column(title, no_wrap=title != "what it is")
-    for t in told:
-        needs = "".join(f'; with needs={{"{kind}": "{law}"}}' for kind, law in t["needs"].items())
-        table.add_row(t["symbol"], t["unit"], t["components"], "yes" if t["acted_on"] else "", t["meaning"] + needs)
-    console().print(table)
 
 
 def record(effect: Effect) -> dict[str, Any]:

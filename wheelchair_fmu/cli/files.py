@@ -5,13 +5,25 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping
+from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+import typer
 
 from ..writing import written
 from .terminal import printable_json
+
+
+class TableKind(StrEnum):
+    """What a table of series is written as."""
+
+    csv = "csv"
+    parquet = "parquet"
+
+
+Kind = Annotated[TableKind, typer.Option("--table", help="What a table of series is written as.")]
 
 
 def write_table(path: Path, columns: Mapping[str, np.ndarray]) -> None:

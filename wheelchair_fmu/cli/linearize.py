@@ -12,20 +12,17 @@ from rich import box
 from rich.table import Table
 from scipy.io import savemat
 
-from ..contracts.own import catalogue_of
-from ..errors import UsageError
-from ..fmu.build import with_chosen_effects
+from ..api.linear import steady_chair, turn
 from ..handling.linearize import Linear, linearize, radius_sensitivities, radius_slopes
-from ..handling.trim import Chair, SteadyState, trim
+from ..handling.trim import SteadyState
 from ..quantities import ONE
 from ..writing import written
 from .files import print_json
 from .group import console
-from .settings import chair_of, parse
+from .settings import parse
 from .terminal import announce
 
 LEAST = 0.0005  # %; less is not shown
-OPTION_FOR = {"speed.u": "--speed", "start.u": "--speed", "speed.mode": "--free-speed"}
 
 
 def register(app: typer.Typer) -> None:
@@ -46,7 +43,7 @@ def linearize_command(
 ) -> None:
     """Find a steady turn and linearise the chair about it, exactly."""
     given = parse(settings or ())
-    state = turn(steady_chair(given, variant, effects, equations), speed, delta_force, radius)
+    state = turn(steady_chair(given, variant, effects or "default", equations), speed, delta_force, radius)
     linear = linearize(state, free_speed=free_speed)
     if mat:
         with written(mat) as beside:
@@ -57,20 +54,6 @@ def linearize_command(
     _show(linear)
     if mat:
         announce(mat)
-
-
-def steady_chair(given: dict[str, str], variant: Path | None, effects: str | None, equations: str | None) -> Chair:
-    """The chair of the options that `simulate` has too. Raises UsageError for a --set that another option decides."""
-    for name, option in OPTION_FOR.items():
-        if name in given:
-            raise UsageError(f"--set {name}={given[name]}: here {option} decides that; give {option}")
-    catalogue, chosen = catalogue_of(effects or "default")
-    return Chair(with_chosen_effects(chair_of(variant, equations, given, catalogue), chosen))
-
-
-def turn(chair: Chair, speed: float, delta_force: float | None, radius: float | None) -> SteadyState:
-    """The steady state asked for; ΔF = 10 N unless a radius is given."""
-    return trim(chair, speed, 10.0 if delta_force is None and radius is None else delta_force, radius)
 
 
 def record(linear: Linear) -> dict[str, Any]:

@@ -17,6 +17,8 @@ COLLECTED = 100_000  # objects: to look through all of them as often as is usual
 
 # Modules, each with `register(app)`, and what they are for.
 COMMANDS = {
+    "build": "Build the FMU of a chair.",
+    "sample": "Unpack the sample campaign.",
     "simulate": "Put the chair through a manoeuvre.",
     "linearize": "Find a steady turn and linearise the chair about it, exactly.",
     "steady": "Understeer, oversteer, and the limits of a turn, against speed.",
@@ -32,8 +34,10 @@ COMMANDS = {
     "add": "Refit with one more effect, and write the improved variant.",
     "improve": "Diagnose and add, until nothing is missing.",
     "report": "Write one page with the verdict, its evidence, and the model.",
+    "export": "Write a campaign as a problem of parameter estimation, for other programs.",
     "workbench": "Do all of this in a browser, from recordings dropped in.",
     "effects": "The physical effects that the chair can have.",
+    "quantities": "What the equations speak of, for laws of your own.",
     "ssp": "Systems of FMUs: the chair with a pusher and a floor.",
 }
 
@@ -87,10 +91,10 @@ def wheelchair(
     """A manual wheelchair on real tyres: simulate it as an FMU, and hold it against measurements."""
 
 
-def main() -> None:
-    """Run the command line and exit with its code."""
+def main(words: list[str] | None = None) -> None:
+    """Run the command line, or these words of one, and exit with its code."""
     gc.set_threshold(COLLECTED)
-    app(prog_name="wheelchair")
+    app(words, prog_name="wheelchair")
 
 
 if __name__ == "__main__":

@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from ..api.diagnosing import page_of, searched
 from ..campaign import Campaign, windows
 from ..errors import Failure
-from ..handling.experiments import experiments
-from ..loop.evidence import Colour
-from ..loop.story import story
-from ..loop.verdict import diagnose
-from ..model.generic import library
-from ..model.variant import Variant
-from ..report.content import content
-from ..report.page import page
-from ..report.words import particulars, sentence
 from ..writing import written
 from .group import Progress, working
 from .settings import subject
@@ -46,30 +36,12 @@ def report(
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     measured = windows(measured)
     with working("reading", lines=progress) as say:
-        told = (
-            _read(diagnosis, measured)
-            if diagnosis
-            else story(diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))
-        )
+        told = _read(diagnosis, measured) if diagnosis else searched(measured, chair, fixed, say)[1]
         say("writing the page")
-        html = _html(measured, _with_proposal(chair, told), told, fixed)
+        html = page_of(measured, chair, told, fixed)
     with written(output) as beside:
         beside.write_text(html, encoding="utf-8")
     announce(output)
-
-
-def _html(measured: Campaign, chair: Variant, told: Mapping[str, Any], fixed: Sequence[str]) -> str:
-    titles = {e.id: e.title for e in chair.catalogue.values()}
-    records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
-    colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
-    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records))
-
-
-def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:
-    """The chair whose catalogue also has the generic terms that the diagnosis used."""
-    named = {name.split(".")[1] for m in told["models"] for name in m["values"] if name.startswith("effect.")}
-    more = {e: effect for e, effect in library().items() if e in named and e not in chair.catalogue}
-    return replace(chair, catalogue={**chair.catalogue, **more})
 
 
 def _read(file: Path, measured: Campaign) -> dict[str, Any]:

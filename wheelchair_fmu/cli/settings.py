@@ -1,21 +1,18 @@
-"""`--set NAME=VALUE`, any FMI parameter, and the chair that it and the other options make."""
+"""`--set NAME=VALUE`, any FMI parameter, and what a command of the loop is about by its options."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..campaign import Campaign
 from ..contracts.own import catalogue
 from ..errors import UsageError
-from ..fmu.build import with_chosen_effects
 from ..loop.subject import applied, chair
-from ..model.stage import Effect
-from ..model.variant import Variant, read_variant
+from ..model.variant import Variant
 from .check import measurements
 
-__all__ = ["catalogue", "chair_of", "parse", "subject"]
+__all__ = ["catalogue", "parse", "subject"]
 
 
 def parse(settings: Iterable[str]) -> dict[str, str]:
@@ -37,12 +34,3 @@ def subject(
 ) -> tuple[Variant, Campaign, tuple[str, ...]]:
     """What a command of the loop is about, by its options: the chair, the measurements, and the names that --set fixes."""
     return applied(parse(settings or ()), chair(variant, effects), measurements(campaign))
-
-
-def chair_of(file: Path | None, equations: str | None, given: Mapping[str, str], catalogue: Mapping[str, Effect]) -> Variant:
-    """The variant asked for, with the effects that --set names; their values are checked on the way."""
-    start = read_variant(file, catalogue) if file else Variant(catalogue=catalogue)
-    if equations:
-        start = replace(start, choice=replace(start.choice, equations=equations))
-    named = dict.fromkeys(name.split(".")[1] for name in given if name.startswith("effect.") and name.count(".") > 1)
-    return with_chosen_effects(start, named).with_values(given)

@@ -11,18 +11,18 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..contracts.own import catalogue_of
+from ..api.frames import save as save_frame
+from ..api.runs import driven, frame_of
 from ..errors import UsageError
 from ..handling.key_numbers import KeyNumber, key_numbers
 from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
-from ..model.variant import Variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save
-from ..studies import Fmu, Result, fmu_of
+from ..studies import Result
 from ..writing import written
-from .files import write_table
+from .files import Kind, TableKind
 from .group import console
-from .settings import chair_of, parse
+from .settings import parse
 from .terminal import announce
 
 
@@ -41,6 +41,7 @@ def simulate(
     effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, ids, or a folder.")] = None,
     equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
     fmu: Annotated[Path | None, typer.Option(metavar="PATH", help="Drive this FMU instead of building one.")] = None,
+    table: Kind = TableKind.csv,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out"),
 ) -> None:
     """Put the chair through a manoeuvre of the paper, or into standstill, spin and reverse."""
@@ -48,24 +49,13 @@ def simulate(
     given = parse(settings or ())
     if fmu and (variant or effects or equations):
         raise UsageError("--fmu gives a finished FMU; leave out --variant, --effects and --equations, or --fmu")
-    catalogue, chosen = catalogue_of(effects or "default")
-    chair = chair_of(variant, equations, given, catalogue) if fmu is None else None
-    path = fmu if chair is None else _built(chair, chosen)
-    assert path is not None
-    with Fmu(path) as driven:
-        own = {} if chair is None else {n: v for n, v in chair.values.items() if n in driven.parameters}
-        values = driven.checked({**own, **course.values, **given})
-        result = driven.run(course.time, course.inputs, values)
+    with console(stderr=True).status("simulating"):
+        result, values = driven(course, variant, given, effects or "default", equations, fmu)
     held = values.get("speed.mode") == 2
     _tell(result.warnings)
-    for file in _write(course, result, output):
+    for file in _write(course, result, output, table):
         announce(file)
     console().print(_table(key_numbers(result.columns, held=held)))
-
-
-def _built(chair: Variant, effects: str) -> Path:
-    with console(stderr=True).status("building the FMU"):
-        return fmu_of(chair, effects)
 
 
 def _tell(warnings: Iterable[str]) -> None:
@@ -73,18 +63,14 @@ def _tell(warnings: Iterable[str]) -> None:
         console(stderr=True).print(f"warning: {warning}")
 
 
-def _write(course: Manoeuvre, result: Result, folder: Path) -> list[Path]:
-    """The CSV, PNG and SVG."""
-    units = result.units
-    columns = {"time [s]": result.time}
-    columns |= {f"{name} [{units[name]}]": values for name, values in (*course.inputs.items(), *result.columns.items())}
-    files = [folder / f"{course.name}{ending}" for ending in (".csv", ".png", ".svg")]
-    write_table(files[0], columns)
+def _write(course: Manoeuvre, result: Result, folder: Path, table: str) -> list[Path]:
+    """The table, PNG and SVG."""
+    files = [folder / f"{course.name}{ending}" for ending in (".png", ".svg")]
     figure = manoeuvre_figure(course.title, result.time, result.columns, course.watch)
-    for file in files[1:]:
+    for file in files:
         with written(file) as beside:
             save(figure, beside)
-    return files
+    return [save_frame(frame_of(course, result), folder / f"{course.name}.{table}"), *files]
 
 
 def _table(numbers: list[KeyNumber]) -> Table:

@@ -6,12 +6,12 @@ import os
 import sys
 
 
-def main() -> None:
-    """Run the command line and exit with its code."""
+def main(words: list[str] | None = None) -> None:
+    """Run the command line, or these words of one, and exit with its code."""
     try:
         from .main import main as run  # half a second, in which Ctrl-C may come
 
-        run()
+        run(words)
     except KeyboardInterrupt:
         from ..errors import INTERRUPTED
 

@@ -12,6 +12,7 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..api.linear import steady_chair, turn
 from ..handling.linearize import Linear
 from ..handling.steady import HEIGHT, Gradients, Turns, gradients, limits, root_locus, turns
 from ..handling.trim import Chair, SteadyState
@@ -20,7 +21,6 @@ from ..report.turning import turning_figure
 from ..writing import written
 from .files import print_json, write_table
 from .group import console
-from .linearize import steady_chair, turn
 from .settings import parse
 from .terminal import announce
 
@@ -48,7 +48,7 @@ def steady(
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the files go.")] = Path("out"),
 ) -> None:
     """Understeer or oversteer, the largest turn before slip, friction or lift, and eigenvalues against speed."""
-    chair = steady_chair(parse(settings or ()), variant, effects, equations)
+    chair = steady_chair(parse(settings or ()), variant, effects or "default", equations)
     state = turn(chair, speed, delta_force, radius)
     found = gradients(state)
     right = state.delta_force > 0

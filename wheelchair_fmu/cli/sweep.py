@@ -12,6 +12,7 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..api.comparing import TUNING
 from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
@@ -22,7 +23,6 @@ from ..studies.sweep.indices import indices
 from ..studies.sweep.yardstick import Yardstick
 from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
-from .compare import TUNING
 from .group import console
 from .terminal import announce
 

@@ -17,12 +17,13 @@ from ..errors import UsageError
 from ..model.variant import Variant, number
 from ..model.wheelchair import Model
 from ..quantities import S
+from ..resources import SYSTEMS
 from ..surroundings import floor, pusher
 from . import native, package, validate
 from .variables import Interface, Jump, Variable, Watch, input_variable, output_variable, parameter_variable
 
-PAGES = Path(__file__).parents[2] / "ssp" / "pages"
-REPLAY = PAGES.parent / "replay.c"
+PAGES = SYSTEMS / "pages"
+REPLAY = SYSTEMS / "replay.c"
 WIDTH = 6  # numbers to a line of generated C
 
 

@@ -10,15 +10,16 @@ from string import Template
 from .. import __version__
 from ..model import frames
 from ..quantities import REACH
+from ..resources import FMU_SOURCES
 from . import describe3, literature, related
 from .describe import number
-from .variables import SOURCE, STEP, Interface, Variable
+from .variables import STEP, Interface, Variable
 
 MOVED = {  # how inputs move inside a step
     "2": "fmi2SetRealInputDerivatives",
     "3": "intermediate updates, once a millisecond; a step may return early there",
 }
-LICENCE = SOURCE / "documentation" / "license.txt"
+LICENCE = FMU_SOURCES / "documentation" / "license.txt"
 
 
 def files(face: Interface, version: str, results: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -48,7 +49,7 @@ def files(face: Interface, version: str, results: Mapping[str, bytes]) -> dict[s
 
 def icons(face: Interface) -> dict[str, bytes]:
     """The model's icon and its terminals', by their path in the archive: drawn, and as pixels for who cannot draw."""
-    places = {"icon": face.pages / "model", **{name: SOURCE / "icons" / name for name in describe3.terminal_icons(face)}}
+    places = {"icon": face.pages / "model", **{name: FMU_SOURCES / "icons" / name for name in describe3.terminal_icons(face)}}
     return {
         f"terminalsAndIcons/{name}.{kind}": place.with_suffix(f".{kind}").read_bytes()
         for name, place in places.items()
@@ -57,7 +58,7 @@ def icons(face: Interface) -> dict[str, bytes]:
 
 
 def _drawing(name: str) -> str:
-    return (SOURCE / "documentation" / f"{name}.svg").read_text(encoding="utf-8")
+    return (FMU_SOURCES / "documentation" / f"{name}.svg").read_text(encoding="utf-8")
 
 
 def _reference(results: Mapping[str, bytes]) -> str:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import re
 from html import escape
 
-from .variables import SOURCE
+from ..resources import REFERENCES
 
-FILE = SOURCE.parent / "references.bib"
 ALSO = {"Doria": "Doria2016", "Pacejka": "Pacejka2012"}  # as sources call them for short
 
 
 def entries() -> dict[str, dict[str, str]]:
     """The fields of each work by its key."""
-    text = FILE.read_text(encoding="utf-8")
+    text = REFERENCES.read_text(encoding="utf-8")
     found = re.findall(r"^@\w+\{(\w+),\n(.*?)^\}", text, flags=re.MULTILINE | re.DOTALL)
     return {
         key: {

@@ -14,6 +14,7 @@ from uuid import UUID
 
 from ..engine.source import CSRC
 from ..errors import BuildError
+from ..resources import FMU_SOURCES
 from . import data, describe, describe3, documentation, related
 from .platforms import Platform, chosen, compile_for
 from .variables import Interface
@@ -57,11 +58,11 @@ def token_of(face: Interface, texts: dict[str, str]) -> str:
 
 
 def handwritten() -> dict[str, str]:
-    folders = {**dict.fromkeys(HANDWRITTEN, documentation.SOURCE), "advance.c": CSRC, "advance.h": CSRC}
+    folders = {**dict.fromkeys(HANDWRITTEN, FMU_SOURCES), "advance.c": CSRC, "advance.h": CSRC}
     try:
         return {name: (folder / name).read_text(encoding="utf-8") for name, folder in folders.items()}
     except FileNotFoundError as error:
-        raise BuildError(f"{error.filename}: no such file; build from a checkout, which has fmu_src") from error
+        raise BuildError(f"{error.filename}: no such file; install wheelchair-fmu again, which brings it") from error
 
 
 def sources(face: Interface) -> tuple[dict[str, str], str]:

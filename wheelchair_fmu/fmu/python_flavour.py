@@ -23,6 +23,7 @@ from uuid import UUID
 
 from ..errors import BuildError
 from ..model.variant import LAWS
+from ..resources import FMU_SOURCES
 from . import describe, documentation
 from .variables import GRID, TOLERANCE, Interface, Variable
 
@@ -64,7 +65,7 @@ def _dependencies() -> str:
 
 def _modules(face: Interface) -> dict[str, str]:
     """The model's files by their path in the package, and stepping.py beside them."""
-    files = [PACKAGE / f"{name}.py" for name in ("__init__", "quantities", "errors", "faults", "units", "unit_text")]
+    files = [PACKAGE / f"{name}.py" for name in ("quantities", "errors", "faults", "units", "unit_text")]
     files += [f for f in (PACKAGE / "model").rglob("*.py") if f.name != "variant.py"]
     files += [PACKAGE / "engine" / name for name in ENGINE]
     texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
@@ -74,12 +75,13 @@ def _modules(face: Interface) -> dict[str, str]:
         law = effect.contributions[0].law if effect.contributions else effect.rows[0].rate
         file = Path(inspect.getfile(inspect.unwrap(law)))
         texts[f"model/effects/{effect.id}.py"] = file.read_text(encoding="utf-8")
-    texts["stepping.py"] = (documentation.SOURCE / "python" / "stepping.py").read_text(encoding="utf-8")
+    texts["__init__.py"] = '"""The model of the FMU around it."""\n'
+    texts["stepping.py"] = (FMU_SOURCES / "python" / "stepping.py").read_text(encoding="utf-8")
     return texts
 
 
 def _token(face: Interface, modules: dict[str, str]) -> str:
-    slave = (documentation.SOURCE / "python" / "slave.py").read_text(encoding="utf-8")
+    slave = (FMU_SOURCES / "python" / "slave.py").read_text(encoding="utf-8")
     content = "\0".join(
         (json.dumps(_interface(face, ""), sort_keys=True), slave, *(name + "\0" + modules[name] for name in sorted(modules)))
     )
@@ -135,7 +137,7 @@ def _write(source: Path, package: str, modules: dict[str, str], interface: dict[
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
     (source / package / "interface.json").write_text(json.dumps(interface, indent=1), encoding="utf-8")
-    slave = (documentation.SOURCE / "python" / "slave.py").read_text(encoding="utf-8")
+    slave = (FMU_SOURCES / "python" / "slave.py").read_text(encoding="utf-8")
     script = source / f"{package}_slave.py"
     script.write_text(slave.replace(PLACEHOLDER, package), encoding="utf-8")
     return script

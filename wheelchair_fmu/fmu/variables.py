@@ -17,10 +17,10 @@ from ..errors import BuildError
 from ..model.variant import LAWS, Variant
 from ..model.wheelchair import Model
 from ..quantities import Input, Output, Parameter, S, Unit, per_second
+from ..resources import FMU_SOURCES
 
 TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
 GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
-SOURCE = Path(__file__).parents[2] / "fmu_src"
 STOP, STEP = 10.0, 0.002  # s, of the default experiment: steps with which explicit Euler still integrates a turn
 HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a state follows at once: in which mode, which
 
@@ -90,7 +90,7 @@ class Interface:
     variables: tuple[Variable, ...]
     name: str = "Wheelchair"
     title: str = "a manual wheelchair on real tyres, after Doria et al."
-    pages: Path = SOURCE / "documentation"  # with index.html, to be filled in, and the icon
+    pages: Path = FMU_SOURCES / "documentation"  # with index.html, to be filled in, and the icon
     chooser: str = "tyre.law"  # the parameter that chooses among the models; "" where there is but one
 
     @property

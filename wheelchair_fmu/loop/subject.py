@@ -23,7 +23,9 @@ def chair(variant: Path | None, effects: Path | None) -> Variant:
     return read_variant(variant, known) if variant else Variant(catalogue=known)
 
 
-def applied(values: Mapping[str, str], variant: Variant, measured: Campaign) -> tuple[Variant, Campaign, tuple[str, ...]]:
+def applied(
+    values: Mapping[str, float | str], variant: Variant, measured: Campaign
+) -> tuple[Variant, Campaign, tuple[str, ...]]:
     """The chair and the campaign with these values, which go before the campaign file's own; and their names.
 
     Raises UsageError as `Variant.with_values` does.

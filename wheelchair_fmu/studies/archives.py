@@ -16,9 +16,13 @@ from ..engine.cache import effect_key
 from ..engine.store import kept
 from ..fmu.build import build, with_chosen_effects
 from ..model.variant import Variant
+from ..resources import FMU_SOURCES
 
 PACKAGE = Path(__file__).parent.parent
-MAKERS = ("quantities.py", "model", "engine", "fmu", "../fmu_src")  # what an archive's content comes from
+MAKERS = (
+    *(PACKAGE / name for name in ("quantities.py", "model", "engine", "fmu")),
+    FMU_SOURCES,
+)  # what an archive's content comes from
 
 
 def fmu_of(variant: Variant, effects: str | Iterable[str] = "default", *, with_starts: bool = False) -> Path:
@@ -39,7 +43,7 @@ def fmu_of(variant: Variant, effects: str | Iterable[str] = "default", *, with_s
 @cache
 def _makers() -> str:
     """A digest of every file, and the versions, that an archive depends on."""
-    files = (f for name in MAKERS for f in _files(PACKAGE / name))
+    files = (f for place in MAKERS for f in _files(place))
     digest = hashlib.sha256(b"\0".join(f.read_bytes() for f in files)).hexdigest()
     return f"{__version__} {digest} {casadi.CasadiMeta.version()} {compiler.version()} {compiler.FLAGS}"
 

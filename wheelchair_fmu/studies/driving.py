@@ -190,7 +190,7 @@ class Fmu:
 
 def _description(path: Path) -> ModelDescription:
     if not path.is_file():
-        raise Failure(f"{path}: no such file; build one with `python build_fmu.py`")
+        raise Failure(f"{path}: no such file; build one with `wheelchair build`")
     try:
         description = fmpy.read_model_description(str(path))
     except Exception as error:  # fmpy raises whatever its parsers raise

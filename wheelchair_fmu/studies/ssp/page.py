@@ -8,11 +8,12 @@ from string import Template
 
 from ...fmu.describe import number
 from ...fmu.parameter_set import ParameterSet
+from ...resources import SYSTEMS
 from .records import Connection, MappingEntry, System
-from .sources import FOLDER, interface
+from .sources import interface
 from .structure import Model, parted, usual_file
 
-TEMPLATE = FOLDER / "pages" / "system" / "index.html"
+TEMPLATE = SYSTEMS / "pages" / "system" / "index.html"
 WORDS = {"Pusher": "a person who pushes in strokes", "Floor": "slopes and rolling resistance", "Chair": "on real tyres"}
 BOX, GAP, ROW, TOP = 200, 440, 150, 20  # px: a box's width, from box to box, a box's row, the upper margin
 

@@ -14,9 +14,9 @@ from ...given import toml
 from ...model.stage import Effect
 from ...model.variant import number, read_variant
 from ...quantities import Parameter
+from ...resources import SYSTEMS
 from ...surroundings import floor, pusher
 
-FOLDER = Path(__file__).parents[3] / "ssp"
 RECORDS: Mapping[str, tuple[Parameter, ...]] = {"Pusher": pusher.PARAMETERS, "Floor": floor.PARAMETERS}
 VERSIONS = {"1": "1.0", "2": "2.0"}
 COMPONENTS = ("Chair", "Pusher", "Floor")
@@ -93,21 +93,19 @@ def version(short: str) -> str:
 
 
 def interface() -> Mapping[str, Mapping[str, Any]]:
-    return _load(FOLDER / "interface.toml")
+    return _load(SYSTEMS / "interface.toml")
 
 
 def _names(folder: str) -> tuple[str, ...]:
-    return tuple(sorted(f.stem for f in (FOLDER / folder).glob("*.toml")))
+    return tuple(sorted(f.stem for f in (SYSTEMS / folder).glob("*.toml")))
 
 
 def _path(name: str, folder: str, known: Iterable[str], kind: str) -> Path:
     if name.endswith(".toml"):
         return Path(name)
-    if not (FOLDER / folder).is_dir():
-        raise Failure(f"{FOLDER}: no such folder; build from a checkout, which has it")
     if name not in known:
         raise unknown(kind, name, known)
-    return FOLDER / folder / f"{name}.toml"
+    return SYSTEMS / folder / f"{name}.toml"
 
 
 def _load(path: Path) -> dict[str, Any]:

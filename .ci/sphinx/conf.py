@@ -1,0 +1,18 @@
+"""Sphinx: pages in Markdown, and the reference from the docstrings of what `import wheelchair_fmu` has."""
+
+from wheelchair_fmu import __version__
+
+project = "wheelchair-fmu"
+copyright = "the wheelchair-fmu authors, MIT licence"
+release = version = __version__
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+myst_heading_anchors = 3
+default_role = "code"
+autodoc_typehints = "signature"
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True}
+html_theme = "alabaster"
+html_theme_options = {"description": "a manual wheelchair on real tyres, as an FMU", "page_width": "1100px"}
+html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
+html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml"]
+exclude_patterns = ["contents.txt"]

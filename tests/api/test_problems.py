@@ -1,0 +1,82 @@
+"""A campaign as a problem for other programs: its tables and its FMU are all that one needs."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import wheelchair_fmu as wc
+from wheelchair_fmu.studies import Fmu
+
+FOUND = {  # what was hidden in the sample, and what its calibration gives
+    "tyre_C_lambda": 4930,
+    "resistance_f_r": 0.0182,
+    "resistance_f_f": 0.0178,
+    "chair_I_z": 3.074,
+    "effect_rolling_resistance_asymmetry_D": 1.606,
+}
+
+
+@pytest.fixture(scope="module")
+def problem(campaign, tmp_path_factory) -> Path:
+    return campaign.export(tmp_path_factory.mktemp("problem"), fit=["rolling_resistance_asymmetry"])[0].parent
+
+
+def rows(file: Path) -> list[dict[str, str]]:
+    with file.open(newline="", encoding="utf-8") as text:
+        return list(csv.DictReader(text, delimiter="\t"))
+
+
+def test_what_its_tables_name_is_there(problem):
+    known = {r["petabEntityId"] for r in rows(problem / "mapping.tsv")}
+    own = {r["parameterId"] for r in rows(problem / "parameters.tsv")}
+    conditions = rows(problem / "conditions.tsv")
+    assert {r["targetId"] for r in conditions} <= known
+    assert {r["targetValue"] for r in conditions if r["targetValue"].startswith("start_")} == own - known
+    assert set(FOUND) <= own & known
+    observables = {r["observableId"]: r["observableFormula"] for r in rows(problem / "observables.tsv")}
+    assert set(observables.values()) <= known
+    experiments = {r["experimentId"] for r in rows(problem / "experiments.tsv")}
+    measured = rows(problem / "measurements.tsv") + rows(problem / "holdout.tsv")
+    assert {r["observableId"] for r in measured} == set(observables) and {r["experimentId"] for r in measured} == experiments
+    for line in (problem / "problem.yaml").read_text(encoding="utf-8").split():
+        assert "." not in line or line.startswith(("2.", "1.")) or (problem / line).exists(), line
+
+
+@pytest.mark.parametrize("run", ["coast_down", "steady_left"])
+def test_its_fmu_comes_near_the_noise_with_the_values_that_were_found(problem, run):
+    """As a stranger would: values by the conditions, nominal or found, the run's inputs, and the residuals over their noise."""
+    names = {r["petabEntityId"]: r["modelEntityId"] for r in rows(problem / "mapping.tsv")}
+    nominal = {r["parameterId"]: float(r["nominalValue"]) for r in rows(problem / "parameters.tsv")}
+    inputs = pd.read_csv(problem / "inputs" / f"{run}.csv", index_col=0)
+    pushes = {name.partition(" [")[0]: inputs[name].to_numpy() for name in inputs}
+
+    def misfit(values: dict[str, float]) -> float:
+        given = {names[n]: v for n, v in values.items() if n in names}
+        for r in rows(problem / "conditions.tsv"):
+            if r["conditionId"] == run:
+                value = values.get(r["targetValue"])
+                given[names[r["targetId"]]] = float(r["targetValue"]) if value is None else value
+        with Fmu(problem / "chair.fmu") as fmu:
+            result = fmu.run(inputs.index.to_numpy(float), pushes, given)
+        table = pd.read_csv(problem / "measurements.tsv", sep="\t")
+        squares = []
+        for o in rows(problem / "observables.tsv"):
+            here = table[(table.observableId == o["observableId"]) & (table.experimentId == run)]
+            predicted = np.interp(here.time, result.time, result[names[o["observableFormula"]]])
+            squares.append(((here.measurement - predicted) / float(o["noiseFormula"])) ** 2)
+        return float(np.sqrt(np.concatenate(squares).mean()))
+
+    assert misfit({**nominal, **FOUND}) < 2.0 < misfit(nominal) / 3
+
+
+def test_what_an_fmu_cannot_have_is_refused(campaign, tmp_path):
+    with pytest.raises(wc.UsageError, match="shifts recorded pushes in time"):
+        campaign.export(tmp_path, fit=["push_force_delay"])
+    with pytest.raises(wc.UsageError, match="no effect 'relaxation'"):
+        campaign.export(tmp_path, fit=["relaxation"])
+    assert not list(tmp_path.iterdir())

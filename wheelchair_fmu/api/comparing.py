@@ -1,0 +1,84 @@
+"""How far off a chair is on a campaign: every run driven through the FMU, from the starts that its evidence finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from itertools import chain, islice
+from os import cpu_count
+from typing import TypeVar
+
+from ..campaign import Campaign, pieces, windows
+from ..errors import UsageError, unknown
+from ..loop.compare import Comparison, RunErrors, errors_of, together
+from ..loop.evidence import START, Bench
+from ..loop.fit import fit, start_value
+from ..model.variant import Variant
+from ..model.wheelchair import REGIMES
+from ..studies import Fmu, fmu_of
+from ..studies.measured import run_campaign_run
+
+TUNING = 2  # how often the start of each run is moved to where its readings want it
+PIECE = 60.0  # s: a longer run is compared piece by piece
+AT_ONCE = cpu_count() or 1  # pieces whose filters are made together, while those before them go through the FMU
+
+Item = TypeVar("Item")
+
+
+def compared(
+    measured: Campaign, chair: Variant, calibrate: Sequence[str], say: Callable[[str], None], *, brief: bool = False
+) -> tuple[Comparison, dict[str, float]]:
+    """Errors of the chair, and its values with those of `calibrate` fitted; `brief` without what was simulated.
+
+    Raises UsageError for a name that cannot be calibrated.
+    """
+    chair = chair.with_effects(measured.effects)  # for the FMU to have
+    values = {**chair.values, **_calibrated(measured, chair, calibrate)}
+    return Comparison(tuple(r.brief() if brief else r for r in _through_fmu(measured, chair, values, say))), values
+
+
+def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> dict[str, float]:
+    """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large."""
+    if not names and not measured.nuisance:
+        return {}
+    bench = Bench(windows(measured), chair)
+    records = {p.name: p for p in bench.variant.parameters()}
+    for name in names:
+        if name not in records:
+            raise unknown("parameter", name, records)
+        if name not in bench.sensitivities.columns:
+            raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(bench.sensitivities.columns)}")
+    wanted = [*names, *bench.offsets]  # sensors' offsets, where the campaign names them, are nobody's error
+    return dict(fit(bench, wanted, {n: start_value(bench, bench.records[n]) for n in wanted}).values) if wanted else {}
+
+
+def _through_fmu(
+    measured: Campaign, chair: Variant, values: dict[str, float], say: Callable[[str], None]
+) -> Iterator[RunErrors]:
+    """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
+    cut = {run.name: pieces(run, PIECE) for run in measured.runs}
+    bench = Bench(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
+    results = [o.name for o in chair.model().outputs]
+    batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
+    batch_by_batch = _ahead(bench.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
+    evidence = chain.from_iterable(batch_by_batch)
+    with Fmu(fmu_of(chair)) as fmu:
+        for name, parts in cut.items():
+            say(f"simulating {name}")
+            found = []
+            for e in islice(evidence, len(parts)):
+                given = {**measured.known, **values, **{n: e.start[n] for n in START}}
+                given = {n: v for n, v in given.items() if n in fmu.parameters}
+                predicted = run_campaign_run(fmu, bench.on_time(e.run, values, e.start), given)
+                found.append(errors_of(e, predicted, REGIMES, results))
+            yield together(name, found)
+
+
+def _ahead(items: Iterable[Item]) -> Iterator[Item]:
+    """The same items, each made while the one before it is used."""
+    with ThreadPoolExecutor(1) as beside:
+        making = beside.submit(next, iterator := iter(items), None)
+        while (item := making.result()) is not None:
+            making = beside.submit(next, iterator, None)
+            yield item

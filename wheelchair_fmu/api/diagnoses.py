@@ -1,0 +1,301 @@
+"""Which effect is missing: what `diagnose` gives."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from html import escape
+from io import StringIO
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from .. import campaign as measured
+from ..errors import Failure, unknown
+from ..loop import improve, verdict
+from ..loop.profile import profiles as estimate_profiles
+from ..loop.subject import applied
+from ..model import variant as chairs
+from ..model.generic import VARIABLES, profiles, terms
+from ..report.estimates_figure import estimates_figure
+from ..report.figures import missing_figure, staircase_figure
+from ..report.saving import save_svg
+from ..report.words import particulars, sentence
+from ..writing import written
+from . import latex
+from .campaigns import Campaign, read
+from .diagnosing import page_of, searched
+from .variants import Values, Variant, of_record, plain
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NORMAL = 1.96  # standard errors, where no profile of the likelihood was taken
+LIKELIEST = 10  # estimates that are drawn
+
+
+def diagnose(
+    campaign: Campaign | str | Path,
+    variant: Variant | str | Path | None = None,
+    *,
+    values: Values | None = None,
+    own_effects: str | Path | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Diagnosis:
+    """Find which physical effects a chair lacks, as a campaign shows it, or that this campaign cannot tell.
+
+    `campaign` is what `read` gave, or its folder; `variant` is the chair to start from (a Variant, a TOML file, or None for the
+    paper's with what the campaign says of it). `values` are FMI parameters by name, SI units, which go before the campaign's
+    and are not estimated. `own_effects` is a folder of effect files of your own, which are programs. `progress` is told what is
+    being done, a sentence at a time. The first time, models are compiled, which takes 10 to 20 s on two cores.
+
+    Raises CampaignError for a campaign with faults, UsageError for an unknown name, and EffectError for effect files with
+    faults. How verdicts come about, and how far to trust them, is in docs/verdicts.md.
+
+    >>> found = wc.diagnose(campaign)
+    >>> found.verdict, found.effects
+    ('missing', ('rolling_resistance_asymmetry',))
+    """
+    given = campaign if isinstance(campaign, Campaign) else read(campaign)
+    chair, known, fixed = applied(values or {}, plain(variant, own_effects), given._record)
+    known = measured.windows(known)
+    found, told = searched(known, chair, fixed, progress or (lambda words: None))
+    return Diagnosis(known, chair, fixed, found, told)
+
+
+class Diagnosis:
+    """A verdict with its evidence; `diagnose` makes it."""
+
+    def __init__(
+        self,
+        campaign: measured.Campaign,
+        chair: chairs.Variant,
+        fixed: Sequence[str],
+        found: verdict.Diagnosis,
+        told: dict[str, Any],
+    ) -> None:
+        self._campaign, self._chair, self._fixed, self._found, self._told = campaign, chair, tuple(fixed), found, told
+
+    @property
+    def verdict(self) -> str:
+        """One of "missing", "tie" (one of these, and the campaign cannot tell which), "small" (there, but too small to matter),
+        "adequate" (nothing is missing), "cannot_see" (these runs could not show most effects) and "outside" (nothing in the
+        catalogue explains what is left)."""
+        return str(self._told["verdict"])
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Ids of the effects that are missing, in the order in which they were found, or of those that tie."""
+        return tuple(self._told["effects"])
+
+    @property
+    def ties(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of effects that this campaign cannot tell apart."""
+        return tuple(map(tuple, self._told["ties"]))
+
+    @property
+    def sentence(self) -> str:
+        """The verdict for a person.
+
+        >>> found.sentence
+        'Missing from the model: one rear wheel that rolls harder than the other.'
+        """
+        return sentence(self._told, {e.id: e.title for e in self._found.search.workshop.catalogue.values()})
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """The probability of each effect, by its id, that its size exceeds the smallest interesting one, the likeliest effect
+        first."""
+        return probabilities_in(self._told["ranking"])
+
+    @property
+    def estimates(self) -> pd.DataFrame:
+        """A row for each parameter of each effect of the catalogue, the likeliest effect first, by (effect, parameter): its
+        `estimate`, standard error `se` and the ends `lower` and `upper` of a 95 % interval in `unit` (SI), the size that is
+        `smallest_interesting`, the effect's `p` that chance alone does as much, and its `verdict`. Intervals of effects that
+        were found are by the profile of the likelihood, others are ± 1.96 standard errors.
+
+        >>> D = found.estimates.loc[("rolling_resistance_asymmetry", "D")]
+        >>> print(f"{D.estimate:.2f} ± {D.se:.2f} {D.unit}")
+        1.61 ± 0.01 N
+        """
+        rows = list(_estimates(self._told["ranking"]))
+        return pd.DataFrame(rows).set_index(["effect", "parameter"])
+
+    @property
+    def calibration(self) -> pd.DataFrame:
+        """A row for each value that was given and fitted, by its FMI name: value, `se`, `prior`, `prior_sd` (NaN: nothing was
+        known), in `unit` (SI), and whether it lies `at_bound` or `beyond` what anybody would have measured."""
+        rows = {c.record.name: {**c.as_json(), "unit": c.record.unit.name} for c in self._found.calibration}
+        return pd.DataFrame.from_dict(rows, "index").rename_axis("parameter")
+
+    @property
+    def staircase(self) -> pd.DataFrame:
+        """The error falling: a row for each step ("nominal", "calibrated", "+id", …) with the whitened RMS error on fitted
+        runs, `fit`, and on runs held out, `heldout` (NaN where there are none); 1.0 is the noise floor.
+
+        >>> found.staircase.index.tolist()
+        ['nominal', 'calibrated', '+rolling_resistance_asymmetry']
+        """
+        return steps(self._told["ladder"])
+
+    @property
+    def errors(self) -> pd.DataFrame:
+        """What the last model leaves of each channel, in its `unit` (m/s, deg/s, …): RMS on held-out and on fitted runs, its
+        share of the readings' standard deviation, and what the best constant for each run would leave.
+
+        >>> found.errors.loc["yaw_rate", "unit"]
+        'deg/s'
+        """
+        rows = {c: {k: v for k, v in told.items() if k != "runs"} for c, told in self._told["physical"].items()}
+        return pd.DataFrame.from_dict(rows, "index").rename_axis("channel")
+
+    @property
+    def odds(self) -> tuple[dict[str, float], ...]:
+        """For each group of effects that tie, the probability that it is each of them."""
+        return tuple(dict(one) for one in self._told["odds"])
+
+    @property
+    def next_experiment(self) -> dict[str, Any] | None:
+        """What to measure next (`manoeuvre`, `separates`, `repeats`, `why`), where that would tell more."""
+        following = self._told["next_experiment"]
+        return None if following is None else dict(following)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for each thing that is odd about the measurements or the values."""
+        return tuple(self._told["notes"])
+
+    @property
+    def seconds(self) -> float:
+        """How long it took [s]."""
+        return float(self._told["seconds"])
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/verdicts.md has the keys."""
+        return dict(json.loads(json.dumps(self._told)))
+
+    def add(self, effect: str) -> Variant:
+        """Fit the chair again with one more effect, and return it; its `staircase` shows what that does.
+
+        Raises UsageError for an unknown id, and Failure where such a chair cannot be simulated on these runs.
+
+        >>> better = found.add("rolling_resistance_asymmetry")
+        >>> round(better.values["effect.rolling_resistance_asymmetry.D"], 1), bool(better.staircase["heldout"].iloc[-1] < 1.05)
+        (1.6, True)
+        """
+        if effect not in self._chair.catalogue:
+            raise unknown("effect", effect, self._chair.catalogue)
+        better = improve.add(self._campaign, self._chair, effect, self._fixed)
+        return of_record(better.variant, steps(step.as_json() for step in better.ladder))
+
+    def save(self, path: str | Path) -> Path:
+        """Write it by the path's ending, and return the path: .json (`as_dict`), .csv (`estimates`), .tex (estimates of the
+        effects found and the calibrated values, as a table for LaTeX with booktabs) or .html (the page of `wheelchair report`,
+        for which ziglang has to be installed). Raises UsageError for another ending.
+
+        >>> found.save("estimates.tex").read_text().splitlines()[0]
+        '\\\\begin{tabular}{lrrl}'
+        """
+        path = Path(path)
+        writers = {".json": self._json, ".csv": self._csv, ".tex": self._tex, ".html": self._page}
+        if path.suffix.lower() not in writers:
+            raise unknown("form of a diagnosis that ends in", path.suffix, writers)
+        text = writers[path.suffix.lower()]()
+        with written(path) as beside:
+            beside.write_text(text, encoding="utf-8", newline="\n")
+        return path
+
+    def plot_staircase(self) -> Figure:
+        """The error falling, step by step."""
+        return staircase_figure(self._told["ladder"])
+
+    def plot_estimates(self) -> Figure:
+        """Estimates of the likeliest effects with their intervals, beside what would be of interest."""
+        rows = [{**row, "name": f"{row['effect']}.{row['parameter']}"} for row in _estimates(self._told["ranking"])]
+        return estimates_figure(rows[:LIKELIEST])
+
+    def plot_missing(self) -> Figure:
+        """What is missing, as the data would have it, against speed, yaw rate, heading, push and caster angle.
+
+        Raises Failure unless the verdict is "outside" with a proposal.
+        """
+        return missing(self._found)
+
+    def _json(self) -> str:
+        return json.dumps(self._told, indent=2, ensure_ascii=False) + "\n"
+
+    def _csv(self) -> str:
+        return str(self.estimates.to_csv(float_format="%.10g", lineterminator="\n"))
+
+    def _tex(self) -> str:
+        found = (r for r in _estimates(self._told["ranking"]) if r["effect"] in self.effects)
+        effects = [
+            (f"{r['effect']}.{r['parameter']}", *(r[k] for k in ("estimate", "se", "lower", "upper", "unit"))) for r in found
+        ]
+        values = self._found.calibration
+        others = [(c.record.name, c.value, c.se, *_ends(c.value, c.se), c.record.unit.name) for c in values]
+        return latex.table([*effects, *others])
+
+    def _page(self) -> str:
+        return page_of(self._campaign, self._chair, self._told, self._fixed)
+
+    def __repr__(self) -> str:
+        return f"Diagnosis({self._told['campaign']!r}, verdict={self.verdict!r}, effects={list(self.effects)})"
+
+    def _repr_html_(self) -> str:
+        records = {p.name: p for e in self._found.search.workshop.catalogue.values() for p in e.owned}
+        said = "".join(f"<li>{escape(words)}</li>" for words in particulars(self._told, records))
+        picture = StringIO()
+        save_svg(self.plot_staircase(), picture)
+        drawn = picture.getvalue()
+        return f"<h4>{escape(self.sentence)}</h4><ul>{said}</ul>{drawn[drawn.index('<svg') :]}"
+
+
+def probabilities_in(ranking: Iterable[Mapping[str, Any]]) -> dict[str, float]:
+    """By effect, from the rows of a ranking that have one."""
+    found = {row["effect"]: float(row["probability"]) for row in ranking if row.get("probability") is not None}
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def steps(ladder: Iterable[Mapping[str, Any]]) -> pd.DataFrame:
+    """A staircase as a frame."""
+    return pd.DataFrame([{k: row[k] for k in ("step", "fit", "heldout")} for row in ladder]).set_index("step").astype(float)
+
+
+def missing(d: verdict.Diagnosis) -> Figure:
+    """The proposed term's quantity as the data would have it, against each variable. Raises Failure where none is proposed."""
+    if d.proposal is None:
+        raise Failure(f"the verdict is {d.verdict}, and no term is proposed whose form could be shown")
+    term = terms()[d.proposal.effect]
+    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, profiles(term))
+    panels = [
+        {"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
+        for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
+    ]
+    return missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels)
+
+
+def _estimates(ranking: Iterable[Mapping[str, Any]]) -> Iterable[dict[str, Any]]:
+    for row in ranking:
+        for name, p in row["parameters"].items():
+            se = nan if p["se"] is None else p["se"]
+            lower, upper = p.get("interval") or _ends(p["estimate"], se)
+            yield {
+                "effect": row["effect"],
+                "parameter": name,
+                "estimate": p["estimate"],
+                "se": se,
+                "lower": lower,
+                "upper": upper,
+                "unit": p["unit"],
+                "smallest_interesting": p["smallest_interesting"],
+                "p": row["p"],
+                "verdict": row["verdict"],
+            }
+
+
+def _ends(estimate: float, se: float) -> tuple[float, float]:
+    return estimate - NORMAL * se, estimate + NORMAL * se

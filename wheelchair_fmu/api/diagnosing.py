@@ -1,0 +1,44 @@
+"""A diagnosis with all that can be found out: generic terms for what the catalogue lacks, and runs that could be made next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ..campaign import Campaign
+from ..handling.experiments import experiments
+from ..loop.evidence import Colour
+from ..loop.story import story
+from ..loop.verdict import Diagnosis, diagnose
+from ..model.generic import library
+from ..model.variant import Variant
+from ..report.content import content
+from ..report.page import page
+from ..report.words import particulars, sentence
+
+Story = dict[str, Any]
+
+
+def searched(
+    measured: Campaign, chair: Variant, fixed: Sequence[str], say: Callable[[str], None] = lambda words: None
+) -> tuple[Diagnosis, Story]:
+    """The diagnosis, and the story that `diagnose --json` writes."""
+    found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
+    return found, story(found)
+
+
+def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:
+    """The page that `wheelchair report` writes, as HTML."""
+    chair = _with_proposal(chair, told)
+    titles = {e.id: e.title for e in chair.catalogue.values()}
+    records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
+    colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
+    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records))
+
+
+def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:
+    """The chair whose catalogue also has the generic terms that the diagnosis used."""
+    named = {name.split(".")[1] for m in told["models"] for name in m["values"] if name.startswith("effect.")}
+    more = {e: effect for e, effect in library().items() if e in named and e not in chair.catalogue}
+    return replace(chair, catalogue={**chair.catalogue, **more})

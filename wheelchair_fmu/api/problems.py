@@ -1,0 +1,148 @@
+"""A campaign as a problem of parameter estimation for other programs, in tables after PEtab 2 (Schmiester et al. 2021).
+
+PEtab has no FMUs and no recorded inputs: the model is an FMU 2.0, and `inputs/` has each run's pushes. What its noise model
+cannot say is left out: noise of the recorded pushes, and noise that is coloured.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from .. import campaign as measured
+from ..campaign import BY_NAME
+from ..errors import UsageError
+from ..fmu.build import build, with_chosen_effects
+from ..loop.evidence import START, Bench, prior_start, start_sd
+from ..loop.fit import Problem
+from ..loop.workshop import CALIBRATED
+from ..model.variant import Variant
+from ..writing import written
+from .frames import framed, save
+
+MODEL = "chair.fmu"
+TABLES = ("parameters", "conditions", "experiments", "measurements", "observables", "mapping")
+
+
+def export(campaign: measured.Campaign, chair: Variant, effects: Sequence[str], folder: Path) -> tuple[Path, ...]:
+    """Write the problem of fitting `effects`, with what is calibrated, to the fitted runs; runs held out are in holdout.tsv.
+
+    Raises UsageError for an effect, or a sensor's open offset, that no FMU has.
+    """
+    if campaign.nuisance:
+        raise UsageError(
+            f"the offset of {campaign.nuisance[0]} is open, which no FMU has; leave [nuisance] out of campaign.toml"
+        )
+    chair = with_chosen_effects(chair.with_effects(campaign.effects), effects)
+    bench = Bench(campaign, chair, derives=False)
+    tables = {
+        "parameters": _parameters(bench, effects),
+        "conditions": _conditions(campaign),
+        "experiments": pd.DataFrame(
+            [(_id(r.name), r.time[0], _id(r.name)) for r in campaign.runs], columns=["experimentId", "time", "conditionId"]
+        ),
+        "measurements": _measurements(campaign.fit),
+        "holdout": _measurements([r for r in campaign.runs if r.role == "holdout"]),
+        "observables": _observables(campaign),
+        "mapping": _mapping(bench),
+    }
+    files = [build(chair.with_values(_plain(bench)), folder / MODEL, effects="none")]
+    for name, table in tables.items():
+        files.append(folder / f"{name}.tsv")
+        with written(files[-1]) as beside:
+            table.to_csv(beside, sep="\t", index=False, float_format="%.10g", lineterminator="\n")
+    for run in campaign.runs:
+        units = {c.fmu: c.unit.name for c in measured.INPUTS}
+        files.append(save(framed(run.time, run.inputs, units), folder / "inputs" / f"{_id(run.name)}.csv"))
+    with written(folder / "problem.yaml") as beside:
+        beside.write_text(_yaml(campaign.runs), encoding="utf-8", newline="\n")
+    return (folder / "problem.yaml", *files)
+
+
+def _id(name: str) -> str:
+    """A name as PEtab has identifiers."""
+    plain = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return f"_{plain}" if plain[:1].isdigit() else plain
+
+
+def _plain(bench: Bench) -> dict[str, float]:
+    """What the campaign knows of the chair, as start values of the FMU."""
+    return {n: v for n, v in bench.campaign.known.items() if n in bench.records}
+
+
+def _parameters(bench: Bench, effects: Iterable[str]) -> pd.DataFrame:
+    catalogue = bench.variant.catalogue
+    names = [*CALIBRATED, *(p.name for e in effects for p in catalogue[e].owned if p.estimated)]
+    problem = Problem(bench, names)
+    rows = [
+        (_id(n), low, high, mean, mean, sd)
+        for n, low, high, mean, sd in zip(
+            names, problem.lower, problem.upper, problem.prior.mean, problem.prior.sd, strict=True
+        )
+    ]
+    for run in bench.campaign.runs:
+        mean, sd = prior_start(run, bench.known(run)), start_sd(run)
+        records = bench.records
+        rows += [(_own(n, run), records[n].lower, records[n].upper, mean[n], mean[n], sd[n]) for n in START if sd[n]]
+    return pd.DataFrame([_parameter(*row) for row in rows])
+
+
+def _parameter(name: str, low: float, high: float, nominal: float, mean: float, sd: float) -> dict[str, Any]:
+    told = {"parameterId": name, "lowerBound": low, "upperBound": high, "nominalValue": nominal, "estimate": "true"}
+    if np.isfinite(sd):
+        return {**told, "priorDistribution": "normal", "priorParameters": f"{mean:.10g};{sd:.10g}"}
+    return {**told, "priorDistribution": "uniform", "priorParameters": f"{low:.10g};{high:.10g}"}
+
+
+def _own(name: str, run: measured.Run) -> str:
+    """A start that is this run's own."""
+    return f"{_id(name)}__{_id(run.name)}"
+
+
+def _conditions(campaign: measured.Campaign) -> pd.DataFrame:
+    """What differs from run to run: what it sets, and where it starts."""
+    rows: list[tuple[str, str, Any]] = []
+    for run in campaign.runs:
+        mean, sd = prior_start(run, {**campaign.known, **run.set}), start_sd(run)
+        own = {**run.set, **{n: _own(n, run) if sd[n] else mean[n] for n in START}}
+        rows += [(_id(run.name), _id(name), value) for name, value in own.items()]
+    return pd.DataFrame(rows, columns=["conditionId", "targetId", "targetValue"])
+
+
+def _measurements(runs: Sequence[measured.Run]) -> pd.DataFrame:
+    def rows() -> Iterator[pd.DataFrame]:
+        for run in runs:
+            for channel, series in run.channels.items():
+                there = np.isfinite(series)
+                told = {"observableId": channel, "experimentId": _id(run.name), "time": run.time[there]}
+                yield pd.DataFrame({**told, "measurement": series[there]})
+
+    return pd.concat(list(rows()) or [pd.DataFrame(columns=["observableId", "experimentId", "time", "measurement"])])
+
+
+def _observables(campaign: measured.Campaign) -> pd.DataFrame:
+    names = list(dict.fromkeys(c for run in campaign.runs for c in run.channels))
+    rows = [(c, _id(BY_NAME[c].fmu), campaign.noise[c], "normal") for c in names]
+    return pd.DataFrame(rows, columns=["observableId", "observableFormula", "noiseFormula", "noiseDistribution"])
+
+
+def _mapping(bench: Bench) -> pd.DataFrame:
+    """Identifiers of PEtab and the names of the FMU."""
+    names = [*bench.records, *(o.name for o in bench.variant.model().outputs)]
+    return pd.DataFrame([(_id(n), n) for n in names], columns=["petabEntityId", "modelEntityId"])
+
+
+def _yaml(runs: Sequence[measured.Run]) -> str:
+    inputs: Mapping[str, str] = {_id(r.name): f"inputs/{_id(r.name)}.csv" for r in runs}
+    lines = ["format_version: 2.0.0", "model_files:", "  chair:", f"    location: {MODEL}", "    language: fmu"]
+    for name in TABLES:
+        key = f"{name.removesuffix('s')}_files"
+        lines += [f"{key}:", f"  - {name}.tsv"]
+    lines += ["extensions:", "  recorded_inputs:  # by experiment: columns are inputs of the FMU, linear between samples"]
+    lines += ["    version: 1.0.0", "    required: true", "    files:", *(f"      {n}: {f}" for n, f in inputs.items())]
+    return "\n".join(lines) + "\n"
