@@ -16,6 +16,7 @@ from ..handling.experiments import experiments
 from ..loop.evidence import Colour
 from ..loop.story import story
 from ..loop.verdict import diagnose
+from ..model.former import former
 from ..model.generic import library
 from ..model.variant import Variant
 from ..report.content import content
@@ -82,4 +83,7 @@ def _read(file: Path, measured: Campaign) -> dict[str, Any]:
         raise Failure(f"{file}: no diagnosis; give what `wheelchair diagnose --json` wrote")
     if told["campaign"] != measured.name:
         raise Failure(f"{file}: a diagnosis of {told['campaign']!r}, not of {measured.name!r}; diagnose this campaign")
+    named = (f"effect.{row['effect']}.{name}" for row in told["ranking"] for name in row["parameters"])
+    if old := dict(former(named)):
+        raise Failure(f"{file}: has the former names {', '.join(old)}, from an earlier version; diagnose the campaign again")
     return told

@@ -15,6 +15,7 @@ from ..contracts.own import catalogue_of
 from ..errors import UsageError
 from ..handling.key_numbers import KeyNumber, key_numbers
 from ..handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
+from ..model.former import renamed
 from ..model.variant import Variant
 from ..report.figures import manoeuvre_figure
 from ..report.saving import save
@@ -52,6 +53,7 @@ def simulate(
     chair = chair_of(variant, equations, given, catalogue) if fmu is None else None
     path = fmu if chair is None else _built(chair, chosen)
     assert path is not None
+    given = renamed(given, chair.values)[0] if chair else given
     with Fmu(path) as driven:
         own = {} if chair is None else {n: v for n, v in chair.values.items() if n in driven.parameters}
         values = driven.checked({**own, **course.values, **given})

@@ -9,6 +9,7 @@ from pathlib import Path
 from ..campaign import Campaign
 from ..contracts.own import catalogue
 from ..model.effects import bundled
+from ..model.former import current
 from ..model.variant import Variant, read_variant
 
 
@@ -28,6 +29,7 @@ def applied(values: Mapping[str, str], variant: Variant, measured: Campaign) -> 
 
     Raises UsageError as `Variant.with_values` does.
     """
+    values = current(values, variant.values)
     variant = variant.with_values(values)
     known = {n: variant.values[n] for n in values if n in variant.values and not n.startswith("effect.")}
     return variant, replace(measured, known={**measured.known, **known}), tuple(values)

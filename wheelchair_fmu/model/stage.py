@@ -97,6 +97,16 @@ class Alternative:
 
 
 @dataclass(frozen=True)
+class Alike:
+    """What several effects do alike: those whose records hold this, and `with_parameters` of the chair. `told_by` is what tells
+    them apart."""
+
+    what: str
+    told_by: str
+    with_parameters: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Effect:
     """One physical effect the paper leaves out: a few contributions and the parameters in them.
 
@@ -114,6 +124,7 @@ class Effect:
     even: bool = False  # the response is (nearly) even in the parameters: the slope at zero says little
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
     absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
+    alike: tuple[Alike, ...] = ()  # what it does that others do as well
 
     @cached_property
     def owned(self) -> tuple[Parameter, ...]:

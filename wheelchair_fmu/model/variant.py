@@ -31,6 +31,7 @@ from ..given import toml
 from ..quantities import Parameter
 from . import caster, tyre
 from .effects import bundled
+from .former import current
 from .stage import Effect
 from .wheelchair import Choice, Model, assemble, base_parameters
 
@@ -71,10 +72,11 @@ class Variant:
         return replace(self, effects=(*self.effects, *more), choice=replace(self.choice, **needs))
 
     def with_values(self, values: Mapping[str, float | str]) -> Variant:
-        """The same with other values; a value of an effect that is off switches it on.
+        """The same with other values; a value of an effect that is off switches it on. Former names are read, with a warning.
 
         Raises UsageError for an unknown name, a number out of bounds or a word that is no choice.
         """
+        values = current(values, self.values)
         on = [
             e
             for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
