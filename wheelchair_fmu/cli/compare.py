@@ -18,7 +18,7 @@ from rich.table import Table
 from ..campaign import CHANNELS, Campaign, pieces, windows
 from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of, together
-from ..loop.evidence import START, Bench
+from ..loop.evidence import Bench
 from ..loop.fit import fit, start_value
 from ..loop.statistics import finite
 from ..model.variant import Variant
@@ -102,7 +102,7 @@ def _through_fmu(
             say(f"simulating {name}")
             found = []
             for e in islice(evidence, len(parts)):
-                given = {**measured.known, **values, **{n: e.start[n] for n in START}}
+                given = {**measured.known, **values, **e.started}
                 given = {n: v for n, v in given.items() if n in fmu.parameters}
                 predicted = run_campaign_run(fmu, bench.on_time(e.run, values, e.start), given)
                 found.append(errors_of(e, predicted, REGIMES, results))

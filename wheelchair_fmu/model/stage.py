@@ -94,6 +94,8 @@ class Alternative:
     stages: tuple[Stage, ...]
     parameters: tuple[Parameter, ...] = ()
     rows: tuple[Row, ...] = ()
+    loads: Stage | None = None  # in place of the chair's, where wheels do not touch the floor where that takes them to
+    serves: tuple[str, ...] = ()  # laws that effects may ask for and have this one instead
 
 
 @dataclass(frozen=True)
