@@ -28,6 +28,10 @@ class WheelchairError(Exception):
     exit_code = 1
 
 
+class FormerName(UserWarning):
+    """A parameter was given by a name that it had before; it is read, and this says as what."""
+
+
 class UsageError(WheelchairError):
     """The question is wrong: an unknown option, identifier or name."""
 

@@ -118,6 +118,7 @@ class Parameter(Quantity):
     uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
     known_to: float | None = None  # standard deviation of one that was measured with a tape, in place of the relative one
     estimated: bool = True  # False for an effect's constants, which no fit touches
+    formerly: tuple[tuple[str, float], ...] = ()  # names, without the effect's, whose sum with these weights it has replaced
     mirror_given: bool = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:

@@ -111,12 +111,14 @@ def settings(run: Run, told: Chair, true: Truth) -> dict[str, float]:
     return out
 
 
-def record(run: Run, true: Truth, *, seed: int = 0) -> Recorded:
-    """Drive one run on the true chair and read its instruments, without noise."""
+def record(run: Run, true: Truth, *, seed: int = 0, turned: tuple[float, float] = (0.0, 0.0)) -> Recorded:
+    """Drive one run on the true chair, its left and right caster `turned` by so much [rad] at the start, and read its
+    instruments, without noise."""
     rng = _rng(seed, "run", run.name)
     time = np.arange(round(run.duration / INTERVAL) + 1) * INTERVAL
     F_rl, F_rr = run.draw(time, rng)
-    start = Start(u=run.u0 + (0.01 * rng.standard_normal() if run.u0 else 0.0))
+    left, right = turned
+    start = Start(u=run.u0 + (0.01 * rng.standard_normal() if run.u0 else 0.0), swivel_l=left, swivel_r=right)
     pressure = 1 + true.pressure_change / REFERENCE_PRESSURE if run.other_pressure else 1.0
     chair = replace(true.chair, m=true.chair.m + run.added_mass, pressure=pressure)
     tools = true.instruments
@@ -220,9 +222,10 @@ def make(
     seed: int = 0,
     chair: Mapping[str, float] | None = None,
     measured: float = 0.0,
+    turned: tuple[float, float] = (0.0, 0.0),
 ) -> Path:
     """Write a campaign. `chair` changes the chair itself, so both the file and the truth; `seed` fixes all that is random;
-    `measured` is as of `truth`."""
+    `measured` is as of `truth`, `turned` as of `record`."""
     unknown = set(channels) - set(NOISE) - {"F_rl", "F_rr"}
     if unknown:
         raise KeyError(f"no channel {', '.join(sorted(unknown))}; there are {', '.join(NOISE)}")
@@ -232,7 +235,7 @@ def make(
     names = ["F_rl", "F_rr", *(c for c in channels if c not in ("F_rl", "F_rr"))]
     (folder / "runs").mkdir(parents=True, exist_ok=True)
     for run in runs:
-        columns = noisy(record(run, true, seed=seed), names, noise, noise_scale, seed)
+        columns = noisy(record(run, true, seed=seed, turned=turned), names, noise, noise_scale, seed)
         (folder / "runs" / f"{run.name}.csv").write_text(_csv(columns), encoding="utf-8")
     sigmas = {name: float(f"{noise_scale * NOISE[name]:.6g}") for name in names}
     text = _toml(folder.name, told, sigmas, [(run, settings(run, told, true)) for run in runs])

@@ -95,7 +95,10 @@ def _at_least(old: float, new: float) -> float:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter: `where` is "chair.x", "instruments.x" or "pressure_change"; it is usually hidden at `pattern` times δ."""
+    """One parameter: `where` is "chair.x", "instruments.x" or "pressure_change"; it is usually hidden at `pattern` times δ.
+
+    `sides` are what the right and the left one get of it, where `where` has {} for one of a pair.
+    """
 
     where: str
     unit: str
@@ -103,13 +106,15 @@ class Parameter:
     sign: str
     pattern: float = 1.0
     combine: Callable[[float, float], float] = _add
+    sides: tuple[float, float] | None = None
 
     def put(self, truth: Truth, value: float) -> Truth:
         owner, _, name = self.where.rpartition(".")
         if not owner:
             return replace(truth, pressure_change=self.combine(truth.pressure_change, value))
         part = getattr(truth, owner)
-        changed = replace(part, **{name: self.combine(getattr(part, name), value)})
+        shares = {name: 1.0} if self.sides is None else dict(zip((name.format("r"), name.format("l")), self.sides, strict=True))
+        changed = replace(part, **{n: self.combine(getattr(part, n), share * value) for n, share in shares.items()})
         return replace(truth, chair=changed) if owner == "chair" else replace(truth, instruments=changed)
 
 
@@ -133,9 +138,13 @@ def _two(names: tuple[str, str], where: str, unit: str, delta: float, sign: str,
     return {n: Parameter(where.format(n), unit, delta, sign, pattern=k) for n, k in zip(names, (1.0, second), strict=True)}
 
 
-def _sides(where: str, unit: str, delta: float, sign: str, left: float, prefix: str = "") -> dict[str, Parameter]:
-    both = _two(("r", "l"), where, unit, delta, sign, left)
-    return {prefix + n: p for n, p in both.items()}
+def _sides(whole: str, where: str, unit: str, delta: float, sign: str, left: float) -> dict[str, Parameter]:
+    """Sum or mean, and right less left, of a pair: usually the right one is hidden at δ, the left one at `left` times that."""
+    one = 0.5 if whole == "sum" else 1.0
+    return {
+        whole: Parameter(where, unit, delta, f"both: {sign}", pattern=(1 + left) / (2 * one), sides=(one, one)),
+        "difference": Parameter(where, unit, delta, f"right less left: {sign}", pattern=1 - left, sides=(0.5, -0.5)),
+    }
 
 
 EFFECTS: dict[str, Effect] = {
@@ -157,10 +166,10 @@ EFFECTS: dict[str, Effect] = {
         _one("inv_slip", "chair.inv_slip", "1/rad", 5.0, "trail / sqrt(1 + ((3 + inv_slip) slip)^2)"), sees="fierce"
     ),
     "camber_misalignment": Effect(
-        _sides("chair.camber_{}", "rad", 0.005, "pushes the rolling wheel right; both alike turn the chair right", 0.2, "phi_")
+        _sides("sum", "chair.camber_{}", "rad", 0.005, "pushes the rolling wheel right; both alike turn the chair right", 0.2)
     ),
     "toe_misalignment": Effect(
-        _sides("chair.toe_{}", "rad", 0.005, "positive turns the wheel clockwise seen from above", 0.0, "tau_")
+        _sides("sum", "chair.toe_{}", "rad", 0.005, "positive turns the wheel clockwise seen from above", 0.0)
     ),
     "scrub_torque": Effect(_one("M", "chair.scrub", "N m", 0.2, "positive opposes the yaw rate, dry")),
     "scrub_torque_viscous": Effect(
@@ -204,7 +213,9 @@ EFFECTS: dict[str, Effect] = {
         _one("theta", "chair.cross_slope", "rad", 0.001, "positive: the floor falls to the chair's right, whatever its heading")
     ),
     "wheel_inertia": Effect(_one("m", "chair.m_spin", "kg", 1.0, "both rear wheels together, as mass along their heading")),
-    "push_force_gain": Effect(_sides("instruments.force_{}", "1", 0.02, "the record is (1 + gain) times the push", -0.5)),
+    "push_force_gain": Effect(
+        _sides("mean", "instruments.force_{}", "1", 0.02, "the record is (1 + gain) times the push", -0.5)
+    ),
     "push_force_delay": Effect(_one("tau", "instruments.force_early", "s", 0.01, "positive: the record is early")),
     "gyro_bias": Effect(_one("b", "instruments.gyro_bias", "rad/s", 0.003, "added to the reading")),
     "gyro_scale": Effect(_one("k", "instruments.gyro_scale", "1", 0.01, "the reading is (1 + k) times the rate")),
@@ -219,7 +230,9 @@ EFFECTS: dict[str, Effect] = {
     "accelerometer_tilt": Effect(
         _two(("roll", "pitch"), "instruments.{}", "rad", 0.005, "right side down: a_y - g roll; front up: a_x + g pitch", 0.6)
     ),
-    "wheel_radius_error": Effect(_sides("instruments.speed_{}", "1", 0.01, "the reading is (1 + error) times the speed", -0.5)),
+    "wheel_radius_error": Effect(
+        _sides("mean", "instruments.speed_{}", "1", 0.01, "the reading is (1 + error) times the speed", -0.5)
+    ),
     # Nothing below is in any catalogue.
     "caster_spring": Effect(
         _one("k", "chair.swivel_spring", "N m/rad", 0.5, "each caster is pulled straight by k sin(angle)"), catalogued=False

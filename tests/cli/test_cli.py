@@ -50,6 +50,26 @@ def test_simulate_writes_a_table_and_figures_and_prints_the_papers_numbers(tmp_p
     assert (tmp_path / "steady-turn.svg").read_bytes().startswith(b"<?xml")
 
 
+def test_former_names_are_read_with_one_note(tmp_path):
+    """On top of a file that has them too: one side is changed, the other stays."""
+    old, today = tmp_path / "old.toml", "effect.camber_misalignment"
+    old.write_text(f'[values]\n"{today}.phi_r" = 0.01\n"{today}.phi_l" = 0.02\n', encoding="utf-8")
+    by_old = wheelchair("simulate", "slalom", "--variant", old, "--set", f"{today}.phi_r=0.03", "-o", tmp_path)
+    was = rows_of(tmp_path / "slalom.csv")[-1]
+    by_new = wheelchair("simulate", "slalom", "--set", f"{today}.sum=0.05", "--set", f"{today}.difference=0.01", "-o", tmp_path)
+    assert by_old.exit_code == by_new.exit_code == 0
+    assert rows_of(tmp_path / "slalom.csv")[-1] == was
+    notes = [line for line in by_old.stderr.splitlines() if line.startswith("note: ")]
+    assert notes == [
+        f"note: {today}.phi_r and {today}.phi_l: former names, "
+        f"read as {today}.sum = 0.03 rad and {today}.difference = -0.01 rad",
+        f"note: {today}.phi_r: former name, read as {today}.sum = 0.05 rad and {today}.difference = 0.01 rad",
+    ]
+    assert "note: " not in by_new.stderr
+    both = wheelchair("simulate", "slalom", "--set", f"{today}.phi_r=0.03", "--set", f"{today}.sum=0.05")
+    assert both.exit_code == 2 and len(both.stderr.splitlines()) == 1 and "both are given" in both.stderr
+
+
 def test_set_reaches_the_fmu_and_more_cornering_stiffness_tightens_the_turn(tmp_path):
     radius = {}
     for stiffness in (2519, 10076):

@@ -13,23 +13,26 @@ from wheelchair_fmu.contracts.smooth import finite
 from wheelchair_fmu.engine.kernel import kernel, rate
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import Choice
 
 EFFECTS = bundled()
-CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS)]
+CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS), "slipping"]  # none, one, all; a law of casters
 
 
-def name(case: tuple[str, ...]) -> str:
+def name(case: tuple[str, ...] | str) -> str:
+    if isinstance(case, str):
+        return case
     return "none" if not case else case[0] if len(case) == 1 else "all"
 
 
 @pytest.fixture(params=CASES, ids=name)
 def variant(request) -> Variant:
-    return variant_with(*request.param)
+    return Variant(Choice(caster=request.param)) if isinstance(request.param, str) else variant_with(*request.param)
 
 
 def test_mirror_and_standstill(variant):
     """A mirrored chair in a mirrored motion has mirrored forces; at rest equations and all their slopes are finite."""
-    subject = Subject.of(variant.active())
+    subject = Subject(variant.active(), variant.model(), Variant(variant.choice).model())
     assert [*mirror(subject), *finite(subject)] == []
 
 

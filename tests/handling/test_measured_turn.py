@@ -44,8 +44,7 @@ def test_it_allows_for_load_that_shifts_and_wheels_that_lean():
     values = {
         "effect.lateral_load_transfer.h": 0.5,
         "effect.load_sensitivity.exponent": 0.0,
-        "effect.camber_misalignment.phi_l": 0.1,
-        "effect.camber_misalignment.phi_r": -0.1,
+        "effect.camber_misalignment.difference": -0.2,
     }
     motion = recorded(**values)
     upright = stiffness(motion, known(height=0.5), motion.time > 0.2)

@@ -55,7 +55,7 @@ def test_left_is_the_mirror_of_right_and_radius_the_inverse_of_force():
 
 def test_straight_on_and_with_wheels_that_lean():
     assert trim(chair(), 1.0, 0.0).radius == np.inf
-    leaning = chair(effects=["camber_misalignment"], **{"effect.camber_misalignment.phi_r": 0.01})
+    leaning = chair(effects=["camber_misalignment"], **{"effect.camber_misalignment.sum": 0.01})
     assert trim(leaning, 1.0, 0.0).radius > 0  # leans to the right, turns to the right
     straight = trim(leaning, 1.0, radius=np.inf)
     assert straight.straight and straight.delta_force < 0

@@ -99,8 +99,8 @@ def test_three_times_the_smallest_interesting_size_is_seen(effect):
 @pytest.mark.parametrize(
     ("effect", "channel", "run", "sign"),
     [
-        ({"camber_misalignment": {"phi_r": 0.02, "phi_l": 0.02}}, "yaw_rate", "straight-strokes", +1),
-        ({"toe_misalignment": {"tau_r": 0.01, "tau_l": 0.01}}, "v", "straight-strokes", +1),
+        ({"camber_misalignment": {"sum": 0.04}}, "yaw_rate", "straight-strokes", +1),
+        ({"toe_misalignment": {"sum": 0.02}}, "v", "straight-strokes", +1),
         ({"rolling_resistance_asymmetry": {"D": 1.0}}, "yaw_rate", "straight-strokes", -1),
         ({"floor_cross_slope": {"theta": 0.003}}, "y", "straight-strokes", +1),
         ({"floor_slope": {"x": 0.003}}, "wheel_speed_l", "coast-down", +1),
@@ -110,8 +110,8 @@ def test_three_times_the_smallest_interesting_size_is_seen(effect):
         ({"turn_slip": {"M": 2.0}}, "yaw_rate", "steady-right", -1),
         ({"turn_slip": {"M_f": 0.5}}, "yaw_rate", "steady-right", -1),
         ({"cm_lateral_offset": {"y": 0.01}}, "yaw_rate", "straight-strokes", +1),
-        ({"push_force_gain": {"l": 0.05}}, "F_rl", "coast-down", +1),
-        ({"wheel_radius_error": {"r": 0.02}}, "wheel_speed_r", "coast-down", +1),
+        ({"push_force_gain": {"mean": 0.025, "difference": -0.05}}, "F_rl", "coast-down", +1),
+        ({"wheel_radius_error": {"mean": 0.01, "difference": 0.02}}, "wheel_speed_r", "coast-down", +1),
         ({"gyro_bias": {"b": 0.01}}, "yaw_rate", "coast-down", +1),
         ({"accelerometer_tilt": {"pitch": 0.01}}, "a_x", "coast-down", +1),
         ({"accelerometer_tilt": {"roll": 0.01}}, "a_y", "coast-down", -1),

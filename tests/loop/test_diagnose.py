@@ -115,12 +115,12 @@ def test_the_size_of_several_parameters_is_what_the_data_see_of_it():
 
 def test_an_effect_is_judged_from_its_own_starts(tmp_path):
     """Both wheels larger than they are said to be: every speed is off by as much, those at the start of each run too."""
-    campaign = read(make(tmp_path / "campaign", {"wheel_radius_error": {"r": 0.03, "l": 0.03}}, seed=2))
+    campaign = read(make(tmp_path / "campaign", {"wheel_radius_error": {"mean": 0.03}}, seed=2))
     found = diagnose(campaign)
     assert found.effects == ("wheel_radius_error",)
     (judged,) = (c for c in found.rounds[0].candidates if c.effect == "wheel_radius_error")
     assert judged.heldout.rms == pytest.approx(found.ladder[-1].heldout, abs=0.01) and judged.heldout.rms < 1.05
-    assert found.final.values["effect.wheel_radius_error.r"] == pytest.approx(0.03, abs=0.004)
+    assert found.final.values["effect.wheel_radius_error.mean"] == pytest.approx(0.03, abs=0.004)
 
 
 @pytest.mark.nightly
@@ -142,10 +142,11 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
 
 
 def test_toe_of_opposite_signs_is_found(tmp_path):
-    campaign = read(make(tmp_path / "campaign", {"toe_misalignment": {"tau_r": -0.015, "tau_l": 0.012}}, seed=2))
+    campaign = read(make(tmp_path / "campaign", {"toe_misalignment": {"sum": -0.003, "difference": -0.027}}, seed=2))
     found = diagnose(campaign)
     assert "toe_misalignment" in found.effects and found.ladder[-1].left < 1.05
-    assert found.final.values["effect.toe_misalignment.tau_r"] < 0 < found.final.values["effect.toe_misalignment.tau_l"]
+    toe_in = found.final.values["effect.toe_misalignment.difference"]
+    assert toe_in < -0.01 and abs(found.final.values["effect.toe_misalignment.sum"]) < abs(toe_in)
 
 
 def test_look_alikes_are_tied_where_nothing_tells_them_apart():

@@ -16,9 +16,9 @@ from wheelchair_fmu.loop.fit import Problem, fit
 from wheelchair_fmu.loop.noise import Colour
 from wheelchair_fmu.model.variant import Variant
 
-TOE = ("effect.toe_misalignment.tau_r", "effect.toe_misalignment.tau_l")
+TOE = ("effect.toe_misalignment.sum", "effect.toe_misalignment.difference")
 NAMES = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", *TOE)
-FAR = dict(zip(TOE, (0.02, 0.0), strict=True))  # as far as a search looks
+FAR = dict(zip(TOE, (0.02, 0.02), strict=True))  # as far as a search looks
 
 
 @pytest.fixture(scope="module")

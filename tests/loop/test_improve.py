@@ -50,7 +50,7 @@ def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
     toed = add(sample, dragging.variant, "toe_misalignment")
     assert [step.name for step in toed.ladder[2:]] == ["+rolling_resistance_asymmetry", "+toe_misalignment"]
     assert abs(toed.ladder[-1].heldout - dragging.ladder[-1].heldout) < 0.01
-    toe = "effect.toe_misalignment.tau_r"
+    toe = "effect.toe_misalignment.sum"
     assert abs(toed.fit.values[toe]) < 3 * standard_errors(toed.fit)[toe]
 
 

@@ -15,7 +15,7 @@ from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.variant import Variant
 
 DRAG = "effect.rolling_resistance_asymmetry.D"
-TOE = ("effect.toe_misalignment.tau_r", "effect.toe_misalignment.tau_l")
+TOE = ("effect.toe_misalignment.sum", "effect.toe_misalignment.difference")
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,7 @@ LONG = 800  # samples of a run
 EFFECTS = {  # of the catalogue, by what kind of test they ask for
     "one-sided": ("scrub_torque", ("effect.scrub_torque.M",)),
     "two-sided": ("gyro_bias", ("effect.gyro_bias.b",)),
-    "two parameters": ("camber_misalignment", ("effect.camber_misalignment.phi_r", "effect.camber_misalignment.phi_l")),
+    "two parameters": ("camber_misalignment", ("effect.camber_misalignment.sum", "effect.camber_misalignment.difference")),
 }
 
 

@@ -9,7 +9,7 @@ from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
-SIGMA, TOE = "effect.relaxation_length.sigma", "effect.toe_misalignment.tau_r"
+SIGMA, TOE = "effect.relaxation_length.sigma", "effect.toe_misalignment.sum"
 
 
 @pytest.fixture(scope="module")

@@ -76,7 +76,7 @@ def test_torque_changes_sides_in_reverse():
 
 
 def test_camber_pushes_no_chair_at_rest():
-    camber = {"effect.camber_misalignment.phi_r": 0.05, "effect.camber_misalignment.phi_l": 0.05, "start.u": 0.0}
+    camber = {"effect.camber_misalignment.sum": 0.1, "start.u": 0.0}
     np.testing.assert_array_equal(run(camber).states, 0)
 
 

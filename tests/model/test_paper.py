@@ -70,7 +70,8 @@ def test_equations_9_to_23_to_the_letter():
     for _ in range(20):
         u, v, r = rng.uniform(0.5, 2), rng.normal(0, 0.1), rng.normal(0, 0.5)
         F_rl, F_rr, phi_r, phi_l = *rng.normal(0, 20, 2), *rng.normal(0, 0.02, 2)
-        p = variant.with_values({"effect.camber_misalignment.phi_r": phi_r, "effect.camber_misalignment.phi_l": phi_l})
+        sides = {"sum": phi_r + phi_l, "difference": phi_r - phi_l}
+        p = variant.with_values({f"effect.camber_misalignment.{name}": angle for name, angle in sides.items()})
         w = np.array([i.start for i in model.inputs])
         w[:2] = F_rl, F_rr
         place = Place(np.array([0, 0, 0, u, v, r]), w, p.vector())
@@ -143,7 +144,7 @@ def test_stiffness_moves_the_radius_by_up_to_seven_per_cent():
 
 
 def camber(angle_deg: float) -> dict[str, float]:
-    return dict.fromkeys(("effect.camber_misalignment.phi_r", "effect.camber_misalignment.phi_l"), np.radians(angle_deg))
+    return {"effect.camber_misalignment.sum": 2 * np.radians(angle_deg)}
 
 
 def test_positive_camber_tightens_the_turn_and_makes_the_slalom_drift():

@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 
-from wheelchair_fmu.errors import Failure, SystemStructureError
+from wheelchair_fmu.errors import Failure, FormerName, SystemStructureError
 from wheelchair_fmu.studies.ssp import unpacking
 from wheelchair_fmu.studies.ssp.checking import check
 from wheelchair_fmu.studies.ssp.running import run
@@ -195,3 +195,34 @@ def test_a_name_that_no_disk_takes_is_no_traceback(slalom, tmp_path):
         archive.writestr("x" * 300, "x")
     with pytest.raises(Failure, match=r"bad.ssp: not a zip archive that can be read"):
         check(path)
+
+
+OLD = '"chair.m">\n      <ssv:Real value="80" unit="kg"/>\n    </ssv:Parameter>'
+CAMBER = "effect.camber_misalignment"
+
+
+def parameters(**angles: float) -> str:
+    """The mass and these angles, in place of the mass alone."""
+    more = (f'<ssv:Parameter name="{CAMBER}.{n}"><ssv:Real value="{v}"/></ssv:Parameter>' for n, v in angles.items())
+    return OLD + "".join(more)
+
+
+def test_former_names_in_a_parameter_set_are_read(altered):
+    path = altered({CHAIR: (OLD, parameters(phi_r=0.02, phi_l=0.01))})
+    with pytest.warns(FormerName, match=rf"{CAMBER}.sum = 0.03 rad and {CAMBER}.difference = 0.01 rad") as told:
+        trace = run(path, stop=0.1)
+    assert len({str(w.message) for w in told}) == 1
+    assert trace.parameters[f"Chair.{CAMBER}.sum"] == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(
+    ("angles", "told"),
+    [
+        ({"phi_r": 0.02, "sum": 0.01}, "is the former name of a part of .*and both are given; give"),
+        ({"phi_r": 0.7}, rf"Parameter {CAMBER}.sum: 0.7 is outside the bounds -0.6 to 0.6 rad of Chair"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::wheelchair_fmu.errors.FormerName")
+def test_faults_of_former_names(angles, told, altered):
+    faults = [str(fault) for fault in check(altered({CHAIR: (OLD, parameters(**angles))}))]
+    assert any(re.search(told, fault) for fault in faults), "\n".join(faults)

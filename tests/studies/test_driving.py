@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.errors import Failure, SimulationError, UsageError
+from wheelchair_fmu.errors import Failure, FormerName, SimulationError, UsageError
 from wheelchair_fmu.fmu.build import build, with_chosen_effects
 from wheelchair_fmu.handling.manoeuvres import MANOEUVRES, manoeuvre
 from wheelchair_fmu.model.variant import Variant
@@ -128,3 +128,11 @@ def test_closing_leaves_no_files_behind():
         folder = Path(driven._folder)
         assert (folder / "modelDescription.xml").is_file()
     assert not folder.exists()
+
+
+def test_former_names_are_read_where_the_fmu_has_todays(fmu):
+    with pytest.warns(FormerName, match="former name, read as"):
+        given = fmu.checked({"effect.toe_misalignment.tau_r": "0.01", "chair.m": 81})
+    assert given == pytest.approx(
+        {"chair.m": 81, "effect.toe_misalignment.sum": 0.01, "effect.toe_misalignment.difference": 0.01}
+    )

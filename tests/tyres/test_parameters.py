@@ -77,7 +77,9 @@ def test_the_fmu_gives_the_fitted_force(disc, law, condition, tmp_path):
 @pytest.mark.parametrize("condition", CONDITIONS, ids=str)
 def test_the_model_gives_the_fitted_torque_and_camber_force(disc, law, condition):
     fit = at(disc, *condition)
-    variant = chair(disc, fit, law).with_values({"effect.camber_misalignment.phi_l": 0.05})
+    variant = chair(disc, fit, law).with_values(
+        {"effect.camber_misalignment.sum": 0.05, "effect.camber_misalignment.difference": -0.05}
+    )
     variant = variant.with_values({"chair.m": on_load(variant, fit.condition.load)})
     model = variant.model()
     q = model.quantities

@@ -12,7 +12,7 @@ from typing import TypeVar
 from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of, together
-from ..loop.evidence import START, Bench
+from ..loop.evidence import Bench
 from ..loop.fit import fit, start_value
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
@@ -68,7 +68,7 @@ def _through_fmu(
             say(f"simulating {name}")
             found = []
             for e in islice(evidence, len(parts)):
-                given = {**measured.known, **values, **{n: e.start[n] for n in START}}
+                given = {**measured.known, **values, **e.started}
                 given = {n: v for n, v in given.items() if n in fmu.parameters}
                 predicted = run_campaign_run(fmu, bench.on_time(e.run, values, e.start), given)
                 found.append(errors_of(e, predicted, REGIMES, results))

@@ -12,6 +12,7 @@ import pandas as pd
 
 from ..errors import UsageError
 from ..handling.manoeuvres import Manoeuvre, manoeuvre
+from ..model.former import renamed
 from ..studies import Fmu, Result, fmu_of
 from .frames import framed
 from .variants import Values, Variant, chair_of
@@ -76,7 +77,7 @@ def driven(
     own: dict[str, float] = {}
     if fmu is None:
         chair, chosen = chair_of(variant, values, effects, equations)
-        fmu, own = fmu_of(chair, chosen), dict(chair.values)
+        fmu, own, values = fmu_of(chair, chosen), dict(chair.values), renamed(values, chair.values)[0]
     with Fmu(fmu) as drive:
         known = {n: v for n, v in own.items() if n in drive.parameters}
         given = drive.checked({**known, **course.values, **values})

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..faults import ERROR, Fault, not_utf8
 from ..given import toml, what_is
+from ..model.former import renamed
 
 FILE = "campaign.toml"
 REPEATED = ("run", "recording")  # written [[run]], each a list
@@ -36,6 +37,11 @@ def flatten(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
             yield from flatten(value, name)
         else:
             yield name, value
+
+
+def numbers(table: Mapping[str, Any]) -> dict[str, float]:
+    """What in the table is a finite number."""
+    return {name: plain for name, value in table.items() if (plain := number(value)) is not None}
 
 
 @dataclass(frozen=True)
@@ -105,6 +111,10 @@ class Document:
         if "g" in self.data:
             found["g"] = self.data["g"]
         return found
+
+    def known(self, names: tuple[str, ...]) -> dict[str, float]:
+        """The parameters that are numbers, by today's names. Raises UsageError where a former one stands beside these."""
+        return renamed(numbers(self.parameters(names)), {})[0]
 
     def line(self, path: str, run: int | None = None) -> int | None:
         """Line of the dotted key, or of the nearest table that holds it."""

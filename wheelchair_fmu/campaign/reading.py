@@ -12,12 +12,13 @@ from typing import Any
 from ..errors import CampaignError
 from ..faults import ERROR, SHOWN, Fault, once
 from ..given import what_is
+from ..model.former import renamed
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
 from .devices import Part, parts, point_of
-from .document import Document, Entry, flatten, load, number
+from .document import Document, Entry, flatten, load, numbers
 from .draft import prepare
 from .noise import gather
 from .recorded import Recorded
@@ -136,17 +137,20 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
     nuisance = {key: value for key, value in doc.table("nuisance").items() if value is not False}
     runs = [run for run in assembly.runs if not run.silent]
     names = _unique([run.name for run in runs])
+    stated = doc.known(parameter_tables(known))
     return Campaign(
         name=name if isinstance(name, str) else doc.folder.resolve().name,
         path=doc.path,
         axes=doc.axes or SAE,
-        known={**_mounted(doc, runs), **_numbers(doc.parameters(parameter_tables(known)))},
-        priors=_numbers(dict(flatten(doc.table("prior")))),
+        known={**_mounted(doc, runs), **stated},
+        priors=numbers(dict(flatten(doc.table("prior")))),
         noise=noise.sd,
         noise_estimated=noise.estimated,
         nuisance=tuple(channel for channel in CHANNEL_NAMES if channel in nuisance),
         nuisance_sd=noise.nuisance_sd,
-        runs=tuple(_run(run, name, assembly.rims.get(run.entry.place, {})) for run, name in zip(runs, names, strict=True)),
+        runs=tuple(
+            _run(run, name, assembly.rims.get(run.entry.place, {}), stated) for run, name in zip(runs, names, strict=True)
+        ),
         fingerprint=_fingerprint(doc),
         warnings=warnings,
         rims={
@@ -157,7 +161,7 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
     )
 
 
-def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
+def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, float]) -> Run:
     entry = run.entry
     inputs, unsure = corrected(run, of)
     assert run.time is not None  # a file without time is an error, so no campaign is made
@@ -167,7 +171,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim]) -> Run:
         manoeuvre=entry.text("manoeuvre"),
         role=entry.text("role"),
         u0=run.u0,
-        set=_numbers(dict(flatten(entry.table("set")))),
+        set=renamed(numbers(dict(flatten(entry.table("set")))), stated)[0],
         time=run.time,
         inputs={BY_NAME[c].fmu: series for c, series in inputs.items()},
         channels=run.measured,
@@ -187,10 +191,6 @@ def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:
         at = next((points[name] for name in names if points.get(name)), None)
         known |= {} if at is None else {f"effect.{effect}.{axis}": value for axis, value in zip("xy", at, strict=True)}
     return known
-
-
-def _numbers(table: Mapping[str, Any]) -> dict[str, float]:
-    return {name: plain for name, value in table.items() if (plain := number(value)) is not None}
 
 
 def _unique(names: Sequence[str]) -> list[str]:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from ..contracts.own import catalogue
 from ..errors import UsageError, unknown
+from ..model.alike import look_alikes
 from ..model.effects import NAME, bundled
 from ..model.stage import Effect
 from ..quantities import Parameter
@@ -75,6 +76,8 @@ def show(
         out.print(f"in the default FMU: {'yes' if told['in_default_fmu'] else 'no'}")
     else:
         out.print("your own; it keeps every contract that the bundled effects keep")
+    for a in told["alike"]:
+        out.print(f"looks like {', '.join(a['with'])} in {a['what']}; told by {a['told_by']}")
     for p in told["parameters"]:
         out.print(f"\n{p['name']} [{p['unit']}]: {p['meaning']}")
         out.print(f"    off at {p['default']:g}" if p["estimated"] else f"    a constant, {p['default']:g} unless set")
@@ -127,6 +130,9 @@ def record(effect: Effect) -> dict[str, Any]:
         "states": [f"effect.{effect.id}.{name}" for row in effect.rows for name in row.state.names],
         "needs": dict(effect.needs),
         "in_default_fmu": effect.stateless,
+        "alike": [
+            {"what": a.what, "with": list(look_alikes(effect, a, bundled())), "told_by": a.told_by} for a in effect.alike
+        ],
         "parameters": [_parameter(p) for p in effect.owned],
     }
 

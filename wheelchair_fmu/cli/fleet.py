@@ -16,6 +16,7 @@ from ..errors import UsageError
 from ..fleet import Fleet, folders, long, summary
 from ..loop.subject import chair
 from ..model.effects import sources
+from ..model.former import current
 from ..model.recipe import Recipe
 from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
@@ -44,7 +45,8 @@ def fleet(
         raise UsageError(f"-o {output}: give a name that ends in {' or '.join(ENDINGS)}")
     pool = pool_of(address, workers)
     recipe = Recipe.of(chair(variant, effects), sources(effects) if effects else ())
-    job = Fleet(folders(campaigns), tuple(parse(settings or ()).items()), recipe)
+    given = current(parse(settings or ()), dict(recipe.values))
+    job = Fleet(folders(campaigns), tuple(given.items()), recipe)
     job.chair()  # a wrong question is told before anything is done
     whole = output.with_suffix(".parquet")
     if is_done(job, whole):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -14,7 +15,7 @@ from rich.text import Text
 from typer.core import TyperGroup
 
 from ..errors import INTERRUPTED as SAID
-from ..errors import WheelchairError
+from ..errors import FormerName, WheelchairError
 from ..writing import FULL
 from .terminal import console, printable
 
@@ -42,7 +43,10 @@ class Group(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                warnings.simplefilter("default", FormerName)
+                warnings.showwarning = partial(_noted, warnings.showwarning)
+                return super().invoke(ctx)
         except (typer.Exit, typer.Abort):
             raise
         except BrokenPipeError:  # who reads our output has seen enough
@@ -62,6 +66,14 @@ class Group(TyperGroup):
             message, code = ending(error)
         console(stderr=True).print(message)
         raise typer.Exit(code) from None
+
+
+def _noted(usual: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
+    """A note of ours in a line, other warnings as Python shows them."""
+    if issubclass(category, FormerName):
+        console(stderr=True).print(f"note: {message}")
+    else:
+        usual(message, category, *place)
 
 
 def ending(error: BaseException) -> tuple[str, int]:

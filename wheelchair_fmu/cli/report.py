@@ -11,6 +11,7 @@ import typer
 from ..api.diagnosing import page_of, searched
 from ..campaign import Campaign, windows
 from ..errors import Failure
+from ..model.former import former
 from ..writing import written
 from .group import Progress, working
 from .settings import subject
@@ -54,4 +55,7 @@ def _read(file: Path, measured: Campaign) -> dict[str, Any]:
         raise Failure(f"{file}: no diagnosis; give what `wheelchair diagnose --json` wrote")
     if told["campaign"] != measured.name:
         raise Failure(f"{file}: a diagnosis of {told['campaign']!r}, not of {measured.name!r}; diagnose this campaign")
+    named = (f"effect.{row['effect']}.{name}" for row in told["ranking"] for name in row["parameters"])
+    if old := dict(former(named)):
+        raise Failure(f"{file}: has the former names {', '.join(old)}, from an earlier version; diagnose the campaign again")
     return told

@@ -16,7 +16,7 @@ from ..api.comparing import TUNING
 from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
-from ..loop.evidence import START, Bench
+from ..loop.evidence import Bench
 from ..loop.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
 from ..studies.sweep.indices import indices
@@ -105,7 +105,7 @@ def _job(plan: Plan, engine: str) -> Job:
                     e.channels,
                     e.ruler().errors,
                     measured.known,
-                    {**e.run.set, **{name: e.start[name] for name in START}},
+                    {**e.run.set, **e.started},
                 )
                 for e in found.runs
             )

@@ -7,13 +7,13 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..model.stage import Contribution, Effect, Row
+from ..model.stage import Alike, Contribution, Effect, Row
 from ..model.variant import LAWS
 from ..quantities import Parameter, State, Unit
 from .subject import Breach
 
 MIRROR = re.compile(r"[+-]\w*")
-ROLES = {"parameters": Parameter, "constants": Parameter, "contributions": Contribution, "rows": Row}
+ROLES = {"parameters": Parameter, "constants": Parameter, "contributions": Contribution, "rows": Row, "alike": Alike}
 NUMBERS = ("default", "lower", "upper", "off", "nominal", "smallest_interesting", "uncertainty")
 
 

@@ -26,10 +26,13 @@ from .local import Marginal, felt, locals_of, rate_of, read, slope
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
+CASTERS = ("start.caster_l", "start.caster_r")  # of a model whose casters swing: nobody films them as a rule
 POSE = START[:3]
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
+CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to where it stands
+ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
@@ -65,7 +68,7 @@ class Weighed:
 @dataclass(frozen=True)
 class RunEvidence:
     """One run: innovations r (n, nz) with NaN in gaps, their sensitivities S (n, nz, k) by parameters and start_S
-    (n, nz, 6 + l) by the start and by what else is uncertain of this run only, and the filter that they went through."""
+    (n, nz, m + l) by the start and by what else is uncertain of this run only, and the filter that they went through."""
 
     run: Run
     channels: tuple[str, ...]
@@ -82,8 +85,18 @@ class RunEvidence:
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
         good = np.isfinite(self.r)
-        told = self.start_S[good][:, list(uncertain(self.run)).index(name)]
+        told = self.start_S[good][:, list(self.uncertain).index(name)]
         return prior_sd * float(np.sqrt(max(0.0, 1 - prior_sd**2 * float(told @ told))))
+
+    @property
+    def uncertain(self) -> dict[str, float]:
+        """Standard deviations of what is estimated of the run for itself."""
+        return uncertain(self.run, starts_of(self.start))
+
+    @property
+    def started(self) -> dict[str, float]:
+        """Where the simulation started, by parameters of the model."""
+        return {n: self.start[n] for n in starts_of(self.start)}
 
     def brief(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
@@ -227,10 +240,11 @@ class Bench:
         derives: bool = True,
     ):
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
-        wanted = None if columns is None else (*columns, *START)
+        self.start_names = starts_of(p.name for p in self.variant.parameters())
+        wanted = None if columns is None else (*columns, *self.start_names)
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
         self.colour = colour or Colour(campaign.noise)
-        self.starts: dict[str, dict[str, float]] = {r.name: prior_start(r, self.known(r)) for r in campaign.runs}
+        self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -238,6 +252,9 @@ class Bench:
         self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
         self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
+
+    def _prior(self, run: Run) -> dict[str, float]:
+        return prior_start(run, self.known(run), self.start_names)
 
     def known(self, run: Run) -> dict[str, float]:
         """What the campaign file says of this run's chair."""
@@ -301,7 +318,7 @@ class Bench:
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         e = self._one(run, values, by)
         for _ in range(rounds):
-            better, sd = self._better_start(e), uncertain(run)
+            better, sd = self._better_start(e), e.uncertain
             if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
@@ -311,28 +328,29 @@ class Bench:
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
         """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
         good = np.isfinite(e.r)
-        prior, sd = prior_start(e.run, self.known(e.run)), uncertain(e.run)
+        prior, sd = self._prior(e.run), e.uncertain
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
     def _one(self, run: Run, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
         channels, which, pushes = self._channels(run), self._which(run), pushes_of(run)
-        start = self.starts[run.name]
+        prior, sd = self._prior(run), start_sd(run, self.start_names)
+        found = self.starts[run.name]  # maybe by a model with casters of another kind
+        start = {**prior, **{n: v for n, v in found.items() if n in prior or n not in CASTERS}}
         given, w = self._given(run, values, start)
-        columns = [n for n in (*by, *START) if n not in self._delays and n not in self.offsets]
+        columns = [n for n in (*by, *self.start_names) if n not in self._delays and n not in self.offsets]
         simulated = self.sensitivities.run(run.time, w, given, columns, tolerance=TOLERANCE)
         measured = self._measured(run, values)
         predicted = read(run, channels, simulated.readings[:, which], start)
-        prior, sd = prior_start(run, self.known(run)), start_sd(run)
-        to_state = simulated.start[:, [columns.index(n) for n in START]]  # (nx, 6)
-        spread = to_state * [sd[n] for n in START]
+        to_state = simulated.start[:, [columns.index(n) for n in self.start_names]]  # (nx, m)
+        spread = to_state * [sd[n] for n in self.start_names]
         noise = self._noise(run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
         unknown = disturbance(self.colour, len(pushes), given[self._tread]) if self.colour.force or self.colour.moment else None
         filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
         constants = locals_of(run)
         by_constant = [slope(c, run, channels, predicted, pushes, filter_) for c in constants]
-        k, m = len(by), len(START)
+        k, m = len(by), len(self.start_names)
         signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
         signals[:, :, 0] = measured - predicted
         self._fill_columns(signals[:, :, 1 : 1 + k + m], run, simulated, w[:, there], by, columns, which, filter_)
@@ -340,7 +358,7 @@ class Bench:
             signals[:, :, 1 + k + m + j] = column
         whitener = Marginal(filter_, signals[:, :, 1 + k + m :] * [c.sd for c in constants])
         offset = np.concatenate(
-            (to_state @ [prior[n] - start[n] for n in START], [-start.get(c.name, 0.0) / c.sd for c in constants])
+            (to_state @ [prior[n] - start[n] for n in self.start_names], [-start.get(c.name, 0.0) / c.sd for c in constants])
         )
         white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
@@ -360,7 +378,13 @@ class Bench:
 
     def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """Parameters (np,) and inputs (n, nw) of a run; what the run itself sets stands."""
-        given = {**self.variant.values, **self.known(run), **values, **run.set, **{n: start[n] for n in START}}
+        given = {
+            **self.variant.values,
+            **self.known(run),
+            **values,
+            **run.set,
+            **{n: start.get(n, 0.0) for n in self.start_names},
+        }
         return self.variant.vector(given), self.inputs(self.on_time(run, values, start))
 
     def on_time(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> Run:
@@ -391,8 +415,8 @@ class Bench:
         which: Sequence[int],
         whitener: Whitener,
     ) -> None:
-        """Unwhitened sensitivities into zeros (n, nz, len(by) + 6). `pushed` (n, nq) are the recorded pushes."""
-        names = (*by, *START)
+        """Unwhitened sensitivities into zeros (n, nz, len(by) + m). `pushed` (n, nq) are the recorded pushes."""
+        names = (*by, *self.start_names)
         free = [j for j, name in enumerate(names) if name not in run.set]
         derived = [j for j in free if names[j] in columns]
         at = [columns.index(names[j]) for j in derived]
@@ -438,9 +462,15 @@ def pushes_of(run: Run) -> tuple[str, ...]:
     return tuple(BY_NAME[n].fmu for n in names)
 
 
-def uncertain(run: Run) -> dict[str, float]:
+def starts_of(names: Iterable[str]) -> tuple[str, ...]:
+    """Those of the names, a model's parameters or more, that say where a run starts."""
+    there = set(names)
+    return tuple(n for n in (*START, *CASTERS) if n in there)
+
+
+def uncertain(run: Run, names: Sequence[str] = START) -> dict[str, float]:
     """Standard deviations of what is estimated of a run for itself: its start, then its clocks and baselines."""
-    return {**start_sd(run), **{c.name: c.sd for c in locals_of(run)}}
+    return {**start_sd(run, names), **{c.name: c.sd for c in locals_of(run)}}
 
 
 def block_length(run: Run) -> int:
@@ -448,7 +478,7 @@ def block_length(run: Run) -> int:
     return max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
 
 
-def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
+def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START) -> dict[str, float]:
     """Where a run is expected to start: as it is set, or else as its first samples and what is known say."""
     first = run.time <= run.time[0] + FIRST
 
@@ -461,7 +491,7 @@ def prior_start(run: Run, known: Mapping[str, float]) -> dict[str, float]:
     found = _of_the_cm(run, found, known)
     if run.u0 is not None:
         found["start.u"] = run.u0
-    return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in START}
+    return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in names}
 
 
 def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) -> dict[str, float]:
@@ -473,7 +503,10 @@ def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) ->
     return {name: value - lever.get(name, 0.0) * (TELLS[name].name in run.channels) for name, value in found.items()}
 
 
-def start_sd(run: Run) -> dict[str, float]:
-    """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be."""
+def start_sd(run: Run, names: Sequence[str] = START) -> dict[str, float]:
+    """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be. Casters may
+    stand as they like where the chair does."""
+    rolled = prior_start(run, {})["start.u"] / ROLLED
     pose = {name: POSE_SD if TELLS[name].name in run.channels else 0.0 for name in POSE}
-    return {name: 0.0 if name in run.set else sd for name, sd in {**pose, **START_SD}.items()}
+    casters = dict.fromkeys(CASTERS, CASTER_SD / (1 + rolled * rolled))
+    return {name: 0.0 if name in run.set else {**pose, **START_SD, **casters}[name] for name in names}

@@ -105,7 +105,7 @@ def seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def size_seen(size: np.ndarray, covariance: np.ndarray) -> float:
     """How large an effect of this size, in units of δ, is along the directions that the data can see, beside δ of the one
-    parameter that shows most in these: for left and right camber, of which only the sum shows, (right + left) / δ."""
+    parameter that shows most in these: for camber, of which only the sum shows, sum / δ."""
     seen = seen_axes(covariance)[0]
     return float(np.linalg.norm(seen.T @ size) / np.linalg.norm(seen, axis=1).max())
 

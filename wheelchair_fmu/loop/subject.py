@@ -9,12 +9,15 @@ from pathlib import Path
 from ..campaign import Campaign
 from ..contracts.own import catalogue
 from ..model.effects import bundled
-from ..model.variant import Variant, read_variant
+from ..model.former import current
+from ..model.variant import LAWS, Variant, read_variant
+from ..model.wheelchair import Choice
 
 
 def known_parameters() -> dict[str, tuple[float, float]]:
     """Bounds, in SI units, of every parameter that a campaign may name."""
-    return {p.name: (p.lower, p.upper) for p in Variant().with_effects(bundled()).parameters()}
+    laws = (Variant(Choice(caster=law)).with_effects(bundled()) for law in LAWS["caster"])
+    return {p.name: (p.lower, p.upper) for law in laws for p in law.parameters()}
 
 
 def chair(variant: Path | None, effects: Path | None) -> Variant:
@@ -30,6 +33,7 @@ def applied(
 
     Raises UsageError as `Variant.with_values` does.
     """
+    values = current(values, variant.values)
     variant = variant.with_values(values)
     known = {n: variant.values[n] for n in values if n in variant.values and not n.startswith("effect.")}
     return variant, replace(measured, known={**measured.known, **known}), tuple(values)

@@ -14,8 +14,9 @@ from pathlib import Path
 from ..quantities import Parameter, Quantity
 from ..writing import written
 from . import effects as package
+from .alike import look_alikes
 from .effects import bundled
-from .stage import Effect
+from .stage import Alike, Effect
 from .wheelchair import Choice, assemble
 
 HEAD = """# The effects
@@ -38,10 +39,17 @@ def section(effect: Effect) -> str:
     """One effect: what its file says of it, its parameters, what it acts on and what it needs."""
     said = inspect.getdoc(import_module(f"{package.__name__}.{effect.id}")) or ""
     parts = [f"## {effect.id}", said, _table(effect.parameters), f"Acts on {_targets(effect)}.{_needs(effect)}"]
+    parts += [_alike(effect, a) for a in effect.alike]
     if effect.constants:
         constants = "; ".join(f"`{c.name}` = {c.default:g} {c.unit.name}, {c.meaning} ({c.source})" for c in effect.constants)
         parts.append(f"Not estimated: {constants}.")
     return "\n\n".join(parts)
+
+
+def _alike(effect: Effect, a: Alike) -> str:
+    return (
+        f"Looks like {', '.join(f'`{other}`' for other in look_alikes(effect, a, bundled()))} in {a.what}; told by {a.told_by}."
+    )
 
 
 def _table(parameters: Sequence[Parameter]) -> str:

@@ -94,6 +94,18 @@ class Alternative:
     stages: tuple[Stage, ...]
     parameters: tuple[Parameter, ...] = ()
     rows: tuple[Row, ...] = ()
+    loads: Stage | None = None  # in place of the chair's, where wheels do not touch the floor where that takes them to
+    serves: tuple[str, ...] = ()  # laws that effects may ask for and have this one instead
+
+
+@dataclass(frozen=True)
+class Alike:
+    """What several effects do alike: those whose records hold this, and `with_parameters` of the chair. `told_by` is what tells
+    them apart."""
+
+    what: str
+    told_by: str
+    with_parameters: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -114,6 +126,7 @@ class Effect:
     even: bool = False  # the response is (nearly) even in the parameters: the slope at zero says little
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
     absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
+    alike: tuple[Alike, ...] = ()  # what it does that others do as well
 
     @cached_property
     def owned(self) -> tuple[Parameter, ...]:

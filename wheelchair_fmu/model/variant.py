@@ -4,7 +4,7 @@
 
     [laws]
     tyre = "linear"          # linear | dugoff | magic_formula
-    caster = "ideal"         # ideal | swivelling
+    caster = "ideal"         # ideal | swivelling | slipping
     equations = "extended"   # extended | paper
     effects = ["relaxation_length"]
 
@@ -31,8 +31,9 @@ from ..given import toml
 from ..quantities import Parameter
 from . import caster, tyre
 from .effects import bundled
+from .former import current
 from .stage import Effect
-from .wheelchair import Choice, Model, assemble, base_parameters
+from .wheelchair import Choice, Model, assemble, base_parameters, serves
 
 LAWS = {
     "tyre": tuple(tyre.LAWS),
@@ -66,15 +67,17 @@ class Variant:
         for effect in ids:
             if effect not in self.catalogue:
                 raise unknown("effect", effect, self.catalogue)
-        needs = {kind: law for effect in ids for kind, law in self.catalogue[effect].needs.items()}
+        every = (need for effect in ids for need in self.catalogue[effect].needs.items())
+        needs = {kind: law for kind, law in every if not serves(self.choice, kind, law)}
         more = tuple(e for e in ids if e not in self.effects)
         return replace(self, effects=(*self.effects, *more), choice=replace(self.choice, **needs))
 
     def with_values(self, values: Mapping[str, float | str]) -> Variant:
-        """The same with other values; a value of an effect that is off switches it on.
+        """The same with other values; a value of an effect that is off switches it on. Former names are read, with a warning.
 
         Raises UsageError for an unknown name, a number out of bounds or a word that is no choice.
         """
+        values = current(values, self.values)
         on = [
             e
             for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)

@@ -179,7 +179,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.wheel_planes,
         chassis.floor,
         chassis.gravity,
-        chassis.loads,
+        caster_law.loads or chassis.loads,
         common.inflation,
         common.tyres,
         common.slip_paper if paper else common.slip,
@@ -200,6 +200,12 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         sensors.sensors,
         chassis.results,
     )
+
+
+def serves(choice: Choice, kind: str, needed: str) -> bool:
+    """Does the choice have the law that an effect needs, or one that stands in for it?"""
+    own = getattr(choice, kind)
+    return own == needed or needed in {"tyre": tyre.LAWS, "caster": caster.LAWS}.get(kind, {})[own].serves
 
 
 def _law(kind: str, laws: Mapping[str, Alternative], name: str) -> Alternative:
@@ -236,7 +242,7 @@ class _Assembly:
 
     def _refuse_misfit(self, effect: Effect) -> None:
         for kind, name in effect.needs.items():
-            if getattr(self.choice, kind) != name:
+            if not serves(self.choice, kind, name):
                 raise ModelError(
                     f"effect {effect.id} needs the {kind} law {name!r}; this model has "
                     f'{getattr(self.choice, kind)!r}: set {kind} = "{name}"'

@@ -24,6 +24,7 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.model_description import ModelDescription, ScalarVariable
 
 from ..errors import Failure, SimulationError, UsageError, unknown
+from ..model.former import current
 from ..model.variant import number
 from ..quantities import Parameter, Unit
 from .loading import loaded
@@ -93,11 +94,13 @@ class Fmu:
         return tuple(v.name for v in (*self._outputs, *self._flags))
 
     def checked(self, values: Values) -> dict[str, float]:
-        """The values as numbers, named choices included.
+        """The values as numbers, named choices included. Former names that the FMU does not have are read, with a warning.
 
         Raises UsageError for an unknown name and for a value outside the bounds that the FMU states.
         """
-        return {name: _number(self.parameters, name, value) for name, value in values.items()}
+        starts = {name: v.start for name, v in self._settable.items() if v.type == "Real"}
+        given = current(values, {name: float(start or 0.0) for name, start in starts.items()}, known=self.parameters)
+        return {name: _number(self.parameters, name, value) for name, value in given.items()}
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values | None = None) -> Result:
         """Simulate over `time` (n,), strictly rising, with `inputs` (n,) by name; the rest stay at their start values.

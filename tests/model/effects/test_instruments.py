@@ -127,7 +127,7 @@ def test_a_gyro_with_a_wrong_scale_counts_too_much_of_a_turn():
 @pytest.mark.effect("wheel_radius_error")
 def test_wheels_of_another_radius_count_too_much_of_a_turn():
     """On the spot each wheel rolls π t_r, the left one forward; an odometer takes it for that times its error."""
-    result = whole_turn({"wheel_radius_error.r": 0.04, "wheel_radius_error.l": -0.03})
+    result = whole_turn({"wheel_radius_error.mean": 0.005, "wheel_radius_error.difference": 0.07})
     for side, rolled in (("l", 0.97 * np.pi * T_R), ("r", -1.04 * np.pi * T_R)):
         assert simpson(result[f"sensor.wheel_speed_{side}"], x=result.time) == pytest.approx(rolled)
 
@@ -135,9 +135,7 @@ def test_wheels_of_another_radius_count_too_much_of_a_turn():
 @pytest.mark.effect("push_force_gain")
 def test_push_force_gain_divides_the_record():
     result = run(
-        {**SMOOTH, "effect.push_force_gain.r": 0.25, "effect.push_force_gain.l": 0.25, "start.u": 0.0},
-        {"push.F_rl": 10.0, "push.F_rr": 10.0},
-        among=ALL,
+        {**SMOOTH, "effect.push_force_gain.mean": 0.25, "start.u": 0.0}, {"push.F_rl": 10.0, "push.F_rr": 10.0}, among=ALL
     )
     np.testing.assert_allclose(result["chair.u"], 16.0 / MASS * result.time, rtol=1e-8, atol=1e-12)
 
@@ -146,7 +144,13 @@ def test_push_force_gain_divides_the_record():
 def test_a_sensor_that_reads_too_much_is_behind_a_turn_to_its_side():
     """Records alike with the right sensor reading a quarter too much: on the spot the left pushes 10 N, the right −8 N."""
     result = run(
-        {**TOP, "effect.push_force_gain.r": 0.25, "speed.mode": "prescribed", "speed.u": 0.0},
+        {
+            **TOP,
+            "effect.push_force_gain.mean": 0.125,
+            "effect.push_force_gain.difference": 0.25,
+            "speed.mode": "prescribed",
+            "speed.u": 0.0,
+        },
         {"push.F_rl": 10.0, "push.F_rr": -10.0},
         among=ALL,
     )

@@ -226,8 +226,8 @@ def test_the_trail_halves_at_the_slip_named_and_the_torque_levels_off():
 def leaning(right: float, left: float) -> dict:
     return {
         **SMOOTH,
-        "effect.camber_misalignment.phi_r": right,
-        "effect.camber_misalignment.phi_l": left,
+        "effect.camber_misalignment.sum": right + left,
+        "effect.camber_misalignment.difference": right - left,
         "speed.mode": "prescribed",
         "speed.u": 1.0,
     }
@@ -259,7 +259,7 @@ def test_wheels_that_lean_against_each_other_run_straight():
 
 
 def toe(right: float, left: float) -> dict:
-    return {"effect.toe_misalignment.tau_r": right, "effect.toe_misalignment.tau_l": left}
+    return {"effect.toe_misalignment.sum": right + left, "effect.toe_misalignment.difference": right - left}
 
 
 @pytest.mark.effect("toe_misalignment")

@@ -7,6 +7,7 @@ from typing import Any
 
 from ...faults import SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
+from ...model.former import clash, former, renamed
 from ...units import UnitError
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
@@ -288,19 +289,45 @@ def bad_axes(doc: Document, known: Known | None) -> Iterator[Fault]:
 
 
 def bad_parameter(doc: Document, known: Known | None) -> Iterator[Fault]:
-    for name, value in doc.parameters(parameter_tables(known)).items():
-        yield from _parameter(doc, name, value, known, name)
+    yield from _parameters(doc, doc.parameters(parameter_tables(known)), known)
 
 
 def bad_set(doc: Document, known: Known | None) -> Iterator[Fault]:
     for entry in doc.entries:
-        for name, value in flatten(entry.table("set")):
-            yield from _parameter(doc, name, value, known, f"run.set.{name}", entry)
+        yield from _parameters(doc, dict(flatten(entry.table("set"))), known, entry)
+
+
+def _parameters(doc: Document, values: Mapping[str, Any], known: Known | None, entry: Entry | None = None) -> Iterator[Fault]:
+    """What is wrong with the values, and a warning that says how former names are read."""
+    path, place, title = ("run.set.", entry.place, f"{entry.title}: ") if entry else ("", None, "")
+    old = [name for name, _ in former(values)]
+    for name, value in values.items():
+        if name not in old:
+            yield from _parameter(doc, name, value, known, path + name, entry)
+        elif number(value) is None:
+            yield from _parameter(doc, name, value, None, path + name, entry)
+    if not old or any(number(values[name]) is None for name in old):
+        return
+    where = path + old[0]
+    if fact := clash(values):
+        yield doc.fault(where, title + fact.partition("; ")[0], fact.partition("; ")[2], place)
+        return
+    tables = parameter_tables(known)
+    before = doc.known(tables) if entry and not clash(doc.parameters(tables)) else {}
+    today, notes = renamed({name: values[name] for name in old}, before)
+    for note in notes:
+        yield doc.fault(where, title + note, "write these", place, WARNING)
+    for name, value in today.items():
+        yield from _parameter(doc, name, value, known, where, entry)
 
 
 def bad_prior(doc: Document, known: Known | None) -> Iterator[Fault]:
     for name, value in flatten(doc.table("prior")):
         path, sd = f"prior.{name}", number(value)
+        if instead := dict(former([name])).get(name):
+            names = " and ".join(p.name for p in instead)
+            yield doc.fault(path, f"{name} is a former name, which has no prior of its own", f"give those of {names}")
+            continue
         if known is not None and name not in known:
             yield doc.fault(path, f"no parameter {name!r}", suggestion(name, known))
         if sd is None or sd <= 0:

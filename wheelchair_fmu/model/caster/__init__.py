@@ -1,5 +1,5 @@
-"""Caster laws, of which a model has one: ideal, or swivelling."""
+"""Caster laws, of which a model has one: ideal, swivelling without side slip, or slipping."""
 
-from . import ideal, paper, swivelling
+from . import ideal, paper, slipping, swivelling
 
-LAWS = {law.LAW.name: law.LAW for law in (ideal, swivelling, paper)}
+LAWS = {law.LAW.name: law.LAW for law in (ideal, swivelling, slipping, paper)}

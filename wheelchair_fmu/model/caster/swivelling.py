@@ -21,13 +21,14 @@ import casadi as cs
 
 from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter, State
 from ..chassis import per_wheel
-from ..smooth import magnitude, speed
+from ..smooth import speed
 from ..stage import Alternative, Row, define, stage
 from . import ideal
 
-ASIDE = 1e-5  # m/s by which pivots are taken to move apart as a chair starts, so that none is in line with its way exactly
+SLOW = 0.05  # m/s of a pivot, above which its caster trails it as a chair starts
+ASIDE = 1e-3  # rad by which casters stand apart at rest, so that none is in line with its way exactly
 
-PARAMETERS = (
+PARAMETERS: tuple[Parameter, ...] = (
     *ideal.PARAMETERS,
     Parameter(
         "regularisation.trail",
@@ -50,6 +51,22 @@ PARAMETERS = (
         source="chosen",
     ),
 )
+
+STARTS = tuple(
+    Parameter(
+        f"start.caster_{side}",
+        RAD,
+        f"how far the {word} caster is turned at the start from trailing its pivot, or from straight behind where that rests",
+        mirror=f"-start_caster_{other}",
+        lower=-3.2,
+        upper=3.2,
+        fixed=True,
+        symbol=f"start_caster_{side}",
+        source="as it was left",
+    )
+    for side, other, word in (("l", "r", "left"), ("r", "l", "right"))
+)
+PARAMETERS = (*PARAMETERS, *STARTS)
 
 SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT, usual=0.1)
 
@@ -99,14 +116,17 @@ def casters(delta, rolling, D_f, d_f, M_w, M_p, c, passed, drag_eps):
     return drag * forward - lateral * right, drag * right + lateral * forward, -passed * M_w
 
 
-def trailing(v_xf, v_yf, v_eps):
+def trailing(v_xf, v_yf, start_caster_l, start_caster_r):
     """Each caster trails its pivot at the start, whatever the speed is that holds; a chair at rest has it straight behind.
 
-    A caster exactly in line would stay so when the chair backs up straight, as a pencil on its tip. So at rest they stand apart
-    by ASIDE / ε = 1 mrad, the left caster to the left as its mirror image to the right.
+    A speed that is hardly any, as of a start that is known to a few centimetres per second, does not turn it. A caster
+    exactly in line would stay so when the chair backs up straight, as a pencil on its tip. So at rest they stand apart by a
+    thousandth, the left caster to the left as its mirror image to the right. To that comes how somebody left them.
     """
-    fading = v_eps / magnitude(v_xf, v_eps)
-    return cs.atan2(v_yf + cs.DM([-ASIDE, ASIDE]) * fading, v_xf + v_eps * fading)
+    share = (v_xf * v_xf + v_yf * v_yf) / (SLOW * SLOW)
+    rests = 1 / (1 + share * share)
+    aside = v_yf * (1 - rests) + SLOW * ASIDE * rests * cs.DM([-1.0, 1.0])
+    return cs.atan2(aside, v_xf * (1 - rests) + SLOW * rests) + cs.vertcat(start_caster_l, start_caster_r)
 
 
 LAW = Alternative(

@@ -8,6 +8,7 @@ from typing import Any
 import casadi as cs
 
 from ...quantities import RAD, Parameter
+from ..alike import READING_OFFSET
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.5, upper=0.5, source="rigid-body kinematics")
@@ -29,4 +30,5 @@ EFFECT = Effect(
     "accelerometer mounted askew",
     parameters=(ROLL, PITCH),
     contributions=(adds("read_a_x", forward), adds("read_a_y", right)),
+    alike=(READING_OFFSET,),
 )

@@ -1,6 +1,7 @@
 """Air resistance:  F_x = −k u |u|,  k = ½ ρ C_d A. The F_aero of (20)."""
 
 from ...quantities import N_S2_M2, Parameter
+from ..alike import DRAG_SLOPE
 from ..smooth import magnitude
 from ..stage import Effect, adds
 
@@ -11,4 +12,5 @@ EFFECT = Effect(
     "air resistance",
     parameters=(K,),
     contributions=(adds("F_x", lambda u, k, v_eps: -k * u * magnitude(u, v_eps), opposes="u"),),
+    alike=(DRAG_SLOPE,),
 )

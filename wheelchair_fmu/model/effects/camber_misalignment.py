@@ -1,23 +1,41 @@
-"""Rear wheels that lean: a camber angle of the right and of the left wheel, positive to the right."""
+"""Rear wheels that lean, each by its camber angle φ, positive to the right.
+
+It is the sum φ_r + φ_l that pushes the chair aside. The difference cancels from left to right as long as both wheels roll the
+same way: only one that rolls backward while the other goes forward, as in a spin, shows it.
+"""
 
 from typing import Any
 
-import casadi as cs
-
 from ...quantities import RAD, Parameter
+from ..alike import SIDE_PULL
+from ..sides import difference_of, of_sum, sum_of
 from ..stage import Effect, adds
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.3, upper=0.3, source="Doria, section 6.3")
-RIGHT = Parameter(
-    "phi_r", RAD, "camber angle φ_r of the right wheel, positive when it leans to the right", mirror="-phi_l", **COMMON
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.6, upper=0.6, source="Doria, section 6.3")
+FORMER = ("phi_r", "phi_l")
+SUM = Parameter(
+    "sum",
+    RAD,
+    "sum of both wheels' camber angles φ_r + φ_l, positive when both lean to the right: it pulls the chair to the right",
+    symbol="phi_sum",
+    mirror="-",
+    formerly=sum_of(*FORMER),
+    **COMMON,
 )
-LEFT = Parameter(
-    "phi_l", RAD, "camber angle φ_l of the left wheel, positive when it leans to the right", mirror="-phi_r", **COMMON
+DIFFERENCE = Parameter(
+    "difference",
+    RAD,
+    "camber angle of the right wheel less the left wheel's φ_r − φ_l, positive when they stand further apart at the top",
+    symbol="phi_difference",
+    mirror="+",
+    formerly=difference_of(*FORMER),
+    **COMMON,
 )
 
 EFFECT = Effect(
     "camber_misalignment",
     "rear wheels that lean",
-    parameters=(RIGHT, LEFT),
-    contributions=(adds("phi", lambda phi_l, phi_r: cs.vertcat(phi_l, phi_r)),),
+    parameters=(SUM, DIFFERENCE),
+    contributions=(adds("phi", lambda phi_sum, phi_difference: of_sum(phi_sum, phi_difference)),),
+    alike=(SIDE_PULL,),
 )

@@ -3,6 +3,7 @@
 import casadi as cs
 
 from ...quantities import RAD, Parameter
+from ..alike import SIDE_PULL
 from ..stage import Effect, adds, scales
 
 THETA = Parameter(
@@ -22,4 +23,5 @@ EFFECT = Effect(
     "a slope across the chair, whatever its heading",
     parameters=(THETA,),
     contributions=(adds("g_y", lambda theta, g: g * cs.sin(theta)), scales("g_z", lambda theta: cs.cos(theta))),
+    alike=(SIDE_PULL,),
 )

@@ -3,6 +3,7 @@
 import casadi as cs
 
 from ...quantities import BAR, Parameter
+from ..alike import YAW_RESISTANCE
 from ..stage import Effect, scales
 
 DP = Parameter(
@@ -35,4 +36,5 @@ EFFECT = Effect(
         scales("q_M", lambda dp, pressure, pressure_M: power(pressure_M, dp, pressure)),
         scales("q_D", lambda dp, pressure, pressure_D: power(pressure_D, dp, pressure)),
     ),
+    alike=(YAW_RESISTANCE,),
 )

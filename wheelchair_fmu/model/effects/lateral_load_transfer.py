@@ -3,6 +3,7 @@
 import casadi as cs
 
 from ...quantities import M, Parameter
+from ..alike import YAW_RESISTANCE
 from ..stage import Effect, adds
 
 H = Parameter(
@@ -32,4 +33,5 @@ EFFECT = Effect(
     "load that shifts to the outer wheels in a turn",
     parameters=(H,),
     contributions=(adds("N_r", rear), adds("N_f", front)),
+    alike=(YAW_RESISTANCE,),
 )

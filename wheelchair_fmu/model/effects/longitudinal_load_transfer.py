@@ -4,6 +4,7 @@ Straight on only rolling resistance feels it, as h (f_f − f_r): h is as sure a
 """
 
 from ...quantities import M, Parameter
+from ..alike import EFFECTIVE_MASS
 from ..stage import Effect, adds
 
 H = Parameter(
@@ -27,4 +28,5 @@ EFFECT = Effect(
     "load that shifts to the rear wheels under a push",
     parameters=(H,),
     contributions=(adds("N_r", shift), adds("N_f", lambda h, m, a_x, g_x, x_f, x_r: -shift(h, m, a_x, g_x, x_f, x_r))),
+    alike=(EFFECTIVE_MASS,),
 )

@@ -1,33 +1,44 @@
-"""Force sensors with a wrong scale: the record is (1 + r) or (1 + l) times the push that acts."""
+"""Force sensors with a wrong scale: each record is (1 + its error) times the push that acts.
+
+The mean of both errors is a wrong scale of what drives the chair, the difference turns it when the hands push alike.
+"""
 
 from typing import Any
 
-import casadi as cs
-
 from ...quantities import ONE, Parameter
+from ..alike import WHOLE_SCALE
+from ..sides import difference_of, mean_of, of_mean
 from ..stage import Effect, scales
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.02, lower=-0.5, upper=1.0, source="instrument")
-RIGHT = Parameter(
-    "r",
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.02, source="instrument")
+FORMER = ("r", "l")
+MEAN = Parameter(
+    "mean",
     ONE,
-    "scale error of the right force sensor: it reads (1 + r) times the push",
-    symbol="gain_r",
-    mirror="+gain_l",
+    "mean scale error of both force sensors, positive when they read too much",
+    symbol="gain_mean",
+    mirror="+",
+    lower=-0.5,
+    upper=1.0,
+    formerly=mean_of(*FORMER),
     **COMMON,
 )
-LEFT = Parameter(
-    "l",
+DIFFERENCE = Parameter(
+    "difference",
     ONE,
-    "scale error of the left force sensor: it reads (1 + l) times the push",
-    symbol="gain_l",
-    mirror="+gain_r",
+    "scale error of the right force sensor less the left one's, positive when the right one reads more",
+    symbol="gain_difference",
+    mirror="-",
+    lower=-0.9,
+    upper=0.9,
+    formerly=difference_of(*FORMER),
     **COMMON,
 )
 
 EFFECT = Effect(
     "push_force_gain",
     "force sensors with a wrong scale",
-    parameters=(RIGHT, LEFT),
-    contributions=(scales("F_t", lambda gain_l, gain_r: 1 / cs.vertcat(1 + gain_l, 1 + gain_r)),),
+    parameters=(MEAN, DIFFERENCE),
+    contributions=(scales("F_t", lambda gain_mean, gain_difference: 1 / (1 + of_mean(gain_mean, gain_difference))),),
+    alike=(WHOLE_SCALE,),
 )

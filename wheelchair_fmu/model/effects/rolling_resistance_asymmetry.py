@@ -7,6 +7,7 @@ all of D is on the other.
 import casadi as cs
 
 from ...quantities import N, Parameter
+from ..alike import SIDE_PULL
 from ..stage import Effect, adds
 
 D = Parameter(
@@ -39,4 +40,5 @@ EFFECT = Effect(
     "one rear wheel that rolls harder than the other",
     parameters=(D,),
     contributions=(adds("D_w", uneven),),
+    alike=(SIDE_PULL,),
 )

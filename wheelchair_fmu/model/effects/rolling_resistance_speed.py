@@ -6,6 +6,7 @@ Straight on that is k u in all; a chair that spins on the spot has some of it to
 import casadi as cs
 
 from ...quantities import N_S_M, Parameter
+from ..alike import DRAG_SLOPE
 from ..stage import Effect, adds
 
 K = Parameter(
@@ -43,4 +44,5 @@ EFFECT = Effect(
     "rolling resistance that grows with speed",
     parameters=(K,),
     contributions=(adds("d_r", rear), adds("d_f", front)),
+    alike=(DRAG_SLOPE,),
 )

@@ -1,6 +1,7 @@
 """Dry friction of the turning contact patches:  M_z = −M sign(ψ')."""
 
 from ...quantities import N_M, RAD_S, Parameter
+from ..alike import TURNED_PATCHES
 from ..smooth import grip
 from ..stage import Effect, adds
 
@@ -30,4 +31,5 @@ EFFECT = Effect(
     parameters=(TORQUE,),
     constants=(RATE,),
     contributions=(adds("M_z", scrub, opposes="psi_dot"),),
+    alike=(TURNED_PATCHES,),
 )

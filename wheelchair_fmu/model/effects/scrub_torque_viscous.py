@@ -1,6 +1,7 @@
 """A torque that resists turning in proportion to the yaw rate:  M_z = −d ψ'."""
 
 from ...quantities import N_M_S, Parameter
+from ..alike import TURNED_PATCHES, YAW_RESISTANCE
 from ..stage import Effect, adds
 
 D = Parameter(
@@ -19,4 +20,5 @@ EFFECT = Effect(
     "a torque that resists turning in proportion to the yaw rate",
     parameters=(D,),
     contributions=(adds("M_z", lambda d, psi_dot: -d * psi_dot, opposes="psi_dot"),),
+    alike=(TURNED_PATCHES, YAW_RESISTANCE),
 )

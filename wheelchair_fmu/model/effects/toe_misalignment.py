@@ -1,18 +1,36 @@
-"""Rear wheels that do not point straight ahead: each wheel's frame is turned clockwise by its toe angle."""
+"""Rear wheels that do not point straight ahead: each wheel's frame is turned clockwise by its toe angle τ.
+
+With the sum τ_r + τ_l the chair goes aside by half of it, as a crab; with the difference the tyres work against each other,
+which costs drag like its square, the same for toe-in and toe-out.
+"""
 
 from typing import Any
 
 import casadi as cs
 
 from ...quantities import RAD, Parameter
+from ..sides import difference_of, of_sum, sum_of
 from ..stage import Effect, adds
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.2, upper=0.2, source="VanderWiel2016")
-RIGHT = Parameter(
-    "tau_r", RAD, "toe angle τ_r of the right wheel, positive when it points to the right", mirror="-tau_l", **COMMON
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.4, upper=0.4, source="VanderWiel2016")
+FORMER = ("tau_r", "tau_l")
+SUM = Parameter(
+    "sum",
+    RAD,
+    "sum of both wheels' toe angles τ_r + τ_l, positive when both point to the right: the chair goes aside by half of it",
+    symbol="tau_sum",
+    mirror="-",
+    formerly=sum_of(*FORMER),
+    **COMMON,
 )
-LEFT = Parameter(
-    "tau_l", RAD, "toe angle τ_l of the left wheel, positive when it points to the right", mirror="-tau_r", **COMMON
+DIFFERENCE = Parameter(
+    "difference",
+    RAD,
+    "toe angle of the right wheel less the left wheel's τ_r − τ_l, positive toe-out (further apart in front), negative toe-in",
+    symbol="tau_difference",
+    mirror="+",
+    formerly=difference_of(*FORMER),
+    **COMMON,
 )
 
 
@@ -22,25 +40,25 @@ def turned(forward, right, tau):
     return less * forward + cs.sin(tau) * right, less * right - cs.sin(tau) * forward
 
 
-def hub(v_xr, v_yr, tau_l, tau_r):
+def hub(v_xr, v_yr, tau_sum, tau_difference):
     """From the chair's axes into the wheel's, in which it rolls and slips."""
-    return turned(v_xr, v_yr, cs.vertcat(tau_l, tau_r))
+    return turned(v_xr, v_yr, of_sum(tau_sum, tau_difference))
 
 
-def force(F_w, F_s, tau_l, tau_r):
+def force(F_w, F_s, tau_sum, tau_difference):
     """And back: side force points backward in part, drag like toe squared; traction and drag point aside in part."""
-    return turned(F_w, F_s, -cs.vertcat(tau_l, tau_r))
+    return turned(F_w, F_s, -of_sum(tau_sum, tau_difference))
 
 
 EFFECT = Effect(
     "toe_misalignment",
     "rear wheels that do not point straight ahead",
-    parameters=(RIGHT, LEFT),
+    parameters=(SUM, DIFFERENCE),
     contributions=(
-        adds("v_xw", lambda v_xr, v_yr, tau_l, tau_r: hub(v_xr, v_yr, tau_l, tau_r)[0]),
-        adds("v_yw", lambda v_xr, v_yr, tau_l, tau_r: hub(v_xr, v_yr, tau_l, tau_r)[1]),
-        adds("F_xr", lambda F_w, F_s, tau_l, tau_r: force(F_w, F_s, tau_l, tau_r)[0]),
-        adds("F_yr", lambda F_w, F_s, tau_l, tau_r: force(F_w, F_s, tau_l, tau_r)[1]),
+        adds("v_xw", lambda v_xr, v_yr, tau_sum, tau_difference: hub(v_xr, v_yr, tau_sum, tau_difference)[0]),
+        adds("v_yw", lambda v_xr, v_yr, tau_sum, tau_difference: hub(v_xr, v_yr, tau_sum, tau_difference)[1]),
+        adds("F_xr", lambda F_w, F_s, tau_sum, tau_difference: force(F_w, F_s, tau_sum, tau_difference)[0]),
+        adds("F_yr", lambda F_w, F_s, tau_sum, tau_difference: force(F_w, F_s, tau_sum, tau_difference)[1]),
     ),
     even=True,
 )

@@ -9,6 +9,7 @@ to a caster's patch its bearing does not feel: it is held by a lateral force at 
 import casadi as cs
 
 from ...quantities import N_M, RAD_S, M, Parameter
+from ..alike import TURNED_PATCHES, YAW_RESISTANCE
 from ..stage import Effect, adds
 
 TORQUE = Parameter(
@@ -84,4 +85,5 @@ EFFECT = Effect(
     parameters=(TORQUE, CASTER_TORQUE),
     constants=(LENGTH, CASTER_LENGTH, RATE),
     contributions=(adds("M_t", rear, opposes="psi_dot"), adds("M_p", front, opposes="turning")),
+    alike=(TURNED_PATCHES, YAW_RESISTANCE),
 )

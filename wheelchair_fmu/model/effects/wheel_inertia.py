@@ -1,6 +1,7 @@
 """Spin inertia of the rear wheels, as the mass m = 2 I / R² that they add to the chair's, also in a turn."""
 
 from ...quantities import KG, Parameter
+from ..alike import EFFECTIVE_MASS
 from ..stage import Effect, adds
 
 MASS = Parameter(
@@ -20,4 +21,5 @@ EFFECT = Effect(
     "spin inertia of the rear wheels",
     parameters=(MASS,),
     contributions=(adds("mass_u", lambda m_w: m_w), adds("inertia", lambda m_w, t_r: m_w * t_r * t_r / 4)),
+    alike=(EFFECTIVE_MASS,),
 )

@@ -1,33 +1,42 @@
-"""Wheel speed sensors with a wrong radius: they read (1 + r) or (1 + l) times the speed."""
+"""Wheel speed sensors with a wrong radius: each reads (1 + its error) times the speed.
+
+The mean of both errors is a wrong scale of the chair's speed, the difference a yaw rate that is not there.
+"""
 
 from typing import Any
 
-import casadi as cs
-
 from ...quantities import ONE, Parameter
+from ..sides import difference_of, mean_of, of_mean
 from ..stage import Effect, scales
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.01, lower=-0.5, upper=1.0, source="instrument")
-RIGHT = Parameter(
-    "r",
+COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.01, source="instrument")
+FORMER = ("r", "l")
+MEAN = Parameter(
+    "mean",
     ONE,
-    "scale error of the right wheel speed: it reads (1 + r) times the speed",
-    symbol="scale_r",
-    mirror="+scale_l",
+    "mean scale error of both wheel speeds, positive when they read too much",
+    symbol="scale_mean",
+    mirror="+",
+    lower=-0.5,
+    upper=1.0,
+    formerly=mean_of(*FORMER),
     **COMMON,
 )
-LEFT = Parameter(
-    "l",
+DIFFERENCE = Parameter(
+    "difference",
     ONE,
-    "scale error of the left wheel speed: it reads (1 + l) times the speed",
-    symbol="scale_l",
-    mirror="+scale_r",
+    "scale error of the right wheel speed less the left one's, positive when the right one reads more",
+    symbol="scale_difference",
+    mirror="-",
+    lower=-0.9,
+    upper=0.9,
+    formerly=difference_of(*FORMER),
     **COMMON,
 )
 
 EFFECT = Effect(
     "wheel_radius_error",
     "wheel speed sensors with a wrong radius",
-    parameters=(RIGHT, LEFT),
-    contributions=(scales("read_wheel_speed", lambda scale_l, scale_r: cs.vertcat(1 + scale_l, 1 + scale_r)),),
+    parameters=(MEAN, DIFFERENCE),
+    contributions=(scales("read_wheel_speed", lambda scale_mean, scale_difference: 1 + of_mean(scale_mean, scale_difference)),),
 )

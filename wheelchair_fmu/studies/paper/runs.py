@@ -41,8 +41,9 @@ def scaled(name: str, scale: float) -> Values:
 
 def camber(left: float, right: float | None = None) -> Values:
     """Camber angles in degrees, the same on both sides unless given."""
-    sides = {"l": left, "r": left if right is None else right}
-    return {f"effect.camber_misalignment.phi_{side}": float(np.radians(angle)) for side, angle in sides.items()}
+    right = left if right is None else right
+    combined = {"sum": right + left, "difference": right - left}
+    return {f"effect.camber_misalignment.{name}": float(np.radians(angle)) for name, angle in combined.items()}
 
 
 class Runs:

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 
 from fmpy.model_description import ScalarVariable
 
+from ...errors import UsageError
 from ...faults import suggestion
 from ...fmu.parameter_set import Setting, SspUnit
+from ...model.former import current, former
 from .reading import Archive, Fmu
 from .records import Binding, MappingEntry, Scaling, System
 
@@ -54,13 +56,33 @@ def resolve(archive: Archive, file: str, system: System, fmus: Mapping[str, Fmu]
                 )
             elif target[0] in fmus:
                 _put(archive, values, fmus, *target, given)
-    return values
+    return {name: _today(archive, file, name, fmus[name], found, {}) for name, found in values.items()}
 
 
 def put_set(archive: Archive, values: Values, fmus: Mapping[str, Fmu], component: str, source: str) -> None:
     """A parameter set of the archive on top of a component's values."""
+    own: Values = {component: {}}
     for name, given in _given(archive, source, Binding(source), f"Component {component}"):
-        _put(archive, values, fmus, component, name, given)
+        _put(archive, own, fmus, component, name, given)
+    values[component] |= _today(archive, source, component, fmus[component], own[component], values[component])
+
+
+def _today(
+    archive: Archive, file: str, component: str, fmu: Fmu, given: dict[str, float], before: Mapping[str, float]
+) -> dict[str, float]:
+    """The values by the names that the FMU has, where they were given by former ones; the rest of it is as it was `before`."""
+    if not any(former(given, fmu.variables)):
+        return given
+    starts = {n: float(v.start or 0.0) for n, v in fmu.variables.items() if v.causality == "parameter" and v.type == "Real"}
+    try:
+        found = current(given, {**starts, **before}, known=fmu.variables)
+    except UsageError as error:
+        fact, _, cure = str(error).partition("; ")
+        archive.blame(file, "Parameters", fact, cure)
+        return {}
+    for name in found.keys() - given.keys():
+        _within(archive, Given(Setting(found[name]), None, Scaling(), file), component, fmu.variables[name], found[name])
+    return found
 
 
 def _given(archive: Archive, file: str, binding: Binding, owner: str) -> Iterable[tuple[str, Given]]:
@@ -113,9 +135,10 @@ def _target(system: System, name: str) -> tuple[str, str] | None:
 
 def _put(archive: Archive, values: Values, fmus: Mapping[str, Fmu], component: str, name: str, given: Given) -> None:
     fmu = fmus[component]
-    variable = fmu.variables.get(name)
+    instead = dict(former([name], fmu.variables)).get(name, ())
+    variable = fmu.variables.get(instead[0].name if instead else name)
     who, line = f"Parameter {name}", given.setting.line
-    if variable is None or name not in _settable(fmu):
+    if variable is None or variable.name not in _settable(fmu):
         if variable is None:
             fact, cure = f"{component} has no such variable", suggestion(name, _settable(fmu))
         else:
@@ -123,21 +146,25 @@ def _put(archive: Archive, values: Values, fmus: Mapping[str, Fmu], component: s
         archive.blame(given.file, who, fact, cure, line)
         return
     number = _number(archive, given, fmu, variable, who)
-    if number is None:
-        return
+    if number is not None and (instead or _within(archive, given, component, variable, number)):
+        values[component][name] = number
+
+
+def _within(archive: Archive, given: Given, component: str, variable: ScalarVariable, number: float) -> bool:
+    """Is the number within the bounds of the variable? If not, that is told."""
     lower, upper = (
         float(b) if b is not None else default for b, default in ((variable.min, float("-inf")), (variable.max, float("inf")))
     )
-    if not lower <= number <= upper:
-        archive.blame(
-            given.file,
-            who,
-            f"{number:g} is outside the bounds {lower:g} to {upper:g} {variable.unit or ''} of {component}",
-            "give a value between them",
-            line,
-        )
-        return
-    values[component][name] = number
+    if lower <= number <= upper:
+        return True
+    archive.blame(
+        given.file,
+        f"Parameter {variable.name}",
+        f"{number:g} is outside the bounds {lower:g} to {upper:g} {variable.unit or ''} of {component}",
+        "give a value between them",
+        given.setting.line,
+    )
+    return False
 
 
 def _number(archive: Archive, given: Given, fmu: Fmu, variable: ScalarVariable, who: str) -> float | None:

@@ -20,6 +20,7 @@ from ...fmu import package, parameter_set
 from ...fmu.companions import Recording, build_floor, build_pusher
 from ...fmu.documentation import LICENCE
 from ...fmu.parameter_set import ParameterSet
+from ...model.former import current
 from ...model.variant import Variant
 from ..archives import fmu_of
 from . import checking, sources, writing
@@ -49,7 +50,9 @@ def build(
     source = sources.system(name)
     if recording:
         source = replace(source, title="Recorded pushes, replayed")
-    chair = (variant or Variant()).with_values(source.values["Chair"])  # which may switch effects on
+    chair = variant or Variant()
+    source = replace(source, values={**source.values, "Chair": current(source.values["Chair"], chair.values)})
+    chair = chair.with_values(source.values["Chair"])  # which may switch effects on
     sets = _bound(source, chair, parameters)
     with TemporaryDirectory() as folder:
         models = {c: Model.of(f) for c, f in _fmus(Path(folder), sets, chair, recording).items()}

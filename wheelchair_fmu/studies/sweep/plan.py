@@ -39,6 +39,7 @@ from ...faults import Fault, not_utf8, suggestion
 from ...given import toml
 from ...handling.manoeuvres import MANOEUVRES, Manoeuvre, manoeuvre
 from ...model.effects import sources
+from ...model.former import former
 from ...model.recipe import Recipe
 from ...model.stage import Effect
 from ...model.variant import number, read_variant
@@ -233,6 +234,10 @@ class _Reader:
         records = self._records(chairs or (self.bare,), self._effects_of(given))
         for name, value in given.items():
             key = f"parameters.{name}"
+            if instead := dict(former([name])).get(name):
+                names = " and ".join(p.name for p in instead)
+                self.fault(key, f"{name} is the former name of a part of {names}", f"vary {names}")
+                continue
             if name not in records:
                 self.fault(key, f"no parameter {name!r}", suggestion(name, records))
                 continue

@@ -1,0 +1,77 @@
+"""What records say looks alike: the same is said by all, and where no motion tells two apart, none does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.model.effects.chair import run
+from wheelchair_fmu.model.alike import EFFECTIVE_MASS, READING_OFFSET, WHOLE_SCALE, look_alikes
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.wheelchair import base_parameters
+
+PUSHES = {"push.F_rl": lambda t: 12 + 10 * np.sin(1.5 * t), "push.F_rr": lambda t: 10 + 10 * np.sin(1.5 * t + 1)}
+AMONG = ("accelerometer_bias", "accelerometer_tilt", "push_force_gain", "wheel_inertia")  # one model for all
+READ = ("sensor.wheel_speed_l", "sensor.wheel_speed_r", "sensor.yaw_rate", "sensor.a_x", "sensor.a_y")
+
+
+def test_what_one_is_said_to_look_like_looks_like_it():
+    catalogue = bundled()
+    known = {p.name for p in base_parameters()}
+    for id, effect in catalogue.items():
+        for alike in effect.alike:
+            others = look_alikes(effect, alike, catalogue)
+            assert others, (id, alike)
+            for other in others:
+                assert other in known or id in look_alikes(catalogue[other], alike, catalogue)
+    assert {"scrub_torque", "scrub_torque_viscous"} <= {
+        o for alike in catalogue["turn_slip"].alike for o in look_alikes(catalogue["turn_slip"], alike, catalogue)
+    }
+
+
+def changes(pushes=PUSHES, **values: float) -> np.ndarray:
+    """What small values do to all readings of a lively run on a level floor, per size."""
+    step = 1e-3
+    one, other = (run({n: s * step * v for n, v in values.items()} | START, pushes, T=3, among=AMONG) for s in (1, -1))
+    return np.concatenate([(one[name] - other[name]) / (2 * step) for name in READ])
+
+
+START = {"start.u": 1.2, "start.psi_dot": 0.3}
+
+
+def cosine(a: np.ndarray, b: np.ndarray) -> float:
+    return float(a @ b / np.linalg.norm(a) / np.linalg.norm(b))
+
+
+@pytest.mark.parametrize(("angle", "offset"), [("pitch", "x"), ("roll", "y")])
+def test_no_motion_tells_an_offset_from_a_tilt(angle, offset):
+    assert bundled()["accelerometer_tilt"].alike == bundled()["accelerometer_bias"].alike == (READING_OFFSET,)
+    tilt, bias = changes(**{f"effect.accelerometer_tilt.{angle}": 1.0}), changes(**{f"effect.accelerometer_bias.{offset}": 1.0})
+    assert abs(cosine(tilt, bias)) > 1 - 1e-6
+
+
+def test_no_motion_tells_the_scale_of_all_forces():
+    """A chair of everything a tenth larger, with records a tenth too small of what acts on it, moves as the first."""
+    assert WHOLE_SCALE in bundled()["push_force_gain"].alike
+    scale = 1.1
+    defaults = {p.name: p.default for p in base_parameters()}
+    heavier = {name: scale * defaults[name] for name in WHOLE_SCALE.with_parameters}
+    one, other = (
+        run(START, PUSHES, T=3, among=AMONG),
+        run({**START, **heavier, "effect.push_force_gain.mean": 1 / scale - 1}, PUSHES, T=3, among=AMONG),
+    )
+    for name in READ:
+        np.testing.assert_allclose(one[name], other[name], atol=1e-7)
+
+
+def test_straight_on_spinning_wheels_are_mass():
+    assert EFFECTIVE_MASS in bundled()["wheel_inertia"].alike
+    straight = {"push.F_rl": PUSHES["push.F_rl"], "push.F_rr": PUSHES["push.F_rl"]}
+    spin = run(
+        {"start.u": 1.0, "resistance.f_r": 0.0, "resistance.f_f": 0.0, "effect.wheel_inertia.m": 5.0},
+        straight,
+        T=3,
+        among=AMONG,
+    )
+    mass = run({"start.u": 1.0, "resistance.f_r": 0.0, "resistance.f_f": 0.0, "chair.m": 85.0}, straight, T=3, among=AMONG)
+    np.testing.assert_allclose(spin["chair.u"], mass["chair.u"], atol=1e-9)

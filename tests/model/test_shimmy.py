@@ -1,0 +1,86 @@
+"""Casters whose tyres slip: when they shimmy, against the limits in closed form of a wheel on a trail behind a steady pivot.
+
+With the pivot at a speed u straight ahead, δ' = Ω, I Ω' = −d Ω − c C z and σ z' = u δ + c Ω − u z, so
+
+    s³ + (d/I + u/σ) s² + (d u + c² C)/(I σ) s + c C u/(I σ) = 0
+
+whose roots are all to the left, by Routh, where (d/σ) u² + (d²/I − C c (1 − c/σ)) u + d c² C/I > 0. A caster whose tyre's σ is
+shorter than its trail never shimmies; else little damping leaves a range of speeds in which it does, as Kauzlarich, Bruning and
+Thacker (1984, 2000) describe for wheelchairs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.handling.linearize import linearize
+from wheelchair_fmu.handling.trim import Chair, trim
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import Choice
+
+TRAIL, SIGMA, STIFFNESS, INERTIA, DAMPING = 0.05, 0.1, 2500.0, 0.01, 0.25
+STEADY = {"chair.m": 1000.0, "chair.I_z": 1000.0}  # a pivot that hardly moves aside
+SMOOTH = {"resistance.f_r": 0.0, "resistance.f_f": 0.0, "caster.M": 0.0, "caster.mu": 5.0}
+CASTERS = {"caster.trail": TRAIL, "caster.sigma": SIGMA, "caster.C_lambda": STIFFNESS, "caster.I": INERTIA, "caster.d": DAMPING}
+
+
+def variant(**values: float) -> Variant:
+    return Variant(Choice(caster="slipping")).with_values({**SMOOTH, **CASTERS, **values})
+
+
+def roots(u: float, sigma: float = SIGMA, d: float = DAMPING) -> np.ndarray:
+    c, C, I = TRAIL, STIFFNESS, INERTIA  # noqa: E741
+    return np.roots([1, d / I + u / sigma, (d * u + c * c * C) / (I * sigma), c * C * u / (I * sigma)])
+
+
+def limits(sigma: float = SIGMA, d: float = DAMPING) -> np.ndarray:
+    """Speeds between which they shimmy."""
+    c, C, I = TRAIL, STIFFNESS, INERTIA  # noqa: E741
+    return np.sort(np.roots([d / sigma, d * d / I - C * c * (1 - c / sigma), d * c * c * C / I]))
+
+
+def eigenvalues(u: float, **values: float) -> np.ndarray:
+    return linearize(trim(Chair(variant(**{**STEADY, **values})), u, 0.0)).eigenvalues
+
+
+def fastest_growth(u: float, **values: float) -> float:
+    """Of the modes that swing: what the chair itself does is slow and dies out."""
+    found = eigenvalues(u, **values)
+    return float(max(found[np.abs(found.imag) > 1].real, default=-np.inf))
+
+
+@pytest.mark.parametrize("u", [0.8, 2.0, 6.0, 15.0])
+def test_small_motions_of_a_caster_are_those_of_a_wheel_on_a_trail(u):
+    found = eigenvalues(u)
+    for root in roots(u):
+        against, alike = np.sort(np.abs(found - root))[:2] / abs(root)
+        assert against < 1e-5  # casters that swing against each other move no pivot
+        assert alike < 0.03  # those that swing alike shake even a heavy chair
+
+
+def test_casters_shimmy_between_two_speeds():
+    low, high = limits()
+    assert 3 < low < 4 and 18 < high < 20
+    for speed, beyond in ((low, 1.03), (high, 1 / 1.03)):
+        assert fastest_growth(speed / beyond) < 0 < fastest_growth(speed * beyond)
+
+
+def test_casters_with_a_trail_longer_than_the_relaxation_length_never_shimmy():
+    for u in (0.5, 3.0, 10.0, 19.0):
+        for d in (0.0, DAMPING):
+            assert fastest_growth(u, **{"caster.sigma": 0.8 * TRAIL, "caster.d": d}) < 0
+
+
+@pytest.mark.parametrize(("u", "grows"), [(2.5, False), (5.0, True)])
+def test_a_knock_dies_out_below_the_critical_speed_and_grows_to_a_bounded_swing_above(u, grows):
+    knocked = {"start.u": u, "start.caster_l": 0.005, "start.caster_r": -0.002, "caster.mu": 0.5}
+    chair = Simulator(variant(**knocked))
+    time = np.linspace(0, 4, 2001)
+    result = chair.run(time, chair.inputs(len(time), {}), tolerance=1e-7)
+    swing = [np.ptp(result["caster.fl"][(time > a) & (time < a + 0.5)]) for a in (0.0, 3.0)]
+    if grows:
+        assert swing[1] > 5 * swing[0] and swing[1] < np.pi  # friction bounds the side force, and so the swing
+    else:
+        assert swing[1] < 0.05 * swing[0]
