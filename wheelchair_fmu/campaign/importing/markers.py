@@ -177,13 +177,13 @@ def on_the_body(source: Source) -> dict[str, str]:
     found: dict[str, str] = {}
     for name, by in triples(source).items():
         everywhere = all(c.header in one.table.headers for c in by.values() for one in source.files.values())
-        place = _place(name) if everywhere else ""
+        place = place_on_body(name) if everywhere else ""
         if place in body.MARKERS:
             found.setdefault(place, name)
     return {place: found[place] for place in body.MARKERS if place in found} if body.TRUNKS & found.keys() else {}
 
 
-def _place(name: str) -> str:
+def place_on_body(name: str) -> str:
     """Where on a body a marker of this name is: "shoulder_l"; nothing for one that is elsewhere."""
     bare = name.upper().rpartition(":")[2]  # a subject's name stands before
     for place, words in BODY.items():
