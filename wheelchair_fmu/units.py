@@ -22,6 +22,7 @@ _GRAVITY = {
 _FOOT_POUND = ("ft-lb", "ft.lb", "ft·lb", "ft lb", "ft*lb", "lb-ft", "lb.ft", "lb·ft", "lb ft", "lb*ft")
 _ASIDE = {
     **dict.fromkeys(("Nm", "N·m", "N-m", "N m", "N*m"), "N.m"),
+    **dict.fromkeys(("Ns", "N·s", "N s", "N*s", "kg.m/s", "kg·m/s", "kg m/s", "kg*m/s"), "N.s"),
     **dict.fromkeys(("", "-", "dimensionless"), "1"),
     **dict.fromkeys(("m/s²", "m/s^2"), "m/s2"),
     **dict.fromkeys(_FOOT_POUND, "lbf.ft"),  # nobody means a mass times a length
@@ -45,6 +46,7 @@ _EXAMPLES = {
     "rad/s": "rad/s or deg/s",
     "N": "N or lbf",
     "N.m": "N.m or lbf.ft",
+    "N.s": "N.s or kg.m/s",
     "1": "1 or %",
     "bar": "bar or kPa",
 }
@@ -285,6 +287,7 @@ def _dimension(unit: Any) -> str:
         "m/s2": "an acceleration",
         "N": "a force",
         "N.m": "a torque",
+        "N.s": "a momentum",
         "1": "an angle or a plain number",
         "rad/s": "an angular rate",
         "kg": "a mass",

@@ -10,6 +10,7 @@ import pytest
 
 from wheelchair_fmu.campaign.importing import Wanted, find, held_out, text
 from wheelchair_fmu.campaign.importing.guesses import guess
+from wheelchair_fmu.campaign.importing.markers import place_on_body as on_the_body_of
 from wheelchair_fmu.campaign.importing.naming import placed
 from wheelchair_fmu.errors import Failure, UsageError
 
@@ -136,7 +137,36 @@ def test_rims_and_markers(tmp_path):
     assert by["swl", "wheel_angle_l"].sign == 1 and by["swr", "wheel_angle_r"].sign == -1
     (trc,) = (p for p in found.plans if p.name == "trc")
     assert trc.markers == {"axle_l": "LHUB", "axle_r": "RHUB"} and trc.marker_axes == {"x": "-x", "y": "-z"}
+    assert trc.body == {"sternum": "STERNUM"}, "the one that every recording has"
+    files = {run: {d: f for d, (_, f) in of.items()} for run, of in found.files.items()}
+    for wanted, mass in ((Wanted("it", mass=95.0), 75.0), (Wanted("it", mass=95.0, person=70.0), 70.0)):
+        written = tomllib.loads(text(found.plans, found.runs, files, wanted))
+        assert written["rider"] == {"m": mass}
+        assert written["recording"][[p.name for p in found.plans].index("trc")]["markers"]["sternum"] == "STERNUM"
     assert not [d for p in found.plans for d in p.doubts]
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("LSHO", "shoulder_l"),
+        ("R_ACROMION", "shoulder_r"),
+        ("AcromionL", "shoulder_l"),
+        ("subject1:RELB", "elbow_r"),
+        ("shoulder right", "shoulder_r"),
+        ("WristR", "wrist_r"),
+        ("Hand_L", "hand_l"),
+        ("LHIP", "hip_l"),
+        ("CLAV", "sternum"),
+        ("C7", "c7"),
+        ("head", "head"),
+        ("LHUB", ""),
+        ("SHO", ""),
+        ("frame3", ""),
+    ],
+)
+def test_places_on_a_body_go_by_their_names(name, place):
+    assert on_the_body_of(name) == place
 
 
 def test_markers_with_the_names_of_the_other_side_are_said(tmp_path):

@@ -8,6 +8,7 @@ import pytest
 from wheelchair_fmu.loop.disturbance import strength
 from wheelchair_fmu.loop.evidence import Bench
 from wheelchair_fmu.loop.fit import Fit
+from wheelchair_fmu.loop.strokes import begun, phase
 from wheelchair_fmu.loop.unexplained import unexplained
 from wheelchair_fmu.model.variant import Variant
 
@@ -32,13 +33,24 @@ def lumpy(run, without):
     return 4 * np.cos(angle), 0 * run.time
 
 
+def swung(run, without):
+    """A body swings once in each stroke, also while no hand pushes."""
+    pushed = run.inputs["push.F_rl"] + run.inputs["push.F_rr"]
+    return 6 * np.nan_to_num(np.sin(2 * np.pi * phase(run.time, pushed) + 1.0)), 0 * run.time
+
+
 def to_one_side(run, without):
     return 0 * run.time, 0.4 + 0 * run.time
 
 
 @pytest.mark.parametrize(
     ("forces", "of", "by"),
-    [(spring, "moment", "caster angle"), (lumpy, "force", "left wheel's angle"), (to_one_side, "moment", "constant")],
+    [
+        (spring, "moment", "caster angle"),
+        (lumpy, "force", "left wheel's angle"),
+        (to_one_side, "moment", "constant"),
+        (swung, "force", "stroke"),
+    ],
 )
 def test_what_a_force_goes_with_is_told(sample, forces, of, by):
     found = left_of(ridden(sample, np.random.default_rng(1), forces))
@@ -65,3 +77,22 @@ def test_a_floor_is_ordered_by_nothing(sample, seed):
     assert "it is nobody's effect" in found.words[1]
     shallow = [f"{found.after.force:.2g} N", f"{found.after.moment:.2g} N m"]
     assert all(figure in found.words[0] for figure in shallow)
+
+
+def strokes(time, beginnings):
+    return sum(60 * np.clip(np.sin(np.pi * (time - t) / 0.4), 0, None) * ((time >= t) & (time < t + 0.4)) for t in beginnings)
+
+
+def test_strokes_begin_where_hands_begin_to_push_and_end_with_the_last():
+    time, beginnings = np.arange(0, 8, 1 / 240), np.array([1.0, 2.1, 3.0, 4.2])
+    noisy = strokes(time, beginnings) + np.random.default_rng(5).normal(0, 1.0, len(time))
+    np.testing.assert_allclose(begun(time, noisy), beginnings, atol=0.1)
+    found = phase(time, noisy)
+    assert np.isnan(found[time < 0.9]).all() and np.isnan(found[time > 5.5]).all()
+    pushing = (time > 1.2) & (time < 5.1)
+    assert np.isfinite(found[pushing]).all() and found[pushing].min() >= 0 and found[pushing].max() <= 1
+
+
+def test_a_coast_has_no_strokes():
+    time = np.arange(0, 4, 0.01)
+    assert begun(time, 0 * time).size == 0 and np.isnan(phase(time, 0 * time)).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from ..quantities import M_S, M_S2, N_M, ONE, RAD, RAD_S, M, N, S, Unit
+from ..quantities import M_S, M_S2, N_M, N_S, ONE, RAD, RAD_S, M, N, S, Unit
 
 
 @dataclass(frozen=True)
@@ -157,8 +157,25 @@ CHANNELS: tuple[Channel, ...] = (
     ),
 )
 
-INPUTS: tuple[Channel, ...] = tuple(
-    channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair
+RIDER: tuple[Channel, ...] = (
+    Channel(
+        "rider.s",
+        M,
+        "rider.s",
+        "how far the mass [rider] m of the rider's body has moved forward against the frame",
+        -2.0,
+        2.0,
+        wrong_unit="mm",
+    ),
+    Channel(
+        "rider.momentum", N_S, "rider.momentum", "momentum of the rider's body relative to the frame, forward", -300.0, 300.0
+    ),
+    Channel("rider.force", N, "rider.force", "rate of change of rider.momentum", -3000.0, 3000.0),
+)
+
+INPUTS: tuple[Channel, ...] = (
+    *(channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair),
+    *RIDER,
 )
 
 # What a file may hold that channels are made from: the turn of a wheel, by which its ripple goes too.
@@ -181,6 +198,8 @@ TELLS: dict[str, Channel] = {channel.starts: channel for channel in CHANNELS if 
 SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.side)  # the left one first
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
+PUSHED = tuple(channel.name for channel in INPUTS if channel not in RIDER)  # what hands give
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
 MOUNTED = {"accelerometer_offset": ("a_x", "a_y"), "marker_offset": ("x", "y", "u", "v")}  # what has one point together
+BODY_NAMES = POSITION, MOMENTUM, FORCE = tuple(channel.name for channel in RIDER)  # of the rider's body
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

@@ -1,4 +1,4 @@
-"""The chair's pose from markers at the ends of its rear axle."""
+"""The chair's pose from markers at the ends of its rear axle, and the rider's motion against it from those on the body."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ..faults import Fault, run_fault, suggestion
 from ..model.chassis import DEFAULTS
 from ..tables import Table
 from ..units import UnitError, factor, split
+from . import body
 from .angles import TURN, unwrapped
 from .devices import Part
 from .document import Document, number
@@ -22,7 +23,8 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
     """Places and factors to m of the columns that the device's markers need, by "axle_l.x" and so on; and what is missing."""
     found: dict[str, tuple[int, float]] = {}
     faults: list[Fault] = []
-    for end in (e for e in ENDS if part.device.markers):
+    wanted = [*ENDS, *(name for name in body.MARKERS if name in part.device.markers)]
+    for end in wanted if part.device.markers else ():
         for room, (axis, sign) in _room(part).items():
             name = f"{part.device.markers.get(end, end)}.{axis}"
             at = next((i for i, h in enumerate(table.headers) if split(h)[0].lower() == name.lower()), None)
@@ -34,7 +36,8 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
                 found[f"{end}.{room}"] = at, sign * _metres(end, table, at)
             except UnitError as error:
                 faults.append(run_fault(part.file, error.fact, error.cure, 1, table.headers[at]))
-    return (found, faults) if len(found) == len(ENDS) * len(ROOM) else ({}, faults)
+    whole = all(f"{end}.{room}" in found for end in ENDS for room in ROOM)
+    return (found, faults) if whole else ({}, faults)
 
 
 def _metres(end: str, table: Table, at: int) -> float:
@@ -56,6 +59,24 @@ def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[s
     b = number(doc.table("chair").get("b"))
     forward = (DEFAULTS["chair.b"] if b is None else b) * np.stack([np.cos(yaw), np.sin(yaw)])
     return {"x": middle[0] + forward[0], "y": middle[1] + forward[1], "yaw": yaw}
+
+
+def position(
+    part: Part, markers: Mapping[str, np.ndarray], time: np.ndarray | None, yaw: np.ndarray | None
+) -> np.ndarray | None:
+    """How far (n,) the rider's body has moved forward against the frame; None where no marker is on it."""
+    names = [name for name in body.MARKERS if name in part.device.markers and f"{name}.x" in markers]
+    if not names or time is None or yaw is None:
+        return None
+    ends = [body.by_each_other(time, markers[f"axle_l.{room}"], markers[f"axle_r.{room}"]) for room in ROOM]
+    middle = [0.5 * (left + right) for left, right in ends]
+    yaw = np.interp(time, time[np.isfinite(yaw)], yaw[np.isfinite(yaw)]) if np.isfinite(yaw).any() else yaw
+    forward = np.cos(yaw), np.sin(yaw)
+
+    def ahead(name: str) -> np.ndarray:
+        return np.asarray(sum(f * (markers[f"{name}.{room}"] - m) for f, room, m in zip(forward, ROOM, middle, strict=True)))
+
+    return body.position(time, {name: ahead(name) for name in names})
 
 
 def _room(part: Part) -> dict[str, tuple[str, float]]:

@@ -13,6 +13,7 @@ from typing import Any
 from ..faults import ERROR, Fault, not_utf8
 from ..given import toml, what_is
 from ..model.former import renamed
+from .channels import BY_NAME
 
 FILE = "campaign.toml"
 REPEATED = ("run", "recording")  # written [[run]], each a list
@@ -152,7 +153,32 @@ def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
         return None, [not_utf8(path.name, raw, error)]
     except tomllib.TOMLDecodeError as error:
         return None, [_syntax(path.name, text, str(error))]
-    return Document(path, raw, data, _lines(text)), []
+    return Document(path, raw, _named(data), _lines(text)), []
+
+
+CHANNELLED = ("columns", "noise", "nuisance", "constant")  # tables whose keys are names of channels
+PARTS = frozenset(name.partition(".")[0] for name in BY_NAME if "." in name)
+
+
+def _named(data: Any) -> Any:
+    """The same where what TOML takes for a table in a table, as in [noise] rider.momentum = 2, is the channel of that name."""
+    if isinstance(data, list):
+        return [_named(one) for one in data]
+    if not isinstance(data, Mapping):
+        return data
+    return {
+        key: _whole(value) if key in CHANNELLED and isinstance(value, Mapping) else _named(value) for key, value in data.items()
+    }
+
+
+def _whole(table: Mapping[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in table.items():
+        if key in PARTS and isinstance(value, Mapping):
+            found |= {f"{key}.{name}": inner for name, inner in value.items()}
+        else:
+            found[key] = value
+    return found
 
 
 def _syntax(file: str, text: str, message: str) -> Fault:

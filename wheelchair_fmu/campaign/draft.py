@@ -13,11 +13,12 @@ import pandas as pd
 from ..faults import Fault
 from ..tables import FrameTable, Rows, Table
 from ..units import UnitError, quantity
+from . import body
 from .angles import cleaned, wheel_speed
 from .axes import to_sae
 from .binding import Bindings, bind
-from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, SOURCES, Channel
-from .derived import marker_columns, pose
+from .channels import BY_NAME, CHANNEL_NAMES, FORCE, INPUT_NAMES, MOMENTUM, POSITION, PUSHED, SOURCES, Channel
+from .derived import marker_columns, pose, position
 from .devices import Part
 from .document import Document, Entry, number
 from .formats import open_recording
@@ -48,6 +49,11 @@ class Readings:
     @property
     def inputs(self) -> dict[str, np.ndarray]:
         return {name: self.values[name] for name in INPUT_NAMES if name in self.values}
+
+    @property
+    def pushed(self) -> dict[str, np.ndarray]:
+        """The inputs that hands give, and not the rider's body."""
+        return {name: self.values[name] for name in PUSHED if name in self.values}
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
@@ -81,6 +87,7 @@ class Draft(Readings):
     gaps: Mapping[str, tuple[Gap, ...]]
     resampled: Mapping[str, Resampled]  # by channel, whose repeats are left out of `values`
     spikes: Mapping[str, Mapping[int, float]]  # left out of `values`: by channel, readings by their rows of the cut run
+    seen: tuple[float, float] | None = None  # from when to when (s) the rider's body was seen, where it was looked at
 
     def slim(self) -> Draft:
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
@@ -165,8 +172,12 @@ def _converted(
     series = {name: s[kept] for name, s in series.items()}
     angles = {name: series.pop(name) for name in (c.name for c in SOURCES) if name in series}
     values = to_sae(series, part.device.axes)
-    values |= pose(part, {name: rows.values[i][kept] * scale for name, (i, scale) in markers.items()}, doc)
+    marked = {name: rows.values[i][kept] * scale for name, (i, scale) in markers.items()}
+    values |= pose(part, marked, doc)
     noise: dict[str, float] = {}
+    moved = position(part, marked, time, values.get("yaw"))
+    values |= {} if moved is None or POSITION in values else {POSITION: moved}
+    seen = _body(doc, time, values, noise)
     glitched: dict[str, np.ndarray] = {}
     if time is not None:
         for name, angle in angles.items():
@@ -181,12 +192,37 @@ def _converted(
     spiked = _spikes(time, {c: values[c] for c in measured})
     values |= {c: without(values[c], list(found)) for c, found in spiked.items()}
     gaps = {}
-    for name in INPUT_NAMES:
+    for name in PUSHED:
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
     return Draft(
-        doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked
+        doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked, seen
     )
+
+
+def _body(
+    doc: Document, time: np.ndarray | None, values: dict[str, np.ndarray], noise: dict[str, float]
+) -> tuple[float, float] | None:
+    """Adds what a position of the rider's body says of its momentum; from when to when it was seen, None without any."""
+    if time is None or len(time) < 2 or not {POSITION, MOMENTUM} & values.keys():
+        return None
+    mass = number(doc.table("rider").get("m"))
+    if POSITION in values and mass is not None and mass > 0:
+        found = body.of_position(time, values[POSITION], mass)
+        noise |= {} if MOMENTUM in values else {MOMENTUM: found.noise}
+        values |= {name: series for name, series in found.series.items() if name == POSITION or MOMENTUM not in values}
+    if MOMENTUM not in values:
+        return None  # checks say that the mass is missing, or none
+    values.setdefault(FORCE, body.rate(time, values[MOMENTUM]))
+    seen = body.stretch(time, values[MOMENTUM], SHORT_GAP)
+    values |= {name: _straight(time, values[name]) for name in (POSITION, MOMENTUM, FORCE) if name in values}
+    return seen
+
+
+def _straight(time: np.ndarray, series: np.ndarray) -> np.ndarray:
+    """With its gaps as straight lines."""
+    there = np.isfinite(series)
+    return np.interp(time, time[there], series[there]) if there.any() else series
 
 
 def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict[str, dict[int, float]]:

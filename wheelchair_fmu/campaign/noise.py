@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from ..units import UnitError, quantity
-from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, PUSH_NAMES
+from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES, MOMENTUM, PUSH_NAMES
 from .document import Document, number
 from .recorded import Recorded
 from .series import estimate
 
 QUIETEST, LOUDEST = 1e-13, 1e3  # noise, as a share of the largest plausible reading
-NAMES = (*CHANNEL_NAMES, *PUSH_NAMES)  # what [noise] may name
+NAMES = (*CHANNEL_NAMES, *PUSH_NAMES, MOMENTUM)  # what [noise] may name
 
 
 @dataclass(frozen=True)

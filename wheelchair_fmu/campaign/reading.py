@@ -24,7 +24,7 @@ from .noise import gather
 from .recorded import Recorded
 from .records import Campaign, Run
 from .rims import Rim, corrected, rims, unasked, unfounded
-from .windows import covered
+from .windows import between, covered
 
 
 def read(path: str | Path, known_parameters: Known | None = None) -> Campaign:
@@ -179,7 +179,8 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, f
         baselines=unsure,
         input_steps=run.input_steps,
     )
-    return covered(whole, run.late)
+    whole = covered(whole, run.late)
+    return between(whole, *run.seen) if run.seen else whole
 
 
 def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:

@@ -69,7 +69,7 @@ class Recorded(Readings):
     @property
     def _pushed(self) -> tuple[float, float]:
         """From when to when all records of pushes have samples."""
-        times = [d.time for d in self.drafts if d.inputs and d.time is not None]
+        times = [d.time for d in self.drafts if d.pushed and d.time is not None]
         return max((float(t[0]) for t in times), default=-np.inf), min((float(t[-1]) for t in times), default=np.inf)
 
     @cached_property
@@ -94,7 +94,7 @@ class Recorded(Readings):
         """What a run's only file holds, its pushes read when the chair felt them."""
         late, found = self.late, dict(draft.values)
         if late and draft.time is not None:
-            found |= {name: np.interp(draft.time - late, draft.time, push) for name, push in draft.inputs.items()}
+            found |= {name: np.interp(draft.time - late, draft.time, push) for name, push in draft.pushed.items()}
         return found
 
     def _on_rows(self, draft: Draft, name: str) -> np.ndarray:
@@ -132,7 +132,7 @@ class Recorded(Readings):
         """What is left uncertain of the devices' clocks."""
         if len(self.drafts) == 1:
             own = clock(self.entry, PUSHES_CLOCK)
-            return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].inputs), own.sd, own.offset),) if own.sd else ()
+            return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].pushed), own.sd, own.offset),) if own.sd else ()
         return tuple(
             Clock(
                 d.part.device.name,
@@ -144,6 +144,11 @@ class Recorded(Readings):
             for d in self.drafts
             if d.part.clock.sd > 0
         )
+
+    @property
+    def seen(self) -> tuple[float, float] | None:
+        """From when to when the rider's body was seen, by the run's clock; None where nobody looked."""
+        return next((d.seen for d in self.drafts if d.seen is not None), None)
 
     @property
     def input_steps(self) -> dict[str, float]:

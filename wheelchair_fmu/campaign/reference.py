@@ -72,7 +72,9 @@ CHANNEL_WORDS = """## Channels
 
 A column is matched by its whole header first, then without the unit behind it: `yaw_rate [deg/s]` is the channel
 `yaw_rate`. Any unit of the right dimension is converted. Cells may be empty: a gap is no reading. `time` and the pushes of both
-wheels (F or M, or a constant) are needed; of the rest, whatever was measured.
+wheels (F or M, or a constant) are needed; of the rest, whatever was measured. What the rider's body does is an input like a
+push, `rider.s` (with `[rider] m`, the mass that moves with it) or `rider.momentum`: each makes what the model needs of the
+others, and a run is cut to where the body was seen.
 
 """
 FORMAT_WORDS = """## Formats
@@ -91,7 +93,7 @@ OPTION_WORDS = """### Options of formats
 Keys of `[[run]]` or `[[recording]]`, beside `format`.
 
 """
-PARAMETER_WORDS = """## Parameters: [chair], [tyre], [resistance], [wheel], [caster], [floor], [effect]
+PARAMETER_WORDS = """## Parameters: [chair], [rider], [tyre], [resistance], [wheel], [caster], [floor], [effect]
 
 What is known of the chair, by the names of the FMU's parameters, in SI units: `[chair] m = 95` is `chair.m`. What is not given
 has the default. A run's `set` goes before the campaign's value, and `[prior]` says how well a value is known. Parameters of

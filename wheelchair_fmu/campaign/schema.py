@@ -11,6 +11,7 @@ from typing import Any
 
 from ..model import chassis, resistance
 from ..model.tyre import common
+from . import body
 from .document import number
 
 
@@ -186,8 +187,9 @@ RECORDING = TableRecord(
         Key(
             "markers",
             "table",
-            "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which x, y and yaw follow.",
-            example='markers = { axle_l = "LHUB", axle_r = "RHUB" }',
+            "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which x, y and yaw follow; and on "
+            f"the rider's body ({', '.join(body.MARKERS)}), from which rider.s and rider.momentum follow.",
+            example='markers = { axle_l = "LHUB", axle_r = "RHUB", sternum = "STERNUM" }',
             fault="no column 'LHUB.x' for the marker axle_l",
         ),
         Key(
@@ -281,7 +283,7 @@ OPEN = (
 )
 
 TABLES = (CAMPAIGN, RUN, RECORDING, COLUMN, *OPEN)
-PARAMETER_TABLES = ("chair", "tyre", "resistance", "wheel", "caster", "floor", "effect")
+PARAMETER_TABLES = ("chair", "rider", "tyre", "resistance", "wheel", "caster", "floor", "effect")
 OTHER_TABLES = tuple(t.name for t in TABLES)
 
 _KINDS: dict[str, Callable[[Any], bool]] = {

@@ -59,7 +59,11 @@ def pieces(run: Run, seconds: float) -> list[Run]:
 def covered(run: Run, late: float) -> Run:
     """The run where its pushes are known, once they are read `late` seconds later than recorded: less that much of its
     beginning, or of its end."""
-    first, last = run.time[0] + max(late, 0.0), run.time[-1] + min(late, 0.0)
+    return between(run, run.time[0] + max(late, 0.0), run.time[-1] + min(late, 0.0))
+
+
+def between(run: Run, first: float, last: float) -> Run:
+    """The run from `first` to `last` (s), as far as it goes; whole where that would leave next to nothing."""
     start, stop = np.searchsorted(run.time, [first - 1e-9, last + 1e-9])
     return replace(_cut(run, int(start), int(stop)), name=run.name) if stop - start >= FIRST else run
 

@@ -52,6 +52,9 @@ def import_(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Recordings, or folders of them.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="CAMPAIGN", help="The folder to make.")],
     mass: Annotated[float | None, typer.Option(metavar="KG", help="Of chair and rider.")] = None,
+    person: Annotated[
+        float | None, typer.Option(metavar="KG", help="Of the rider alone, where markers are on the body.")
+    ] = None,
     radius: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     track: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     axes: Annotated[str, typer.Option(help="SAE-J670 or ISO-8855, where no signal tells.")] = "",
@@ -63,11 +66,11 @@ def import_(
     link: Annotated[bool, typer.Option("--link", help="Link to the recordings in place of copying them.")] = False,
 ) -> None:
     """Find out which file is which run and device, which column is what, and how the clocks stand; write a campaign of it."""
-    _usable(output, axes, force, {"--mass": mass, "--radius": radius, "--track": track})
+    _usable(output, axes, force, {"--mass": mass, "--person": person, "--radius": radius, "--track": track})
     with working("reading"):
         found = find(files, radius)
     kept = held_out(found.runs, holdout or [])
-    wanted = Wanted(output.resolve().name, mass, radius, track, axes, kept)
+    wanted = Wanted(output.resolve().name, mass, person, radius, track, axes, kept)
     if _at_terminal() and not yes:
         wanted = _asked(wanted, found)
     with working("writing"):
@@ -196,6 +199,8 @@ def _rows(plan: Plan) -> list[tuple[str, str, str]]:
     ]
     if plan.markers:
         rows.append(("x, y, yaw", " and ".join(plan.markers.values()), plan.why_axes))
+    if plan.body:
+        rows.append(("rider.s", ", ".join(plan.body.values()), "markers on the rider's body, by their names"))
     return rows or [("", "", "see below" if plan.doubts else "no column is known by its name")]
 
 

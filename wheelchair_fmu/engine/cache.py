@@ -20,7 +20,7 @@ from . import compiler
 from .kernel import at_rest, kernel, seldom_among
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
-from .tangent import tangent
+from .tangent import noisy, tangent
 
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
@@ -66,31 +66,31 @@ def _loaded(path: Path) -> ctypes.CDLL:
 def _compile(
     choice: Choice, effects: list[Effect], columns: Sequence[str] | None, moving: Sequence[str] | None, target: Path
 ) -> None:
-    model = assemble(choice, effects)
+    model, pushes = assemble(choice, effects), noisy(moving or ())
     if moving is not None:
         model = at_rest(model, moving)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
-        texts["tangent_model"] = tangent_source(tangent(model, columns), "tangent")
+        texts["tangent_model"] = tangent_source(tangent(model, columns, pushes), "tangent")
         by_hand = ["tangent", "rodas"]
     place = target.parent
     for name, text in texts.items():
         (place / f"{name}.c").write_text(text)
     with side_by_side(os.cpu_count()) as pool:
-        objects = [pool.submit(_object, place / f"{name}.c", place / f"{name}.o") for name in texts]
-        objects += [pool.submit(_by_hand, name) for name in by_hand]
+        objects = [pool.submit(_object, place / f"{name}.c", place / f"{name}.o", f"-DWC_PUSHES={pushes}") for name in texts]
+        objects += [pool.submit(_by_hand, name, pushes) for name in by_hand]
         compiler.compile_shared([o.result() for o in objects], target)
 
 
-def _by_hand(name: str) -> Path:
-    """A file of `csrc` that all models share, compiled once."""
+def _by_hand(name: str, pushes: int) -> Path:
+    """A file of `csrc` that all models with so many noisy inputs share, compiled once."""
 
     def make(path: Path) -> None:
         header = path.with_name("coefficients.h")
         header.write_text(coefficients())
-        _object(CSRC / f"{name}.c", path, "-include", str(header))
+        _object(CSRC / f"{name}.c", path, "-include", str(header), f"-DWC_PUSHES={pushes}")
 
-    return kept(_name(name, ".o"), ".o", make)
+    return kept(_name(f"{name}-{pushes}", ".o"), ".o", make)
 
 
 def _object(source: Path, target: Path, *flags: str) -> Path:

@@ -12,7 +12,7 @@ from ..errors import SimulationError
 from ..model.variant import Variant
 from . import cache
 from .simulate import WHY, Simulator, refuse_unrest
-from .tangent import PUSHES, differentiable, sensed
+from .tangent import differentiable, noisy, sensed
 
 
 class _Wanted(ctypes.Structure):
@@ -32,8 +32,9 @@ class Linearised:
     """A run of n samples and its derivatives, SI units.
 
     readings (n, ns); by_parameter (n, ns, k): readings by the parameters asked for, through all that went before;
-    transition (n−1, nx, nx): states by the states a sample earlier; push_before and push_after (n−1, nx, 4): by the
-    recorded pushes at both ends of the interval; by_state (n, ns, nx) and by_push (n, ns, 4): readings at a sample;
+    transition (n−1, nx, nx): states by the states a sample earlier; push_before and push_after (n−1, nx, q): by the
+    recorded pushes at both ends of the interval (q = 4, or 5 where the rider's momentum is recorded too); by_state (n, ns, nx)
+    and by_push (n, ns, q): readings at a sample;
     start (nx, k): the states at the start by the parameters asked for.
     """
 
@@ -59,6 +60,7 @@ class Sensitivities:
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
         self.simulator, self._moving = Simulator(variant, self.columns or None, moving), moving
+        self.pushes = noisy(moving)
         self.simulator.model = self.model  # which takes as long to assemble as ten runs
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
@@ -84,10 +86,10 @@ class Sensitivities:
         x, y = np.empty((n, nx)), np.empty((n, ny))
         out = {
             "transition": np.empty((n - 1, nx, nx)),
-            "push_before": np.empty((n - 1, nx, PUSHES)),
-            "push_after": np.empty((n - 1, nx, PUSHES)),
+            "push_before": np.empty((n - 1, nx, self.pushes)),
+            "push_after": np.empty((n - 1, nx, self.pushes)),
             "by_state": np.empty((n, ns, nx)),
-            "by_push": np.empty((n, ns, PUSHES)),
+            "by_push": np.empty((n, ns, self.pushes)),
             "start": np.empty((nx, k)),
             "by_parameter": np.empty((n, ns, k)),
         }

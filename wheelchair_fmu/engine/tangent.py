@@ -29,7 +29,7 @@ is less work than all second derivatives would be. What of it is the same for ev
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import casadi as cs
@@ -40,7 +40,8 @@ from .kernel import _algebraic_change
 
 NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses", "begin")
 SENSORS = "sensor."
-PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise
+PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise,
+BODY = "rider.momentum"  # and the next one does where it moves
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,11 @@ def differentiable(model: Model, names: Sequence[str] | None = None) -> tuple[Pa
 def sensed(model: Model) -> tuple[int, ...]:
     """Places of the results that instruments read."""
     return tuple(i for i, o in enumerate(model.outputs) if o.name.startswith(SENSORS))
+
+
+def noisy(moving: Container[str]) -> int:
+    """How many of the first inputs carry noise, if these inputs move besides the pushes."""
+    return PUSHES + (BODY in moving)
 
 
 def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent:

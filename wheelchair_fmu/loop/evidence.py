@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
-from ..campaign.channels import BY_FMU_NAME, PUSHES, TELLS
+from ..campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -36,6 +36,7 @@ ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
+SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
 FIRST = 0.2  # s of samples that say where a run starts
 
@@ -428,11 +429,12 @@ class Bench:
                 out[:, :, j] = whitener.response(-rate_of(run.time, pushed))
 
     def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
-        sd, ar = self.colour.sd, self.colour.ar
-        names = [BY_FMU_NAME[n].name for n in pushes]
-        of_pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in some] for some in (names, channels))
         usual = float(np.median(np.diff(run.time)))
         step = np.array([run.input_steps.get(n, usual) for n in pushes])
+        swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
+        sd, ar = self.colour.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.colour.ar}
+        names = [BY_FMU_NAME[n].name for n in pushes]
+        of_pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in some] for some in (names, channels))
         return Noise(*np.array(of_pushes).T, *np.array(readings).T, start, step)
 
     def with_colour(self, colour: Colour) -> Bench:
@@ -457,8 +459,10 @@ def offsets_of(campaign: Campaign) -> dict[str, str]:
 
 
 def pushes_of(run: Run) -> tuple[str, ...]:
-    """FMU names of the pushes that a filter has noise for: forces, and torques where they were recorded."""
+    """FMU names of the inputs that a filter has noise for: forces, and torques and the momentum of the rider's body where they
+    were recorded."""
     names = FORCES if not any(BY_NAME[n].fmu in run.inputs for n in TORQUES) else (*FORCES, *TORQUES)
+    names = (*names, MOMENTUM) if BY_NAME[MOMENTUM].fmu in run.inputs else names
     return tuple(BY_NAME[n].fmu for n in names)
 
 

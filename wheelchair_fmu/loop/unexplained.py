@@ -19,6 +19,7 @@ from .cores import each
 from .disturbance import Strength, disturbed
 from .evidence import Bench, Colour, Evidence, RunEvidence, pushes_of
 from .fit import Fit
+from .strokes import phase
 
 BINS = 8  # of a variable, alike in how much was recorded in each
 KNOWN = 0.8  # of a force's usual size: where the readings tell it no better, it is not asked what orders it
@@ -28,6 +29,7 @@ BRIEF = 0.2  # of all that was recorded, or less: something happened there
 WINDOW = 1.0  # s, either side of where most happened
 FLAT = 0.005  # slope: DIN 18202 lets a finished floor that counts as flat be 4 mm out over a metre
 ORDERS = (1, 2)  # times per turn of a wheel
+HARMONICS = (1, 2, 3)  # times per stroke
 
 Basis = Callable[[np.ndarray, np.ndarray], np.ndarray]  # functions (n, k) of a variable (n,), with the edges of its bins
 
@@ -161,7 +163,7 @@ def _shares(going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarr
 
 def _left(by: Sequence[np.ndarray], values: Sequence[np.ndarray], basis: Basis) -> float:
     """The sum of squares that a function of one variable, learnt from all other runs, leaves of each run's force."""
-    edges = np.quantile(np.concatenate(by), np.linspace(0, 1, BINS + 1)[1:-1])
+    edges = np.nanquantile(np.append(np.concatenate(by), 0.0), np.linspace(0, 1, BINS + 1)[1:-1])
     there = [np.isfinite(v) for v in values]
     columns = [basis(x, edges)[t] for x, t in zip(by, there, strict=True)]
     forces = [v[t] for v, t in zip(values, there, strict=True)]
@@ -197,13 +199,15 @@ def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str
     """What may order a force in one run, (n,) by name."""
     at = {name: e.results[:, i] for i, name in enumerate(results)}
     gaps = np.diff(e.run.time, prepend=e.run.time[0])
+    push = sum((e.run.inputs.get(n, 0.0) for n in pushes_of(e.run) if n.startswith("push.")), np.zeros(len(e.run.time)))
     turned = {side: np.cumsum(at[f"sensor.wheel_speed_{side}"] * gaps) / radius for side in ("l", "r")}
     return {
         CONSTANT: at["chair.u"],
         "speed": at["chair.u"],
         "yaw rate": at["chair.psi_dot"],
         "heading": np.mod(at["chair.psi"], 2 * np.pi),
-        "push": sum((e.run.inputs.get(n, 0.0) for n in pushes_of(e.run)), np.zeros(len(e.run.time))),
+        "push": push,
+        "stroke": phase(e.run.time, push),
         "caster angle": 0.5 * (at["caster.fl"] + at["caster.fr"]),
         "time": e.run.time - e.run.time[0],
         "left wheel's angle": turned["l"],
@@ -217,6 +221,14 @@ def _bins(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 def _turns(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
     return np.stack([np.ones(len(x)), *(part(k * x) for k in ORDERS for part in (np.sin, np.cos))], axis=1)
+
+
+def _strokes(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Of a phase, NaN where nobody pushes."""
+    pushing = np.isfinite(x)
+    angle = 2 * np.pi * np.where(pushing, x, 0.0)
+    waves = [np.where(pushing, part(k * angle), 0.0) for k in HARMONICS for part in (np.sin, np.cos)]
+    return np.stack([np.ones(len(x)), pushing.astype(float), *waves], axis=1)
 
 
 def _course(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
@@ -237,6 +249,7 @@ VARIABLES: dict[str, tuple[str, Basis]] = {
     "yaw rate": ("goes with the yaw rate", _bins),
     "heading": ("goes with the heading", _bins),
     "push": ("goes with the push", _bins),
+    "stroke": ("is locked to the stroke, as that of a body is that moves and was not recorded", _strokes),
     "caster angle": ("goes with the casters' angle", _bins),
     "time": ("grows or fades in the course of a run", _course),
     "left wheel's angle": ("comes back with every turn of the left wheel", _turns),

@@ -9,15 +9,24 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
-from ..campaign import Campaign
+from ..campaign import BY_NAME, Campaign
+from ..campaign.channels import MOMENTUM
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import adds_state
-from .evidence import Bench, Colour
+from .evidence import Bench, Colour, driven
 from .timing import Late, retimed
 
 MEASURED = ("chair.m", "chair.a", "chair.b", "chair.t_r")  # by scales and tape, well enough to be doubted only a little
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", *MEASURED)
+
+
+SCALE = "rider.scale"
+
+
+def _of_the_body(campaign: Campaign) -> tuple[str, ...]:
+    """What is calibrated where the motion of the rider's body was recorded: how much of it that is."""
+    return (SCALE,) if BY_NAME[MOMENTUM].fmu in driven(campaign) else ()
 
 
 class Workshop:
@@ -29,7 +38,7 @@ class Workshop:
 
     def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = (), calibrated: Iterable[str] = CALIBRATED):
         self.fixed = frozenset(fixed)
-        self.calibrated = tuple(n for n in calibrated if n not in self.fixed)
+        self.calibrated = tuple(n for n in (*calibrated, *_of_the_body(campaign)) if n not in self.fixed)
         self.given = {n: v for n, v in variant.values.items() if n.startswith("effect.") and n not in self.fixed}
         self.campaign = campaign
         self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
@@ -86,7 +95,7 @@ class Workshop:
     def widened(self, more: Mapping[str, Effect]) -> Workshop:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
         variant = replace(self.variant, catalogue={**self.catalogue, **more})
-        other = Workshop(self.campaign, variant, self.fixed, self.calibrated)
+        other = Workshop(self.campaign, variant, self.fixed, [n for n in self.calibrated if n != SCALE])
         other.colour, other.starts = self.colour, dict(self.starts)
         return other
 

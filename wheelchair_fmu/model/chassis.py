@@ -6,7 +6,7 @@ from typing import Any
 
 import casadi as cs
 
-from ..quantities import FRONT, KG, KG_M2, M_S, M_S2, N_M, ONE, PER_M, RAD, RAD_S, REAR, Input, M, N, Parameter, State
+from ..quantities import FRONT, KG, KG_M2, M_S, M_S2, N_M, N_S, ONE, PER_M, RAD, RAD_S, REAR, Input, M, N, Parameter, State
 from .frames import moment, to_chair, to_room, velocity_at
 from .stage import Row, define, stage
 
@@ -70,6 +70,28 @@ PARAMETERS = (
         lower=0.05,
         upper=1.0,
         source="common 24 in wheel",
+    ),
+    Parameter(
+        "rider.m",
+        KG,
+        "mass that moves with rider.s; zero where only rider.momentum is given",
+        default=0.0,
+        lower=0.0,
+        upper=500.0,
+        nominal=50.0,
+        source="of the whole person, or of the part whose position is measured",
+        symbol="rider_m",
+    ),
+    Parameter(
+        "rider.scale",
+        ONE,
+        "factor from the body motion that is given to all that there is: a few markers see a part of it",
+        default=1.0,
+        lower=0.0,
+        upper=10.0,
+        source="1: all of it is given",
+        uncertainty=0.5,
+        symbol="rider_scale",
     ),
     Parameter("g", M_S2, "acceleration due to gravity g", default=9.81, lower=0.0, upper=30.0, source="standard"),
     Parameter(
@@ -149,6 +171,7 @@ PARAMETERS = (
 DEFAULTS = {p.name: p.default for p in PARAMETERS}  # for whoever needs a size before there is a model
 
 PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
+HARDEST_SWING = 500.0  # N s: the whole of a heavy person at 5 m/s against the frame
 STEEPEST = 0.5  # rad, 1 in 1.8: far beyond what a chair stands on; a ramp has 0.08, and ISO 7176-2 tests up to 0.17
 INPUTS = (
     Input(
@@ -186,6 +209,36 @@ INPUTS = (
         lower=-PUSH_LIMIT,
         upper=PUSH_LIMIT,
         nominal=15.0,
+    ),
+    Input(
+        "rider.momentum",
+        N_S,
+        "momentum of the rider's body relative to the frame, forward; the frame recoils by it over chair.m",
+        lower=-HARDEST_SWING,
+        upper=HARDEST_SWING,
+        nominal=20.0,
+        symbol="rider_momentum",
+        seldom=True,
+    ),
+    Input(
+        "rider.s",
+        M,
+        "how far the mass rider.m has moved forward against the frame; it shifts the CM, and rider.momentum says how fast",
+        lower=-2.0,
+        upper=2.0,
+        nominal=0.05,
+        symbol="rider_s",
+        seldom=True,
+    ),
+    Input(
+        "rider.force",
+        N,
+        "rate of change of rider.momentum; only accelerometers feel it",
+        lower=-PUSH_LIMIT,
+        upper=PUSH_LIMIT,
+        nominal=100.0,
+        symbol="rider_force",
+        seldom=True,
     ),
     Input(
         "brake.rl",
@@ -249,13 +302,27 @@ def traction(F_rl, F_rr, M_rl, M_rr, R):
 
 
 @stage(
+    define("shift", M, "how far the CM has moved forward against the frame with the rider's body, as given"),
+    define("recoil", M_S, "forward speed of the frame less the CM's, from that"),
+    define("recoil_rate", M_S2, "how fast that changes"),
+)
+def rider(rider_s, rider_momentum, rider_force, rider_m, rider_scale, m):
+    """Momentum m u = m u_frame + p_r: forces change u, whatever the body does; the frame's own speed is less by p_r/m.
+
+    As u is the CM's speed, nothing that is measured is ever differentiated here.
+    """
+    share = rider_scale / m
+    return share * rider_m * rider_s, -share * rider_momentum, -share * rider_force
+
+
+@stage(
     define("x_f", M, "how far the casters' pivots lie before the CM"),
     define("x_r", M, "how far the rear axle lies before the CM (negative)"),
     define("y_f", M, "how far each pivot lies to the right of the CM", "-swap", FRONT),
     define("y_r", M, "how far each rear wheel lies to the right of the CM", "-swap", REAR),
 )
-def geometry(a, b, t_f, t_r):
-    return a, -b, cs.vertcat(-t_f / 2, t_f / 2), cs.vertcat(-t_r / 2, t_r / 2)
+def geometry(a, b, t_f, t_r, shift):
+    return a - shift, -b - shift, cs.vertcat(-t_f / 2, t_f / 2), cs.vertcat(-t_r / 2, t_r / 2)
 
 
 @stage(
@@ -273,10 +340,10 @@ def inertias(m, I_z):
     define("v_xr", M_S, "forward velocity of the rear hubs", "+swap", REAR),
     define("v_yr", M_S, "rightward velocity of the rear hubs", "-swap", REAR),
 )
-def kinematics(u, v, psi_dot, x_f, y_f, x_r, y_r):
+def kinematics(u, v, psi_dot, x_f, y_f, x_r, y_r, recoil):
     """Numerators and denominators of (9)–(12)."""
-    v_xf, v_yf = velocity_at(x_f, y_f, u, v, psi_dot)
-    v_xr, v_yr = velocity_at(x_r, y_r, u, v, psi_dot)
+    v_xf, v_yf = velocity_at(x_f, y_f, u + recoil, v, psi_dot)
+    v_xr, v_yr = velocity_at(x_r, y_r, u + recoil, v, psi_dot)
     return v_xf, per_wheel(v_yf), v_xr, per_wheel(v_yr)
 
 

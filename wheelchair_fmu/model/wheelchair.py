@@ -173,6 +173,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
     caster_law = _law("caster", caster.LAWS, "paper" if paper else choice.caster)
     return (
         chassis.traction,
+        chassis.rider,
         chassis.geometry,
         chassis.inertias,
         chassis.kinematics,

@@ -127,6 +127,21 @@ def test_a_steady_push_moves_the_trunk_ahead_and_the_frame_back():
 
 
 @pytest.mark.effect("trunk_motion")
+def test_a_trunk_that_swings_goes_on_after_the_push():
+    """Of a push that begins at once, s = s₁ (1 − e^(−ζωt) (cos ω_d t + ζω/ω_d sin ω_d t)); the frame recoils at −s'."""
+    F, swing, zeta, omega = 40.0, 0.02, 0.2, 2 * np.pi * 1.3
+    result = run({**SMOOTH, "start.u": 0.0, "effect.trunk_motion.swing": swing}, PUSH, T=2.0, n=201)
+    t, s1, turning = result.time, swing * F / 80, omega * np.sqrt(1 - zeta**2)
+    fading = np.exp(-zeta * omega * t)
+    s = s1 * (1 - fading * (np.cos(turning * t) + zeta * omega / turning * np.sin(turning * t)))
+    speed = s1 * fading * omega**2 / turning * np.sin(turning * t)
+    np.testing.assert_allclose(result["effect.trunk_motion.swung"], s, atol=1e-8)
+    np.testing.assert_allclose(result["sensor.wheel_speed_l"], F / MASS * t - speed, atol=1e-7)
+    np.testing.assert_allclose(result["chair.x"] - result["sensor.x"], s, atol=1e-8)
+    assert result["sensor.a_x"][0] == pytest.approx(F / MASS - s1 * omega**2)
+
+
+@pytest.mark.effect("trunk_motion")
 def test_a_trunk_that_leans_moves_the_load_with_it():
     s = 0.03
     now = snapshot({"effect.trunk_motion.amplitude": 0.02}, states={"effect.trunk_motion.lean": s})
@@ -147,9 +162,16 @@ def test_the_frame_stays_rigid_while_the_trunk_leans():
 
 
 def turning_strokes(u: float):
-    """Strokes of 80 N in all, the left the stronger, in a turn to the right; a chair with a trunk that leans 30 mm."""
+    """Strokes of 80 N in all, the left the stronger, in a turn to the right, of a trunk that leans 30 mm and swings."""
     return run(
-        {**SMOOTH, "start.u": u, "start.psi_dot": 1.0, "start.v": B, "effect.trunk_motion.amplitude": 0.03},
+        {
+            **SMOOTH,
+            "start.u": u,
+            "start.psi_dot": 1.0,
+            "start.v": B,
+            "effect.trunk_motion.amplitude": 0.03,
+            "effect.trunk_motion.swing": 0.01,
+        },
         {"push.F_rl": lambda t: 44 * np.sin(np.pi * t) ** 2, "push.F_rr": lambda t: 36 * np.sin(np.pi * t) ** 2},
         T=2.0,
         n=4001,

@@ -9,8 +9,10 @@ from ...faults import SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
 from ...model.former import clash, former, renamed
 from ...units import UnitError
+from .. import body
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
+from ..derived import ENDS
 from ..devices import devices, parts, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
@@ -113,6 +115,21 @@ def bad_recording(doc: Document, known: Known | None) -> Iterator[Fault]:
             seen[name],
             WARNING,
         )
+
+
+def bad_markers(doc: Document, known: Known | None) -> Iterator[Fault]:
+    for place, table in enumerate(doc.recordings):
+        named = table.get("markers")
+        if not isinstance(named, Mapping) or not named:
+            continue
+        title = _device_title(place, table)
+        for name in named:
+            if name not in (*ENDS, *body.MARKERS):
+                fact = f"{title}: markers has no place {name!r}"
+                yield doc.fault("recording.markers", fact, suggestion(name, (*ENDS, *body.MARKERS)), place)
+        if named.keys() & set(body.MARKERS) and not named.keys() & body.TRUNKS:
+            fact = f"{title}: markers are on the body, but none on the trunk"
+            yield doc.fault("recording.markers", fact, "name one of shoulder_l, shoulder_r, c7 and sternum, or none", place)
 
 
 def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -415,6 +432,7 @@ DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...]
     wrong_type,
     no_runs,
     bad_recording,
+    bad_markers,
     bad_files,
     bad_point,
     two_points,

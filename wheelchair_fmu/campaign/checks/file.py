@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import ERROR, WARNING, Fault, run_fault
-from ..channels import BY_NAME, INPUT_NAMES, TIME
+from ..channels import BODY_NAMES, BY_NAME, INPUT_NAMES, TIME
 from ..draft import Draft, constants
 from ..resampled import REPEATED
 
@@ -49,8 +49,9 @@ def input_gap(draft: Draft) -> Iterator[Fault]:
 
 
 def empty_column(draft: Draft) -> Iterator[Fault]:
+    """A check of the run says where the rider's body is not seen."""
     for name, series in draft.values.items():
-        if len(series) and np.isnan(series).all():
+        if name not in BODY_NAMES and len(series) and np.isnan(series).all():
             if name in draft.inputs:
                 cure = f"remove it and write constant = {{ {name} = 0.0 }} in the run, or give the values"
                 yield run_fault(draft.file, f"the input {name} holds only gaps", cure, column=draft.header(name))

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ...faults import ERROR, WARNING, Fault, run_fault
-from ..channels import BY_NAME, PUSHES
+from ..channels import BY_NAME, MOMENTUM, POSITION, PUSHES
+from ..document import number
 from ..recorded import Recorded
 from .file import FEWEST, absurd
 
+SHORTEST = 0.5  # s of a run in which the rider's body is seen, at least
 FASTEST = 50.0  # m/s that a run may start at
 
 
@@ -23,6 +25,28 @@ def nothing_measured(run: Recorded) -> Iterator[Fault]:
     if not run.channels:
         cure = "add columns such as 'yaw_rate [rad/s]' or name them in [columns]"
         yield run_fault(run.file, "nothing is measured: no channel among the columns", cure, 1)
+
+
+def body_without_mass(run: Recorded) -> Iterator[Fault]:
+    if POSITION in run.values and MOMENTUM not in run.values and not number(run.doc.table("rider").get("m")):
+        fact = f"{POSITION} is given, but not the mass that moves with it"
+        cure = (
+            "write [rider] m = ... in kg: of the whole person where it is made from markers, else of the part that was measured"
+        )
+        yield run_fault(run.file, fact, cure)
+
+
+def body_partly_seen(run: Recorded) -> Iterator[Fault]:
+    if run.seen is None or run.time is None:
+        return
+    first, last = run.seen
+    if last - first < SHORTEST:
+        fact = f"the rider's body is nowhere seen for {SHORTEST:g} s without a longer gap"
+        yield run_fault(run.file, fact, f"leave {POSITION} or {MOMENTUM} out, or fill its gaps")
+    elif first - run.time[0] + run.time[-1] - last > SHORTEST:
+        whole = f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
+        fact = f"the rider's body is seen from {first:.4g} to {last:.4g} s; the rest of {whole} is left out"
+        yield run_fault(run.file, fact, "nothing is to be done", severity=WARNING)
 
 
 def silent(run: Recorded) -> Iterator[Fault]:
@@ -103,6 +127,8 @@ def start_speed_differs(run: Recorded) -> Iterator[Fault]:
 RUN_CHECKS: tuple[Callable[[Recorded], Iterator[Fault]], ...] = (
     no_push,
     nothing_measured,
+    body_without_mass,
+    body_partly_seen,
     silent,
     constant_replaces,
     implausible_constant,

@@ -44,6 +44,7 @@ class Plan:
     choices: list[Choice] = field(default_factory=list)
     axes: str = ""
     markers: Mapping[str, str] = field(default_factory=dict)
+    body: Mapping[str, str] = field(default_factory=dict)  # markers on the rider
     marker_axes: Mapping[str, str] = field(default_factory=dict)
     place: str = ""
     why_axes: str = ""

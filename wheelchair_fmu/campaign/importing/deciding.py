@@ -53,6 +53,7 @@ def _mark(plan: Plan, axles: dict[str, markers.Axle]) -> None:
         return
     axles[plan.name] = found
     plan.markers = {"axle_l": found.left, "axle_r": found.right}
+    plan.body = markers.on_the_body(plan.source)
     plan.marker_axes = {"x": found.x, "y": found.y}
     plan.place, plan.why_axes = "markers", found.why
     if found.swapped:

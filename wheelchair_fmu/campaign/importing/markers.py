@@ -1,5 +1,5 @@
 """Which markers are the ends of the rear axle, and how the laboratory's axes lie to the room: from distances, heights and the
-way the chair goes."""
+way the chair goes. Markers on the rider's body go by their names."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from itertools import combinations
 import numpy as np
 
 from ...units import split
+from .. import body
 from .gathering import Column, Source, scale_of
 from .guesses import side_of
 
@@ -19,6 +20,18 @@ TRACK = (0.4, 0.9)  # m between the ends of a rear axle
 HEIGHT = (0.2, 0.45)  # m of them above the floor
 RIGID = 0.006  # m by which their distance may vary
 AXES = "xyz"
+
+
+BODY = {  # how names of markers on a body begin, but for their side
+    "head": ("HEAD", "VERTEX", "FOREHEAD", "KOPF", "TETE"),
+    "c7": ("C7",),
+    "sternum": ("STERN", "STRN", "CLAV", "MANUB", "SUPRAST", "BRUSTBEIN"),
+    "shoulder": ("SHO", "ACR", "SCHULTER", "EPAULE"),
+    "elbow": ("ELB", "ELLBOGEN", "COUDE"),
+    "wrist": ("WRI", "HANDGELENK", "POIGNET"),
+    "hand": ("HAND", "MCP", "METAC"),
+    "hip": ("HIP", "TROCH", "GTROC", "HUEFTE", "HANCHE"),
+}
 
 
 @dataclass(frozen=True)
@@ -157,6 +170,34 @@ def _ahead(left: list[np.ndarray], right: list[np.ndarray], x: Way, y: Way) -> f
         heading = np.stack([across[:, 1], -across[:, 0]], axis=1) / np.linalg.norm(across, axis=1)[:, None]
         total += float((np.diff(middle, axis=0) * heading[1:]).sum())
     return total
+
+
+def on_the_body(source: Source) -> dict[str, str]:
+    """Markers that every recording has on the rider's body, as campaign.toml calls them; none unless one is on the trunk."""
+    found: dict[str, str] = {}
+    for name, by in triples(source).items():
+        everywhere = all(c.header in one.table.headers for c in by.values() for one in source.files.values())
+        place = place_on_body(name) if everywhere else ""
+        if place in body.MARKERS:
+            found.setdefault(place, name)
+    return {place: found[place] for place in body.MARKERS if place in found} if body.TRUNKS & found.keys() else {}
+
+
+def place_on_body(name: str) -> str:
+    """Where on a body a marker of this name is: "shoulder_l"; nothing for one that is elsewhere."""
+    bare = name.upper().rpartition(":")[2]  # a subject's name stands before
+    for place, words in BODY.items():
+        sided = f"{place}_l" in body.MARKERS
+        for side, rest in _ways(bare, name) if sided else [("", bare)]:
+            if rest.startswith(words):
+                return f"{place}_{side}" if sided else place
+    return ""
+
+
+def _ways(bare: str, name: str) -> list[tuple[str, str]]:
+    """The side that a name may tell, and what is left of it: by its first letter, its last one, or a word."""
+    ways = [(bare[:1].lower(), bare[1:].lstrip("_-. ")), (bare[-1:].lower(), bare), (side_of(name), bare)]
+    return [(side, rest) for side, rest in ways if side in ("l", "r")]
 
 
 def pose(source: Source, run: str, found: Axle) -> dict[str, tuple[np.ndarray, np.ndarray]]:

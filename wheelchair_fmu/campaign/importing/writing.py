@@ -25,6 +25,7 @@ MANOEUVRES = (
     "ausrollen",
 )
 PUSHES = ("F_rl", "F_rr", "M_rl", "M_rr")
+CHAIR_ALONE = 20.0  # kg, about: of a manual chair with instrumented wheels
 PLACE = "# at = [0.0, 0.0]  # where it sits, m forward and to the right of the centre of mass: fill in"
 WIDE = 90  # characters of a line behind which a comment stands on a line of its own
 
@@ -36,6 +37,7 @@ class Wanted:
 
     name: str
     mass: float | None = None
+    person: float | None = None
     radius: float | None = None
     track: float | None = None
     axes: str = ""
@@ -56,7 +58,7 @@ CHAIR = (
 def text(plans: Sequence[Plan], runs: Sequence[str], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     """The whole file. `files` are by run and device, as campaign.toml is to name them."""
     alone = len(plans) == 1 and not plans[0].markers
-    parts = [_head(plans, files, wanted), _chair(wanted), _nuisance(plans)]
+    parts = [_head(plans, files, wanted), _chair(wanted), _rider(plans, wanted), _nuisance(plans)]
     parts += [_columns(plans[0])] if alone else [_recording(plan, wanted) for plan in plans]
     parts += [_run(run, files[run], wanted, alone) for run in runs]
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -111,6 +113,19 @@ def _chair(wanted: Wanted) -> str:
     return "\n".join([*lines, "", "[wheel]", radius])
 
 
+def _rider(plans: Sequence[Plan], wanted: Wanted) -> str:
+    """The mass of the person, where markers show how the body moves."""
+    names = [name for plan in plans for name in plan.body.values()]
+    if not names:
+        return ""
+    meaning = f"the person alone, kg, whose body {', '.join(names)} show"
+    if wanted.person is None and wanted.mass is None:
+        return f"[rider]\n# m =   # {meaning}: fill in"
+    assumed = f"{meaning}: assumed to be all but {CHAIR_ALONE:g} kg of chair, correct it"
+    person = wanted.person if wanted.person is not None else max((wanted.mass or 0.0) - CHAIR_ALONE, 1.0)
+    return "\n".join(["[rider]", _line(f"m = {person:g}", meaning if wanted.person is not None else assumed)])
+
+
 def needs_radius(plans: Sequence[Plan]) -> bool:
     """Does anything become SI only through the wheels' radius?"""
     through = {"F_rl": "N.m", "F_rr": "N.m", "wheel_speed_l": "rad/s", "wheel_speed_r": "rad/s"}
@@ -136,7 +151,7 @@ def _columns(plan: Plan) -> str:
 def _recording(plan: Plan, wanted: Wanted) -> str:
     lines = ["[[recording]]", _line(f"device = {quoted(plan.name)}", plan.place)]
     if plan.markers:
-        ends = ", ".join(f"{end} = {quoted(name)}" for end, name in plan.markers.items())
+        ends = ", ".join(f"{end} = {quoted(name)}" for end, name in {**plan.markers, **plan.body}.items())
         lines.append(_line(f"markers = {{ {ends} }}", plan.why_axes))
         lines.append(
             _line(
