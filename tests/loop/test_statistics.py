@@ -98,9 +98,6 @@ def estimated(rho: float, replications: int, runs: int = 6):
         yield found, values(found) - true
 
 
-SHORT_LAGS = "91 % of 2400: lags up to half a second, by Bartlett's weights, see four fifths of the variance of such noise"
-
-
 @cache
 def held(rho: float) -> tuple[float, float]:
     """How often the truth lies within standard errors, and within the interval that is told."""
@@ -111,17 +108,17 @@ def held(rho: float) -> tuple[float, float]:
     return float(np.mean(by_errors)), float(np.mean(told))
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.3, pytest.param(0.9, marks=pytest.mark.xfail(strict=True, reason=SHORT_LAGS))])
+@pytest.mark.parametrize("rho", [0.0, 0.3, 0.9])
 def test_standard_errors_hold_the_truth_in_95_of_100(rho):
     assert 0.93 <= held(rho)[0] <= 0.97
 
 
-WIDER = pytest.param(0.0, marks=pytest.mark.xfail(strict=True, reason="97.4 % of 2400: it is the wider of two intervals"))
+WIDER = pytest.param(0.0, marks=pytest.mark.xfail(strict=True, reason="97.3 % of 2400: it is the wider of two intervals"))
 
 
 @pytest.mark.parametrize("rho", [WIDER, 0.9])
 def test_intervals_that_are_told_hold_the_truth_in_95_of_100(rho):
-    """These heed what runs would have apart as well, which makes good what lags leave out: 97.4 and 97.0 % of 2400."""
+    """These heed what runs would have apart as well, which makes good what lags leave out: 97.3 and 96.9 % of 2400."""
     assert 0.93 <= held(rho)[1] <= 0.97
 
 
@@ -268,12 +265,7 @@ def test_of_a_hundred_catalogues_without_a_missing_effect_five_have_a_significan
     assert 0.025 <= len(rejected) / 1000 <= 0.06, len(rejected) / 1000
 
 
-SLOW = pytest.param(
-    "two-sided", 0.9, marks=pytest.mark.xfail(strict=True, reason="7.3 % of 6000: its variance has too few lags")
-)
-
-
-@pytest.mark.parametrize(("kind", "rho"), [("one-sided", 0.0), ("two-sided", 0.0), ("two parameters", 0.0), SLOW])
+@pytest.mark.parametrize(("kind", "rho"), [("one-sided", 0.0), ("two-sided", 0.0), ("two parameters", 0.0), ("two-sided", 0.9)])
 def test_the_screens_score_test_has_the_level_it_says(kind, rho):
     """Of a parameter that may only be positive, all of it on that side."""
     k, one_sided = len(EFFECTS[kind][1]), kind == "one-sided"
@@ -344,13 +336,7 @@ def gains(runs: int, rho: float, replications: int) -> float:
     return inside / replications
 
 
-TEN_BLOCKS = (
-    "90 % of 3000: quantiles of a bootstrap of ten blocks are too close by a fifth; 93.0 % with thirty, 94 % with sixty"
-)
-ONE_RUN = pytest.param(1, 0.0, marks=pytest.mark.xfail(strict=True, reason=TEN_BLOCKS))
-
-
-@pytest.mark.parametrize(("runs", "rho"), [(6, 0.0), (6, 0.9), ONE_RUN])
+@pytest.mark.parametrize(("runs", "rho"), [(6, 0.0), (6, 0.9), (1, 0.0)])
 def test_the_interval_of_a_held_out_gain_holds_it_in_95_of_100(runs, rho):
     share = gains(runs, rho, 600)
     assert 0.93 <= share <= 0.97, share

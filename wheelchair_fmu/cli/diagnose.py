@@ -19,7 +19,7 @@ from ..model.effects import bundled
 from ..model.generic import terms
 from ..report.figures import staircase_figure
 from ..report.saving import save
-from ..report.words import helpers, outside, probability, tied, verdict_words
+from ..report.words import helpers, outside, tied, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -128,19 +128,19 @@ def _show_bootstrap(b: Bootstrap) -> None:
 def _ranking(content: dict[str, Any], own: Container[str]) -> Table:
     """One line per parameter of the likeliest effects, and of all of the user's own."""
     table = Table(box=box.SIMPLE)
-    for title in ("effect", "parameter", "estimate", "of interest", "P(larger)", "p", "power", "Δ(−2 log L)", "verdict"):
-        right = title in ("P(larger)", "p", "power", "Δ(−2 log L)")
+    for title in ("effect", "parameter", "estimate", "of interest", "P(larger)", "power", "Δ(−2 log L)", "verdict"):
+        right = title in ("P(larger)", "power", "Δ(−2 log L)")
         table.add_column(title, no_wrap=True, justify="right" if right else "left")
     for place, row in enumerate(content["ranking"]):
         if place >= LIKELIEST and row["effect"] not in own:
             continue
         larger = "" if row["probability"] is None else f"{row['probability']:.2f}"
-        figures = (larger, probability(row["p"]), f"{row['power']:.2f}", f"{row['lr']:.0f}", verdict_words(row))
+        figures = (larger, f"{row['power']:.2f}", f"{row['lr']:.0f}", verdict_words(row))
         for i, (name, v) in enumerate(row["parameters"].items()):
             se = f"{v['se']:.2g}" if v["se"] is not None else "?"
             size = f"{v['estimate']:.3g} ± {se} {v['unit']}".removesuffix(" 1")
             about = (name, size, f"{v['smallest_interesting']:g}")
-            table.add_row("" if i else row["effect"], *about, *(("",) * 5 if i else figures))
+            table.add_row("" if i else row["effect"], *about, *(("",) * 4 if i else figures))
     return table
 
 

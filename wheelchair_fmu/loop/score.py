@@ -2,7 +2,7 @@
 
 For an effect with sensitivities S_j (N, k) the calibrated directions are projected off, s_j = P S_j; score
 U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected drop Uᵀ I⁻¹ U. The variance of U is
-estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run), so that
+estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run, prewhitened), so that
 coloured residuals are not taken for evidence.
 """
 
@@ -16,6 +16,7 @@ import numpy as np
 from .chance import chance_beyond, power
 from .evidence import Evidence
 
+LASTING = 0.97  # AR(1) coefficient, at most, by which a variance is recoloured
 LAG = 0.5  # s over which residuals may be correlated
 LEVEL = 0.05  # of the test whose power is told
 BLIND = 1e6  # δ²: variance along directions that the data say nothing of
@@ -64,7 +65,8 @@ class Projector:
 
 
 def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Variance (k, k) of sᵀ r: Newey and West's, lags up to LAG, within runs."""
+    """Variance (k, k) of sᵀ r, within runs: Newey and West's with lags up to LAG, of what an AR(1) law leaves of each product,
+    and from there back (Andrews and Monahan 1992), as lags alone see too little of noise that lasts."""
     total, terms = np.zeros((s.shape[1], s.shape[1])), s * r[:, None]
     for e, good, part in evidence.parts():
         sample = np.nonzero(good)[0]
@@ -74,11 +76,21 @@ def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndar
 
 
 def _long_run_variance(q: np.ndarray, lags: int) -> np.ndarray:
-    """Σ over lags of the autocovariance (k, k) of q (n, k), by Bartlett's weights: that is the power of its moving sums."""
+    """Σ over lags of the autocovariance (k, k) of q (n, k): by Bartlett's weights of what an AR(1) law leaves of each column,
+    which is the power of its moving sums, and recoloured by that law."""
+    rho = _lasting(q)
+    left = q - rho * np.concatenate([np.zeros((1, q.shape[1])), q[:-1]])
     width = min(lags, len(q) // 4) + 1
-    sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), q, np.zeros((width - 1, q.shape[1]))]), axis=0)
-    moving = sums[width:] - sums[:-width]
+    sums = np.cumsum(np.concatenate([np.zeros((width, q.shape[1])), left, np.zeros((width - 1, q.shape[1]))]), axis=0)
+    moving = (sums[width:] - sums[:-width]) / (1 - rho)
     return moving.T @ moving / width
+
+
+def _lasting(q: np.ndarray) -> np.ndarray:
+    """AR(1) coefficients (k,) of columns (n, k) about their means."""
+    about = q - q.mean(axis=0)
+    power = np.sum(about**2, axis=0)
+    return np.clip(np.sum(about[1:] * about[:-1], axis=0) / np.where(power > 0, power, 1.0), 0.0, LASTING)
 
 
 def _spread(
