@@ -49,6 +49,10 @@ TESTS = (
     "tests/fleet/test_fleet.py::test_a_dask_cluster_gives_the_same_rows",
     "tests/fleet/test_summary.py",
     "tests/handling/test_linearize.py::test_python_control_takes_it",
+    # Frames of the Python interface, and what is written of them: pandas, pyarrow, Pint.
+    "tests/api/test_results.py::test_what_was_simulated_is_a_recording_with_its_units",
+    "tests/api/test_results.py::test_parquet_has_units_in_its_fields",
+    "tests/api/test_results.py::test_variants_go_from_hand_to_hand",
     # Figures: matplotlib, Pillow. What was made is kept where platformdirs says.
     "tests/report/test_figures.py",
     "tests/engine/test_store.py",

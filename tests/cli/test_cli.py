@@ -276,7 +276,7 @@ def test_help_waits_for_no_command():
 def test_an_interrupt_ends_with_one_line_and_130(tmp_path):
     # where the tests run in the background SIGINT is ignored, and children inherit that
     script = (
-        "import wheelchair_fmu.cli.simulate as s, signal, time, sys\n"
+        "import wheelchair_fmu.api.runs as s, signal, time, sys\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "def wait(*a, **k): print('waiting', flush=True); time.sleep(60)\n"
         "s.fmu_of = wait\n"

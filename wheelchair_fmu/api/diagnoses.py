@@ -115,7 +115,8 @@ class Diagnosis:
         """A row for each parameter of each effect of the catalogue, the likeliest effect first, by (effect, parameter): its
         `estimate`, standard error `se` and the ends `lower` and `upper` of a 95 % interval in `unit` (SI), the size that is
         `smallest_interesting`, the effect's `p` that chance alone does as much, and its `verdict`. Intervals of effects that
-        were found are by the profile of the likelihood, others are ± 1.96 standard errors.
+        were found are by the profile of the likelihood, others are ± 1.96 standard errors. An effect that was not found is
+        estimated alone, in the place of those that were: what looks like one of them has a size there, too.
 
         >>> D = found.estimates.loc[("rolling_resistance_asymmetry", "D")]
         >>> print(f"{D.estimate:.2f} ± {D.se:.2f} {D.unit}")
@@ -214,7 +215,10 @@ class Diagnosis:
 
     def plot_estimates(self) -> Figure:
         """Estimates of the likeliest effects with their intervals, beside what would be of interest."""
-        rows = [{**row, "name": f"{row['effect']}.{row['parameter']}"} for row in _estimates(self._told["ranking"])]
+        rows = [
+            {**row, "name": f"{row['effect']}.{row['parameter']}", "found": row["effect"] in self._found.included}
+            for row in _estimates(self._told["ranking"])
+        ]
         return estimates_figure(rows[:LIKELIEST])
 
     def plot_missing(self) -> Figure:

@@ -84,8 +84,8 @@ Units are taken from headers (`yaw_rate [deg/s]`, `Time (s)`, `gyr_dps`), from a
 guessed: a column that `[columns]` names and that has none is a fault, and `unit = "..."` cures it. `pip install
 "wheelchair-fmu[files]"` brings the libraries of the formats that need one, `[mdf]` that of MDF.
 
-A format of your own is a Python file with a record `FORMAT` in the folder `formats` of your configuration of wheelchair-fmu (a
-program that runs with your rights), or an entry point of the group `wheelchair_fmu.formats`.
+[A format of your own](your-own-format.md) is a Python file with a record `FORMAT` in the folder `formats` of your configuration
+of wheelchair-fmu (a program that runs with your rights), or an entry point of the group `wheelchair_fmu.formats`.
 
 """
 OPTION_WORDS = """### Options of formats

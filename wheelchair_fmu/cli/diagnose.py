@@ -10,14 +10,13 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..api.diagnoses import missing
+from ..api import diagnoses
 from ..api.diagnosing import searched
 from ..campaign import windows
 from ..loop.bootstrap import Bootstrap, bootstrap
 from ..loop.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms
-from ..report.figures import staircase_figure
 from ..report.saving import save
 from ..report.words import helpers, outside, tied, verdict_words
 from ..writing import written
@@ -46,7 +45,9 @@ def diagnose(
     variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="For figures and proposals.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="For estimates, figures and proposals.")
+    ] = None,
     resamples: Annotated[
         int,
         typer.Option(
@@ -72,7 +73,7 @@ def diagnose(
     if stable:
         _show_bootstrap(stable)
     if output:
-        for file in _files(found, content, output):
+        for file in _files(diagnoses.Diagnosis(measured, chair, fixed, found, content), found, output):
             announce(file)
 
 
@@ -144,18 +145,17 @@ def _ranking(content: dict[str, Any], own: Container[str]) -> Table:
     return table
 
 
-def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
-    files = [folder / "staircase.png", folder / "staircase.svg"]
-    figure = staircase_figure(content["ladder"])
-    for file in files:
-        with written(file) as beside:
-            save(figure, beside)
+def _files(face: diagnoses.Diagnosis, d: Diagnosis, folder: Path) -> list[Path]:
+    figures = {"staircase": face.plot_staircase(), "estimates": face.plot_estimates()}
     if d.proposal:
-        files.append(write_proposal(d, folder / "effects")[1])
-        files.append(folder / "missing.png")
-        with written(files[-1]) as beside:
-            save(missing(d), beside)
-    return files
+        figures["missing"] = face.plot_missing()
+    files = [face.save(folder / f"estimates{ending}") for ending in (".csv", ".tex")]
+    for name, figure in figures.items():
+        for ending in (".png", ".svg"):
+            with written(folder / f"{name}{ending}") as beside:
+                save(figure, beside)
+            files.append(folder / f"{name}{ending}")
+    return [*files, write_proposal(d, folder / "effects")[1]] if d.proposal else files
 
 
 def write_proposal(d: Diagnosis, folder: Path) -> tuple[str, Path]:
