@@ -115,3 +115,34 @@ def test_brakes_that_a_run_records_move_it_and_its_derivatives():
     np.testing.assert_allclose(braked.by_parameter[:, :, 0], expected, atol=1e-3 * np.abs(expected).max())
     with pytest.raises(ValueError, match=r"leave brake\.rl at rest"):
         Sensitivities(Variant(), by).run(t, w, p, by)
+
+
+def test_a_riders_momentum_is_a_noisy_input_where_it_moves_and_costs_nothing_where_not():
+    """By it go the frame's speed at once and the chair's later; no column is kept for it where nobody recorded it."""
+    t, by = np.linspace(0, 2, 81), ("rider.scale",)
+    simulator = Simulator(Variant())
+    swing = 20 * np.sin(8 * t)
+    w = simulator.inputs(len(t), {"push.F_rl": SLALOM[1](t), "push.F_rr": SLALOM[2](t), "rider.momentum": swing})
+    p = simulator.variant.vector()
+    moved = Sensitivities(Variant(), by, moving=("rider.momentum",)).run(t, w, p, by, tolerance=1e-9)
+    assert moved.push_before.shape[2] == moved.by_push.shape[2] == 5
+    column = [i.name for i in simulator.model.inputs].index("rider.momentum")
+    assert column == 4
+    sensor = [simulator.model.outputs[i].name for i in sensed(simulator.model)].index("sensor.wheel_speed_l")
+    np.testing.assert_allclose(moved.by_push[:, sensor, column], -1 / 80.0, rtol=1e-6)
+    i, h = 30, 1e-2
+    change = moved.transition[i] @ moved.push_after[i - 1][:, column] + moved.push_before[i][:, column]
+    for j in range(i + 1, len(t) - 1):
+        change = moved.transition[j] @ change
+    ends = []
+    for s in (1, -1):
+        bumped = w.copy()
+        bumped[i, column] += s * h
+        ends.append(simulator.run(t, bumped, p, tolerance=1e-11).states[-1])
+    expected = (ends[0] - ends[1]) / (2 * h)
+    np.testing.assert_allclose(change, expected, rtol=2e-3, atol=1e-3 * np.abs(expected).max())
+    more, less = (simulator.run(t, w, simulator.variant.vector({"rider.scale": k}), tolerance=1e-9) for k in (1.001, 0.999))
+    slope = (more["sensor.wheel_speed_l"] - less["sensor.wheel_speed_l"]) / 0.002
+    np.testing.assert_allclose(moved.by_parameter[:, sensor, 0], slope, atol=1e-3 * np.abs(slope).max())
+    still = simulator.inputs(len(t), {"push.F_rl": SLALOM[1](t)})
+    assert Sensitivities(Variant(), by).run(t, still, p, by).by_push.shape[2] == 4

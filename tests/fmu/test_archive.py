@@ -164,7 +164,9 @@ def test_units_have_the_right_dimensions_and_display_units():
 def test_dependencies():
     plain = interface(Variant())
     on = {name: {v.name: kind for v, kind in known} for name, known in dependencies.continuous(plain).items()}
-    assert on["chair.x"] == {"chair.x": "constant"} and set(on["load.rl"]) == {"floor.slope_x", "floor.slope_y"}
+    assert on["chair.x"] == {"chair.x": "constant"} and set(on["load.rl"]) == {"floor.slope_x", "floor.slope_y", "rider.s"}
+    assert on["sensor.u"] == {"chair.u": "constant", "rider.momentum": "tunable"}
+    assert {o for o, known in on.items() if "rider.force" in known} == {"sensor.a_x"}
     assert on["sensor.a_x"]["push.F_rl"] == "tunable" and on["sensor.a_x"]["brake.rl"] == "dependent"
     assert "push.F_rl" not in on["push.total_needed"]  # it cancels
     assert on["der(chair.psi)"] == {"chair.psi_dot": "constant"}
