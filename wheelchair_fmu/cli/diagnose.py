@@ -104,7 +104,8 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     if d.next_experiment:
         n = d.next_experiment
         times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
-        out.print(f"Measure next, {times}: {n['manoeuvre']}, for {' and '.join(n['separates'])}: {n['why']}.")
+        about = f", for {' and '.join(n['separates'])}" if n["separates"] else ""
+        out.print(f"Measure next, {times}: {n['manoeuvre']}{about}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
 
 

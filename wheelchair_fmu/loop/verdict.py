@@ -24,6 +24,7 @@ from .experiment import Experiment, reveal, separate
 from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
+from .lead import lead
 from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
 from .probability import Belief, beliefs, shared
@@ -141,6 +142,8 @@ def diagnose(
 
     found = searched(None, generic or {})
     found = _with_forces(found, lambda colour: searched(colour, {}), progress)
+    if found.verdict == "outside" and experiments:
+        found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     return replace(found, seconds=time.monotonic() - began)
 
 
