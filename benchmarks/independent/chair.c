@@ -74,7 +74,8 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     double target = p[P_trunk] * (F[0] + F[1]) / 80;
     double shift_rate = p[P_trunk] != 0 ? (target - shift) / p[P_trunk_lag] : 0;
     double shift_acceleration = p[P_trunk] != 0 ? (p[P_trunk] * (dF[0] + dF[1]) / 80 - shift_rate) / p[P_trunk_lag] : 0;
-    double a = p[P_a] - shift, b = p[P_b] + shift, base = p[P_a] + p[P_b];
+    double a = p[P_a] - shift, b = p[P_b] + shift;
+    double carried = a - p[P_patch_load] * p[P_trail] * (cos(s[SWIVEL_R]) + cos(s[SWIVEL_L])) / 2, base = carried + b;
     double frame = u - shift_rate;
     double c = cos(s[PSI]), n = sin(s[PSI]);
     double slope_x = p[P_slope_x], slope_y = p[P_slope_y];
@@ -89,7 +90,7 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     int passes = p[P_h_x] != 0 || p[P_h_y] != 0 ? 4 : 1; /* loads and accelerations need one another */
 
     for (int pass = 0; pass < passes; pass++) {
-        double rear = weight * a / base + p[P_m] * felt_x * p[P_h_x] / base;
+        double rear = weight * carried / base + p[P_m] * felt_x * p[P_h_x] / base;
         double front = weight - rear;
         double FX = p[P_m] * gx - p[P_aero] * u * fabs(u);
         double FY = p[P_m] * gy;
@@ -177,7 +178,7 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     out[O_energy] = 0.5 * p[P_m] * (u * u + v * v) + 0.5 * p[P_I_z] * r * r;
     for (int i = 0; i < 2; i++) {
         double q = r + s[SWIVEL_RATE_R + 2 * i];
-        double limit = weight * a / base / 2 / p[P_inv_mu], k = p[P_C_lambda] / p[P_sigma];
+        double limit = weight * carried / base / 2 / p[P_inv_mu], k = p[P_C_lambda] / p[P_sigma];
         double kf = p[P_C_caster] / p[P_sigma_caster], lf = weight * b / base / 2;
         out[O_energy] += 0.5 * p[P_I_swivel] * q * q - p[P_swivel_spring] * cos(s[SWIVEL_R + 2 * i]);
         out[O_energy] += limit * limit / k * log(cosh(k * s[E_RR + i] / limit)) + lf * lf / kf * log(cosh(kf * s[E_FR + i] / lf));

@@ -74,6 +74,7 @@ class Chair:
     swivel_viscous: float = 0.002
     trunk_lag: float = 0.15
     pressure: float = 1.0
+    patch_load: float = 0.0  # 1: the floor carries the casters at their patches, 0: under their pivots, as in the paper
     # Effects, off at zero.
     load_exponent: float = 0.0
     camber_r: float = 0.0
