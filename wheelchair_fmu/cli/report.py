@@ -10,16 +10,17 @@ from typing import Annotated, Any
 
 import typer
 
-from ..campaign import Campaign, windows
+from ..campaign import CHANNELS, Campaign, windows
 from ..errors import Failure
 from ..handling.experiments import experiments
 from ..loop.evidence import Colour
-from ..loop.story import story
+from ..loop.story import story as as_story
 from ..loop.verdict import diagnose
 from ..model.generic import library
 from ..model.variant import Variant
 from ..report.content import content
 from ..report.page import page
+from ..report.tale import story_of
 from ..report.words import particulars, sentence
 from ..writing import written
 from .group import Progress, working
@@ -49,7 +50,7 @@ def report(
         told = (
             _read(diagnosis, measured)
             if diagnosis
-            else story(diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))
+            else as_story(diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))
         )
         say("writing the page")
         html = _html(measured, _with_proposal(chair, told), told, fixed)
@@ -62,7 +63,8 @@ def _html(measured: Campaign, chair: Variant, told: Mapping[str, Any], fixed: Se
     titles = {e.id: e.title for e in chair.catalogue.values()}
     records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
     colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
-    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records))
+    story = story_of(told, titles, records, {c.name: c for c in CHANNELS})
+    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), story)
 
 
 def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:

@@ -25,6 +25,7 @@ from ..quantities import N, Parameter, Unit
 
 TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
+FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
 
 
 def content(
@@ -53,7 +54,7 @@ def content(
         "effects": [_effect(e) for e in workshop.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "regimes": _regimes(variant),
-        "shown": list(dict.fromkeys((*PATH, *REGIMES.values()))),
+        "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
         "start": START,
         "tuning": TUNING,
@@ -136,7 +137,10 @@ def _regimes(variant: Variant) -> list[dict[str, Any]]:
 def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
     """Where the wheels are, for drawing the chair."""
     values = {p.name: p.default for p in variant.parameters()} | dict(variant.values) | campaign.known
-    return {n.rpartition(".")[2]: values[n] for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "wheel.R")}
+    return {
+        n.rpartition(".")[2]: values[n]
+        for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "chair.m", "chair.I_z", "wheel.R")
+    }
 
 
 def _series(values: Iterable[float]) -> dict[str, str]:

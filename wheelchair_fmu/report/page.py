@@ -9,28 +9,62 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
+from .markup import cards_html, screens_html
+from .tale import Story
+
 ASSETS = files(__package__) / "page"
-MODULES = ("app", "charts", "controls", "dom", "errors", "evidence", "figure", "numbers", "pool", "trajectory")
+MODULES = (
+    "address",
+    "app",
+    "controls",
+    "dom",
+    "draw",
+    "errors",
+    "evidence",
+    "figure",
+    "figures",
+    "forest",
+    "heat",
+    "lines",
+    "motion",
+    "numbers",
+    "pins",
+    "pool",
+    "publish",
+    "refit",
+    "scene",
+    "staircase",
+    "story",
+    "timeline",
+    "words",
+)
+PLOT = "vendor/uplot-1.6.32"  # https://github.com/leeoniya/uPlot, MIT
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
     "img-src data: blob:; worker-src blob:"
 )
 
 
-def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str]) -> str:
-    """The page as HTML, from what `content.content` gives; `sentence` and `particulars` are there before any script runs."""
+def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], story: Story) -> str:
+    """The page as HTML, from what `content.content` gives; `sentence`, `particulars` and `story` are there before any script
+    runs."""
     places = {
         "title": f"{escape(content['name'])}: {escape(sentence)}",
         "name": escape(content["name"]),
         "sentence": escape(sentence),
         "particulars": "".join(f"<p>{escape(line)}</p>" for line in particulars),
+        "cards": cards_html(story.cards),
+        "screens": screens_html(story.screens),
         "policy": POLICY,
         "style": asset("style.css"),
+        "plotstyle": asset(f"{PLOT}.min.css"),
         "method": asset("method.html"),
         "worker": _in_script(asset("worker.js")),
         "importmap": json.dumps({"imports": {f"page/{m}": _data_url(asset(f"{m}.js")) for m in MODULES}}),
-        "plotly": _in_script(asset("vendor/plotly-basic.min.js")),
-        "content": json.dumps(content, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"),
+        "plot": _in_script(asset(f"{PLOT}.iife.min.js")),
+        "content": json.dumps(
+            {**content, "story": {"screens": story.screens, "physical": story.physical}}, ensure_ascii=False, allow_nan=False
+        ).replace("<", "\\u003c"),
     }
     head, *rest = asset("page.html").split("{{")
     parts = [head]
