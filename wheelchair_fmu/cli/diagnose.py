@@ -13,18 +13,18 @@ from rich.table import Table
 from ..campaign import windows
 from ..handling.experiments import experiments
 from ..loop.bootstrap import Bootstrap, bootstrap
-from ..loop.profile import profiles as estimate_profiles
 from ..loop.story import story
 from ..loop.verdict import Diagnosis, insufficient
 from ..loop.verdict import diagnose as run_diagnosis
 from ..model.effects import bundled
-from ..model.generic import VARIABLES, library, profiles, terms
+from ..model.generic import library, terms
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save
 from ..report.words import helpers, outside, probability, tied, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
+from .missing import missing
 from .settings import subject
 from .staircase import staircase_table
 from .terminal import announce
@@ -65,7 +65,7 @@ def diagnose(
     measured = windows(measured)  # here already, so that the rest is not kept in memory
     with working("reading", lines=progress) as say:
         found = run_diagnosis(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
-    content = story(found)
+    content = {**story(found), "missing": missing(found)}
     stable = bootstrap(found, resamples) if resamples else None
     if stable:
         content["bootstrap"] = stable.as_json()
@@ -151,22 +151,14 @@ def _files(d: Diagnosis, content: dict[str, Any], folder: Path) -> list[Path]:
             save(figure, beside)
     if d.proposal:
         files.append(write_proposal(d, folder / "effects")[1])
-        files.append(_missing_picture(d, folder / "missing.png"))
+        files.append(_missing_picture(content["missing"], folder / "missing.png"))
     return files
 
 
-def _missing_picture(d: Diagnosis, file: Path) -> Path:
+def _missing_picture(lacking: Mapping[str, Any], file: Path) -> Path:
     """The proposed term's quantity as the data would have it, against each variable."""
-    assert d.proposal is not None
-    term = terms()[d.proposal.effect]
-    free = profiles(term)
-    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, free)
-    panels = [
-        {"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
-        for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
-    ]
     with written(file) as beside:
-        save(missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels), beside)
+        save(missing_figure(lacking["words"], lacking["unit"], lacking["panels"]), beside)
     return file
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,7 +14,7 @@ from ..campaign import CHANNELS, Campaign, windows
 from ..errors import Failure
 from ..handling.experiments import experiments
 from ..loop.evidence import Colour
-from ..loop.story import story as as_story
+from ..loop.story import story
 from ..loop.verdict import diagnose
 from ..model.generic import library
 from ..model.variant import Variant
@@ -24,6 +24,7 @@ from ..report.tale import story_of
 from ..report.words import particulars, sentence
 from ..writing import written
 from .group import Progress, working
+from .missing import missing
 from .settings import subject
 from .terminal import announce
 
@@ -47,11 +48,7 @@ def report(
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     measured = windows(measured)
     with working("reading", lines=progress) as say:
-        told = (
-            _read(diagnosis, measured)
-            if diagnosis
-            else as_story(diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed))
-        )
+        told = _read(diagnosis, measured) if diagnosis else _diagnosed(measured, chair, fixed, say)
         say("writing the page")
         html = _html(measured, _with_proposal(chair, told), told, fixed)
     with written(output) as beside:
@@ -59,12 +56,17 @@ def report(
     announce(output)
 
 
+def _diagnosed(measured: Campaign, chair: Variant, fixed: Sequence[str], say: Callable[[str], None]) -> dict[str, Any]:
+    found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
+    return {**story(found), "missing": missing(found)}
+
+
 def _html(measured: Campaign, chair: Variant, told: Mapping[str, Any], fixed: Sequence[str]) -> str:
     titles = {e.id: e.title for e in chair.catalogue.values()}
     records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
     colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
-    story = story_of(told, titles, records, {c.name: c for c in CHANNELS})
-    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), story)
+    tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
+    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), tale)
 
 
 def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from ..campaign import CHANNELS, Campaign, Run
 from ..campaign.channels import PUSHES
 from ..campaign.recorded import PUSHES_CLOCK
@@ -31,7 +29,7 @@ FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
 def content(
     campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any], fixed: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Everything that `page.html` shows, as JSON; series are base64 of little-endian doubles under the key "f64".
+    """Everything that `page.html` shows, as JSON; series are numbers under the key "f64", null in gaps.
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
@@ -143,5 +141,5 @@ def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
     }
 
 
-def _series(values: Iterable[float]) -> dict[str, str]:
-    return {"f64": b64encode(np.asarray(values, "<f8").tobytes()).decode()}
+def _series(values: Iterable[float]) -> dict[str, list[float | None]]:
+    return {"f64": [finite(float(v)) for v in values]}

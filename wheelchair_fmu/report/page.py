@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from base64 import b64encode
+import zlib
+from base64 import b64decode, b64encode
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
@@ -62,9 +63,7 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "worker": _in_script(asset("worker.js")),
         "importmap": json.dumps({"imports": {f"page/{m}": _data_url(asset(f"{m}.js")) for m in MODULES}}),
         "plot": _in_script(asset(f"{PLOT}.iife.min.js")),
-        "content": json.dumps(
-            {**content, "story": {"screens": story.screens, "physical": story.physical}}, ensure_ascii=False, allow_nan=False
-        ).replace("<", "\\u003c"),
+        "content": packed({**content, "story": {"screens": story.screens, "physical": story.physical}}),
     }
     head, *rest = asset("page.html").split("{{")
     parts = [head]
@@ -72,6 +71,19 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         name, _, text = piece.partition("}}")
         parts += [places[name], text]
     return "".join(parts)
+
+
+def packed(content: Mapping[str, Any]) -> str:
+    """JSON, deflated, in base64: measurements and models are most of the page."""
+    text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return b64encode(zlib.compress(text.encode(), 9)).decode()
+
+
+def unpacked(html: str) -> dict[str, Any]:
+    """The content of a page."""
+    stored = html.partition('id="content">')[2].partition("</script>")[0]
+    content: dict[str, Any] = json.loads(zlib.decompress(b64decode(stored)))
+    return content
 
 
 def asset(name: str) -> str:

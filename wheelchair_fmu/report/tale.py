@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..quantities import Quantity
+from ..quantities import Quantity, Unit
 from .cards import cards
 from .screens import screens
 from .told import Told, capital
@@ -31,11 +31,11 @@ class Story:
 
 
 def story_of(
-    diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity], channels: Mapping[str, Quantity]
+    diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity], units: Mapping[str, Unit]
 ) -> Story:
-    """All of it; `records` are effects' parameters and `channels` what is measured, by name."""
+    """All of it; `records` are effects' parameters, and `units` those of channels, by name."""
     t = Told(diagnosis, titles, records)
-    return Story(cards(t), screens(t), physical_words(t, channels))
+    return Story(cards(t), screens(t), physical_words(t, units))
 
 
 def channel_words(channel: str) -> str:
@@ -43,17 +43,15 @@ def channel_words(channel: str) -> str:
     return CHANNELS.get(channel, channel.replace("_", " "))
 
 
-def physical_words(t: Told, channels: Mapping[str, Quantity]) -> list[str]:
+def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
     """What is left on runs held out in each channel's own unit, where the diagnosis says so."""
     left = t.diagnosis.get("physical") or {}
     said = []
     for name, v in left.items():
-        record = channels.get(name)
-        if record is not None and v.get("heldout_rms") is not None:
+        unit = units.get(name)
+        if unit is not None and v.get("heldout_rms") is not None:
             share = f", {v['share_of_sd']:.0%} of how much it varies" if v.get("share_of_sd") is not None else ""
-            said.append(
-                f"{capital(channel_words(name))} is foretold to {value_text(v['heldout_rms'], None, record.unit)}{share}."
-            )
+            said.append(f"{capital(channel_words(name))} is foretold to {value_text(v['heldout_rms'], None, unit)}{share}.")
     return said
 
 

@@ -108,7 +108,7 @@ def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
 def value_text(value: float, se: float | None, unit: Unit) -> str:
     """ "1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
     shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
-    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ')}"
+    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ').replace('2', '²')}"
     value, se = value * shown.factor, se * shown.factor if se else None
     if not se or se <= 0:
         return f"{value:.3g}{name}".replace("-", "−")

@@ -2,7 +2,7 @@
 
 import * as address from "page/address";
 import { Controls, same } from "page/controls";
-import { byId, decoded, h } from "page/dom";
+import { byId, h, unpacked } from "page/dom";
 import { look } from "page/draw";
 import { together } from "page/errors";
 import { evidence } from "page/evidence";
@@ -19,6 +19,7 @@ import { channelOf, runOf, stepOf } from "page/words";
 
 const REST = 80; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
+const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const DEEP = 60; // changes that can be undone
 
 class App {
@@ -149,24 +150,24 @@ class App {
     this.pinned();
   }
 
-  /** The run and channel of which something is greatest, in runs that `judged` names. */
-  turnTo(measure) {
-    const held = this.campaign.runs.some((r) => r.role === "holdout");
+  /** The run and channel of which something is greatest, in runs held out, or in any where it is not `enough` there. */
+  turnTo(measure, enough = -Infinity) {
     let most = -Infinity, best = this.shown;
-    this.campaign.runs.forEach((run, i) => {
-      if (held && run.role !== "holdout") return;
-      for (const channel of Object.keys(run.channels)) {
-        const size = measure(i, channel);
-        if (size > most) [most, best] = [size, { run: i, channel, chosen: false }];
-      }
-    });
+    for (const wanted of [this.judgedRuns(), this.campaign.runs.map((_, i) => i)]) {
+      if (most > enough) break;
+      for (const i of wanted)
+        for (const channel of Object.keys(this.campaign.runs[i].channels)) {
+          const size = measure(i, channel);
+          if (size > most) [most, best] = [size, { run: i, channel, chosen: false }];
+        }
+    }
     if (best.run !== this.shown.run || best.channel !== this.shown.channel) this.turn(best);
   }
 
   /** Every step of the search, simulated beside: for what was before, and for errors in units of sensors. */
   async earlier() {
-    const { runs, diagnosis } = this.campaign, order = [...diagnosis.models].sort((a, b) => (b === diagnosis.models.at(-1)) - (a === diagnosis.models.at(-1)));
-    for (const model of order) { // the last first: it says where the search gained
+    const { runs, diagnosis } = this.campaign, first = [this.start, diagnosis.models.at(-1)], order = [...new Set([...first, ...diagnosis.models])];
+    for (const model of order) {
       const found = model === this.start && this.opensAtStart ? this.opened : await Promise.all(runs.map((_, run) => this.pool.later({ run, values: model.values, aside: true, brief: true }).catch(() => null)));
       this.steps.set(model.step, found);
       if (model === diagnosis.models.at(-1)) this.gained(found);
@@ -178,7 +179,7 @@ class App {
   gained(last) {
     if (this.shown.chosen || !this.opensAtStart || last.includes(null)) return;
     const mean = (r, c) => r.squares[c] / r.counts[c], fall = (i, c) => (mean(this.opened[i], c) - mean(last[i], c)) * (c in last[i].squares ? 1 : 0);
-    this.turnTo(fall);
+    this.turnTo(fall, SEEN);
   }
 
   /** The shown run as it was where the search began. */
@@ -398,15 +399,28 @@ function themed(redraw) {
   media.addEventListener("change", redraw);
 }
 
-const app = new App(decoded(JSON.parse(byId("content").textContent)));
-window.report = app; // for whoever wants to script the page
-themed(() => app.recolour());
-try {
-  app.begin();
-} catch (error) {
-  app.pool = null;
-  app.give(error.message);
+/** One sentence where this browser cannot do what the page needs. */
+function plead(why) {
+  byId("plea").hidden = false;
+  byId("plea").textContent = `This browser cannot run the model (${why}); what the diagnosis found stands in the text.`;
+  for (const id of ["try", "evidence", "ties"]) byId(id).hidden = true;
 }
+
+async function opened() {
+  if (typeof DecompressionStream !== "function") throw new Error("it cannot unpack the measurements");
+  const app = new App(await unpacked(byId("content").textContent));
+  window.report = app; // for whoever wants to script the page
+  themed(() => app.recolour());
+  try {
+    app.begin();
+  } catch (error) {
+    app.pool = null;
+    app.give(error.message);
+  }
+  return app;
+}
+
+const app = await opened().catch((error) => { plead(error.message); throw error; });
 let width = innerWidth, settling;
 addEventListener("resize", () => {
   clearTimeout(settling);

@@ -66,7 +66,7 @@ export function extent(...series) {
 export function wrapped(words, letters) {
   const lines = [""];
   for (const word of words.split(/\s+/)) {
-    for (const piece of word.match(new RegExp(`.{1,${Math.max(letters, 4)}}`, "gu")) ?? [""]) {
+    for (const piece of word.match(new RegExp(`.{1,${Math.max(Math.floor(letters), 4)}}`, "gu")) ?? [""]) {
       if (lines.at(-1) && lines.at(-1).length + 1 + piece.length > letters) lines.push(piece);
       else lines[lines.length - 1] += (lines.at(-1) ? " " : "") + piece;
     }
