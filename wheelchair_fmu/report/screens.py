@@ -66,7 +66,8 @@ def _answer(t: Told, effect: str) -> str:
     row = t.rows[effect]
     later = t.found and t.rows[t.found[0]]["heldout_before"] != row["heldout_before"]
     once = f" once {t.title(t.found[0])} is in" if later else ""
-    error = "" if row["heldout_after"] is None else f" The error comes to {row['heldout_after']:.2f}{once}."
+    comes = t.error(effect)
+    error = "" if comes is None else f" The error comes to {comes:.2f}{once}."
     if t.verdict in ("adequate", "cannot_see") or (t.verdict == "small" and effect in t.found):
         if row["power"] >= 0.8:
             return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
@@ -146,7 +147,7 @@ def bars(t: Told) -> list[dict[str, Any]]:
     """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]."""
     tried = [r for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
     with_each = [
-        {"title": t.title(r["effect"]), "error": r["heldout_after"], "found": r["effect"] in t.found} for r in tried[:6]
+        {"title": t.title(r["effect"]), "error": t.error(r["effect"]), "found": r["effect"] in t.found} for r in tried[:6]
     ]
     before, after = t.fall
     whole = (

@@ -52,6 +52,10 @@ class Told:
         before = next((s for s in ladder if s["step"] == self.diagnosis.get("begins", "calibrated")), ladder[0])
         return float(before[self.key]), float(ladder[-1][self.key])
 
+    def error(self, effect: str) -> float | None:
+        """The error on runs held out with an effect in; of what was found alone, that of the last step, as everywhere."""
+        return self.fall[1] if self.found == [effect] else self.rows[effect]["heldout_after"]
+
     @property
     def proposal(self) -> Mapping[str, Any] | None:
         return (self.diagnosis.get("leftover") or {}).get("proposal")

@@ -8,7 +8,8 @@ import { together } from "page/errors";
 import { evidence } from "page/evidence";
 import { Figures } from "page/figures";
 import { lacking, reckoned, rolled } from "page/motion";
-import { display, rms, unitText } from "page/numbers";
+import { mini } from "page/mini";
+import { display, rms, significant, unitText } from "page/numbers";
 import { Pins } from "page/pins";
 import { Pool } from "page/pool";
 import { refit } from "page/refit";
@@ -172,7 +173,21 @@ class App {
       this.steps.set(model.step, found);
       if (model === diagnosis.models.at(-1)) this.gained(found);
       this.figures.all.physical.redraw();
+      this.fallen();
     }
+  }
+
+  /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
+  fallen() {
+    const [from, to] = [this.start.step, this.campaign.diagnosis.models.at(-1).step];
+    if (from === to || ![from, to].every((s) => this.steps.has(s))) return;
+    const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
+    const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
+    if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
+    const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
+    const card = document.querySelectorAll(".card")[1];
+    card.querySelector(".physical")?.remove();
+    card.querySelector(".lead").nextElementSibling?.after(h("p", { class: "physical" }, words));
   }
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
@@ -259,6 +274,7 @@ class App {
     this.scene.show(this.motion, this.look ??= look(), run.name);
     const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
     this.timeline.show(this.shown.channel, result, before, pinned);
+    mini(document.querySelector(".mini"), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
   }
 
   /** `rested`: also what takes long to sort. */

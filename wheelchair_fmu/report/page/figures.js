@@ -72,7 +72,7 @@ export class Figures {
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
-      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, in the smallest that would matter", 1),
+      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, in the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
       caption: () => `Each effect's size as refitted, or as its slope foretells, in the smallest that would matter. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
@@ -85,7 +85,7 @@ export class Figures {
       return { name: capital(record.meaning ?? name), value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), strong: Math.abs(off) > 2 || v.at_bound, parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
-      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", 1),
+      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
       columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "bound"].map((k) => [k, rows.map((r) => r[k])])),
       caption: () => `What calibration made of the values that the campaign gives; zero is the value given and the band one standard deviation of it.${rows.some((r) => r.bound) ? ` At a bound: ${rows.filter((r) => r.bound).map((r) => r.name).join(", ")}.` : ""}`,
     };
@@ -138,7 +138,7 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => "Error of each run and channel in units of the noise. Colour begins where it is more than noise; choose a cell to see it.",
+      caption: () => "Error of each run and channel in units of the noise. Colour begins where it is more than noise.",
     };
   }
 

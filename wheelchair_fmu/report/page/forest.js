@@ -6,19 +6,20 @@ import { significant } from "page/numbers";
 
 const ROW = 24, CLIP = 12;
 
-/** `rows` are [{name, value, low, high, note, strong}], in units of `unit`; the band from −`band` to `band` is shaded. */
-export function forest(width, look, rows, unit, band) {
+/** `rows` are [{name, value, low, high, note, strong}], in units of `unit`; the band from −`band` to `band` is
+ *  what the words `shaded` say. */
+export function forest(width, look, rows, unit, shaded, band = 1) {
   const narrow = width < 560, left = narrow ? 12 : Math.min(340, 0.42 * width), right = narrow ? 12 : 140, high = narrow ? 2 * ROW : ROW;
   const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
   let [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), end = 30 + high * rows.length, drawn = [];
   drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
   for (const v of ticks(low, most, (width - left - right) / 70)) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, tick(v), look.faint, "middle", { "font-size": 11 }));
-  drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, narrow ? "shaded: of no interest" : band === 1 ? "shaded: too small to matter" : "shaded: as was given", look.faint, "middle", { "font-size": 11 }));
+  drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => {
     const y = 24 + high * (i + 0.5) + (narrow ? 8 : 4), colour = r.strong ? look.accent : look.faint, [a, b] = [Math.max(r.low, low), Math.min(r.high, most)];
     const weight = { "font-weight": r.strong ? 600 : 400 };
-    drawn.push(narrow ? text(left, y - 11, short(r.name, Math.floor(width / 6.6)), look.ink, "start", weight) : text(left - 10, y + 4, short(r.name, Math.floor(left / (r.strong ? 7.4 : 6.7))), look.ink, "end", weight));
+    drawn.push(narrow ? text(left, y - 11, short(r.name, Math.floor((width - 20) / 7.4 - 0.9 * r.note.length)), look.ink, "start", weight) : text(left - 10, y + 4, short(r.name, Math.floor(left / (r.strong ? 7.4 : 6.7))), look.ink, "end", weight));
     if (a < b) drawn.push(line(across(a), y, across(b), y, colour, { "stroke-width": r.strong ? 3 : 2 }));
     for (const [beyond, at, way] of [[r.low < low, low, -1], [r.high > most, most, 1]])
       if (beyond) drawn.push(svg("path", { d: `M${across(at)} ${y}l${-7 * way} -4v8z`, fill: colour }));

@@ -52,7 +52,7 @@ export function heat(width, look, heads, rows) {
   named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": 11 }))));
   rows.forEach((row, i) => {
     const y = top + high * i;
-    drawn.push(text(left - 8, y + high / 2 + 4, short(row.name, Math.floor(left / 6.4)), look.ink, "end"));
+    drawn.push(text(left - 8, y + high / 2 + 4, short(row.name, Math.floor(left / 7.2)), look.ink, "end"));
     row.cells.forEach((c, j) => {
       const x = left + wide * j;
       drawn.push(svg("rect", { x: x + 1, y: y + 1, width: wide - 2, height: high - 2, fill: look.error, "fill-opacity": loud(c.value) / 100, stroke: look.line }),
