@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,16 @@ def test_an_address_that_fits_nothing_is_passed_over(browser, report_file, end):
 
 def test_one_time_for_chair_curves_and_readings(reader):
     page = reader.page
+    over = page.locator("#overlay .u-over").first
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    page.mouse.move(box["x"] + box["width"] * 0.2, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] * 0.5, box["y"] + 40, steps=4)
+    page.mouse.up()
+    zoomed = page.evaluate("[report.timeline.from, report.timeline.to]")
+    length = page.evaluate("report.timeline.time.at(-1)")
+    assert zoomed == pytest.approx([0.2 * length, 0.5 * length], abs=0.02 * length)
     page.evaluate("report.timeline.zoom(2, 6)")
     page.check(f"#effect-{HIDDEN}")
     reader.settle()
@@ -170,7 +181,7 @@ def test_on_a_phone_a_tick_and_its_effect_are_on_one_screen(browser, report_file
     reader.settle()
     figure = reader.page.locator("#now-heldout").bounding_box()
     assert 0 <= figure["y"] < 844 and reader.page.inner_text("#now-heldout") == f"{TOP['heldout']:.2f}"
-    curve = reader.page.locator(".mini canvas, .mini svg").bounding_box()
+    curve = reader.page.locator(".mini").bounding_box()
     assert 0 <= curve["y"] < 844
     reader.close()
 
@@ -210,4 +221,13 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()
     assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
+    reader.close()
+
+
+def test_print_is_two_pages_on_white(browser, report_file):
+    reader = Reader(browser, report_file, scheme="dark")
+    reader.page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
     reader.close()

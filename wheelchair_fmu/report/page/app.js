@@ -255,13 +255,16 @@ class App {
   want(what) {
     this.wished ??= new Set();
     this.wished.add(what);
-    this.frame ??= requestAnimationFrame(() => {
-      const began = performance.now(), wished = this.wished;
-      this.frame = this.wished = null;
-      if (wished.has("run")) this.drawRun();
-      if (wished.has("all") || wished.has("rested")) this.drawAll(wished.has("rested"));
-      this.costs.push({ ms: performance.now() - began, rested: wished.has("rested") });
-    });
+    this.frame ??= requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    const began = performance.now(), wished = this.wished;
+    this.frame = this.wished = null;
+    if (!wished) return;
+    if (wished.has("run")) this.drawRun();
+    if (wished.has("all") || wished.has("rested")) this.drawAll(wished.has("rested"));
+    this.costs.push({ ms: performance.now() - began, rested: wished.has("rested") });
   }
 
   drawRun() {
@@ -443,4 +446,15 @@ addEventListener("resize", () => {
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
 addEventListener("hashchange", () => { if (location.hash !== app.hash) location.reload(); });
-addEventListener("beforeprint", () => app.figures.redraw());
+let theme;
+addEventListener("beforeprint", () => {
+  theme = document.documentElement.dataset.theme;
+  document.documentElement.dataset.theme = "light"; // paper is white
+  app.recolour();
+  if (app.wished) app.paint();
+});
+addEventListener("afterprint", () => {
+  if (theme) document.documentElement.dataset.theme = theme;
+  else delete document.documentElement.dataset.theme;
+  app.recolour();
+});

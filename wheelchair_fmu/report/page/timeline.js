@@ -58,7 +58,7 @@ export class Timeline {
     const record = this.campaign.channels.find((c) => c.name === channel), { unit, factor } = display(record);
     const scaled = (series) => (factor === 1 ? series : series.map((v) => v * factor));
     Object.assign(this, { result, channel });
-    this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["as the page opened", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
+    this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
       ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
     this.errors = result.errors[channel];
     this.unit = `${channel.replaceAll("_", " ")} [${unitText(unit) || "1"}]`;
@@ -87,16 +87,15 @@ export class Timeline {
     const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
     return {
       ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
-      cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6 }, points: { size: 6 }, y: false },
-      scales: { x: { time: false, range: (_, low, high) => [low, high] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
+      cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
+      scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
         { ...axis, size: AXIS - 18, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => vs.map((v) => String(v).replace("-", "−")) }],
       hooks: {
-        setScale: [(plot, key) => { if (key === "x" && this.plots.includes(plot)) this.zoomed(plot.scales.x.min, plot.scales.x.max); }],
+        setSelect: [(plot) => this.selected(plot)],
         setCursor: [(plot) => { if (!this.playing && plot.cursor.event && plot.cursor.left >= 0) this.go(plot.posToVal(plot.cursor.left, "x"), true); }],
         drawClear: index ? [(plot) => this.band(plot)] : [],
         init: [(plot) => plot.over.addEventListener("dblclick", () => this.whole.click())],
-        ready: [(plot) => plot.setScale("x", { min: this.from, max: this.to })],
       },
     };
   }
@@ -112,15 +111,19 @@ export class Timeline {
     plot.ctx.fillRect(left, top, width, low - top);
   }
 
-  zoomed(from, to) {
-    if (from === this.from && to === this.to) return;
+  /** What was drawn over with the pointer is shown whole. */
+  selected(plot) {
+    const { left, width } = plot.select;
+    if (width < 6) return;
+    const [from, to] = [left, left + width].map((p) => plot.posToVal(p, "x"));
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
     this.zoom(from, to);
     this.moved();
   }
 
   zoom(from, to) {
     [this.from, this.to] = [from, to];
-    for (const plot of this.plots) if (plot.scales.x.min !== from || plot.scales.x.max !== to) plot.setScale("x", { min: from, max: to });
+    for (const plot of this.plots) plot.setScale("x", { min: from, max: to });
     this.place();
   }
 
