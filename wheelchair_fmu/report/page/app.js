@@ -45,7 +45,7 @@ class App {
     this.shown = this.firstShown();
     this.figures.alive();
     this.scene = new Scene(this.figures.all.path.drawing, campaign);
-    this.timeline = new Timeline(this.figures.all.overlay.drawing, campaign, this.scene, (channel) => this.show(this.shown.run, channel), () => this.write());
+    this.timeline = new Timeline(this.figures.all.overlay.drawing, this.figures.all.path.drawing, campaign, this.scene, (channel) => this.show(this.shown.run, channel), () => this.write());
     this.timeline.begin(campaign.runs[this.shown.run], state);
     this.controls = new Controls(byId("controls"), campaign, state.values, (values) => this.set(values), (values) => this.fitTogether(values));
     this.start = this.controls.start();

@@ -32,10 +32,10 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
 
 /** Bars of errors from the noise upwards: [{title, error, found}]. */
 export function bars(width, look, rows) {
-  const high = 40, most = Math.max(1.3, ...rows.map((r) => r.error)) * 1.02, least = Math.min(0.95, ...rows.map((r) => r.error)) - 0.02, drawn = [];
+  const high = 40, most = Math.max(1.3, ...rows.map((r) => r.error)) * 1.02, least = 0.997 * Math.min(1, ...rows.map((r) => r.error)), drawn = [];
   const across = (v) => 4 + (width - 60) * (Math.log(v / least) / Math.log(most / least));
   rows.forEach((r, i) => {
-    const y = i * high, colour = r.found ? look.accent : look.before;
+    const y = i * high, colour = r.found ? look.accent : look.faint;
     drawn.push(text(4, y + 14, short(r.title, Math.floor(width / 6.3)), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
       svg("rect", { x: Math.min(across(1), across(r.error)), y: y + 20, width: Math.max(2, Math.abs(across(r.error) - across(1))), height: 11, rx: 2, fill: colour }), text(Math.max(across(r.error), across(1)) + 7, y + 30, r.error.toFixed(2), look.ink));
   });

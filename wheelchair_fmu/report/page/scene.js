@@ -6,6 +6,7 @@ import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
+const LEGEND = 84; // px
 
 export class Scene {
   constructor(place, campaign) {
@@ -25,7 +26,7 @@ export class Scene {
   }
 
   fit() {
-    const width = Math.max(260, this.canvas.parentNode.clientWidth), height = Math.round(Math.min(470, Math.max(380, width * 0.95))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.canvas.parentNode.clientWidth), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
     this.lying = xs[1] - xs[0] > ys[1] - ys[0];
@@ -34,8 +35,9 @@ export class Scene {
       for (const c of [this.canvas, this.paths]) [c.width, c.height] = [width * scale, height * scale];
       this.canvas.style.height = `${height}px`;
     }
-    this.over = this.lying ? { x: 0, y: 0, w: width, h: Math.round(height * 0.4) } : { x: 0, y: 0, w: Math.round(width * 0.4), h: height };
-    this.near = this.lying ? { x: 0, y: this.over.h, w: width, h: height - this.over.h } : { x: this.over.w, y: 0, w: width - this.over.w, h: height };
+    const inner = height - LEGEND, part = 0.36;
+    this.over = this.lying ? { x: 0, y: 0, w: width, h: Math.round(inner * part) } : { x: 0, y: 0, w: Math.round(width * part), h: inner };
+    this.near = this.lying ? { x: 0, y: this.over.h, w: width, h: inner - this.over.h } : { x: this.over.w, y: 0, w: width - this.over.w, h: inner };
     const [[left, right], [top, bottom]] = this.lying ? [xs, ys] : [ys, [-xs[1], -xs[0]]], room = 0.5, edge = 26;
     const zoom = Math.min((this.over.w - 2 * edge) / (right - left + 2 * room), (this.over.h - 2 * edge) / (bottom - top + 2 * room));
     this.zoom = zoom;
@@ -181,7 +183,7 @@ export class Scene {
   }
 
   legend(c, i) {
-    const { look, motion: { lacking, measured }, near } = this, said = [];
+    const { look, motion: { lacking, measured } } = this, said = [];
     const [force, moment] = [lacking.force?.[i], lacking.moment?.[i]];
     if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
     if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
@@ -189,10 +191,9 @@ export class Scene {
     const rows = [["model", look.model], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", look.measured], ["push", look.good], ["side force of a tyre", look.ink],
       said.length && [`missing: ${said.join(", ")} (arrow × 10)`, look.error]].filter(Boolean);
     rows.forEach(([words, colour], k) => {
-      const y = near.y + near.h - 8 - 15 * (rows.length - 1 - k);
-      c.globalAlpha = 0.82; c.fillStyle = look.paper; c.fillRect(near.x + 5, y - 10, 17 + c.measureText(words).width, 14); c.globalAlpha = 1;
-      c.fillStyle = colour; c.fillRect(near.x + 7, y - 8, 9, 9);
-      c.fillStyle = look.ink; c.fillText(words, near.x + 20, y);
+      const y = this.height - LEGEND + 18 + 15 * k;
+      c.fillStyle = colour; c.fillRect(2, y - 8, 9, 9);
+      c.fillStyle = look.ink; c.fillText(words, 16, y);
     });
   }
 }

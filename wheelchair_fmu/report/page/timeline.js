@@ -3,19 +3,21 @@
 import { h } from "page/dom";
 import { look } from "page/draw";
 import { display, significant, unitText } from "page/numbers";
+import { channelOf } from "page/words";
 
 const AXIS = 62; // px left of every chart, so that their times stand above one another
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
 
 export class Timeline {
-  /** `choose(channel)` is called from the readings, `moved()` when time, zoom or speed have been set by hand. */
-  constructor(place, campaign, scene, choose, moved) {
+  /** Curves and player go into `place`, readings `beside`. `choose(channel)` is called from the readings, `moved()` when time, zoom or speed have been set by hand. */
+  constructor(place, beside, campaign, scene, choose, moved) {
     Object.assign(this, { campaign, scene, choose, moved });
     this.at = this.from = this.to = 0;
     this.playing = false;
     this.charts = [h("div", { class: "chart" }), h("div", { class: "chart" })];
-    place.append(h("div", { class: "curves" }, this.key = h("p", { class: "key" }), this.charts), this.player(), this.readings = h("table", { class: "readings" }));
+    place.append(h("div", { class: "curves" }, this.key = h("p", { class: "key" }), this.charts), this.player());
+    beside.append(this.readings = h("table", { class: "readings" }));
     this.colours();
     this.plots = [];
   }
@@ -50,7 +52,7 @@ export class Timeline {
     this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),
       h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error [σ]"].map((t) => h("th", { scope: "col" }, t)))),
       h("tbody", {}, this.cells.map((c) => h("tr", { "data-channel": c.name }, h("th", { scope: "row" },
-        h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, c.name.replaceAll("_", " "))), c.measured, c.model, c.error))));
+        h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
   }
 
   /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...]. */
@@ -90,12 +92,14 @@ export class Timeline {
       cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
-        { ...axis, size: AXIS - 18, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => vs.map((v) => String(v).replace("-", "−")) }],
+        { ...axis, size: AXIS - 18, space: index ? 24 : 36, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => vs.map((v) => String(v).replace("-", "−")) }],
       hooks: {
         setSelect: [(plot) => this.selected(plot)],
-        setCursor: [(plot) => { if (!this.playing && plot.cursor.event && plot.cursor.left >= 0) this.go(plot.posToVal(plot.cursor.left, "x"), true); }],
         drawClear: index ? [(plot) => this.band(plot)] : [],
-        init: [(plot) => plot.over.addEventListener("dblclick", () => this.whole.click())],
+        init: [(plot) => {
+          plot.over.addEventListener("dblclick", () => this.whole.click());
+          plot.over.addEventListener("mousemove", ({ clientX }) => { if (!this.playing) this.go(plot.posToVal(clientX - plot.over.getBoundingClientRect().left, "x")); });
+        }],
       },
     };
   }
