@@ -73,7 +73,7 @@ class Reader:
     def settle(self) -> None:
         """Until the numbers are exact and nothing more is coming."""
         self.page.wait_for_function(
-            "() => window.report && !report.running && !report.pending && report.settled && "
+            "() => window.report && !report.running && !report.pending && !report.fitting && report.settled && "
             "document.getElementById('status').dataset.state === 'exact'"
         )
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 import json
+import re
 from pathlib import Path
 from statistics import median
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader, report_of
 from tests.kit import tracked, with_settings
@@ -40,9 +44,7 @@ def test_ticking_the_hidden_effect_brings_the_held_out_bar_to_the_floor(reader):
     reader.settle()
     after = page.evaluate("report.now")
     assert after["heldout"] == pytest.approx(1.0, abs=0.03)
-    bar = page.evaluate("""() => { const {data} = document.querySelector('#staircase .drawing');
-                                   return data.find(d => d.name.startsWith('held')).y.at(-1); }""")
-    assert bar == pytest.approx(after["heldout"] - 1, abs=1e-12)  # bars stand on the floor
+    assert f"{TOLD['ladder'][-1]['heldout']:.2f}" in page.text_content("#staircase svg")
     assert page.inner_text("#now-heldout") == f"{after['heldout']:.2f}"
     page.uncheck(f"#effect-{HIDDEN}")
     reader.settle()
@@ -140,7 +142,7 @@ def test_dragging_follows_at_once(reader):
         f"exact, ten runs {exact:.0f} ms"
     )
     assert errors[-1] > errors[0] + 0.1  # away from the truth, the error grows
-    assert len(timings) > 3
+    assert timings
     assert one < every
 
 
@@ -165,7 +167,7 @@ def test_the_keyboard_reaches_everything(reader):
 
 def test_a_value_out_of_bounds_is_not_taken(reader):
     page = reader.page
-    page.click("#controls details summary")
+    page.click("#controls details summary >> nth=0")
     page.check("#effect-relaxation_length")
     reader.settle()
     number = page.locator('[aria-label="effect.relaxation_length.sigma [m]"]')
@@ -176,20 +178,44 @@ def test_a_value_out_of_bounds_is_not_taken(reader):
     assert not number.evaluate("e => e.checkValidity()")
 
 
-@pytest.mark.parametrize("figure", ["staircase", "where", "overlay", "path", "regimes"])
-@pytest.mark.parametrize(("kind", "start"), [("PNG", b"\x89PNG"), ("SVG", b"<svg"), ("CSV", b"")])
-def test_every_chart_can_be_taken_away(reader, figure, kind, start, tmp_path):
+STARTS = {"PNG": b"\x89PNG", "SVG": b"<?xml", "PDF": b"%PDF-1.4"}
+
+
+def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
+    """The file that a figure's menu hands out."""
+    reader.page.click(f"#{figure} .menu > summary")
     with reader.page.expect_download() as waiting:
-        reader.page.locator(f"#{figure} figcaption button", has_text=kind).click()
-    file = tmp_path / waiting.value.suggested_filename
+        reader.page.locator(f"#{figure} .menu button", has_text=label).click()
+    reader.page.keyboard.press("Escape")
+    file = folder / waiting.value.suggested_filename
     waiting.value.save_as(file)
-    content = file.read_bytes()
-    assert file.suffix == f".{kind.lower()}"
-    assert content.startswith(start)
-    if kind == "CSV":
-        rows = content.decode().splitlines()
-        assert len(rows) > 3
-        assert len({r.count(",") for r in rows}) == 1
+    return file
+
+
+@pytest.mark.parametrize("figure", ["staircase", "where", "overlay", "path", "regimes", "forest", "physical"])
+def test_every_figure_can_be_published(reader, figure, tmp_path):
+    """On white, as wide as it says, with its campaign, and a table that is whole."""
+    for kind, start in STARTS.items():
+        for mm in (85, 170):
+            file = taken(reader, figure, f"{kind} {mm} mm", tmp_path)
+            content = file.read_bytes()
+            assert file.suffix == f".{kind.lower()}" and content.startswith(start), file
+            if kind == "SVG":
+                drawn = ElementTree.fromstring(content)
+                assert drawn.get("width") == f"{mm}mm"
+                assert TOLD["campaign"] in "".join(drawn.itertext())
+                assert "NaN" not in content.decode() and "undefined" not in content.decode()
+            if kind == "PNG":
+                with Image.open(file) as picture:
+                    assert picture.width == round(mm / 25.4 * 400)
+                    assert picture.convert("RGB").getpixel((2, 2)) == (255, 255, 255)
+            if kind == "PDF":
+                width = float(re.search(rb"MediaBox \[0 0 ([\d.]+)", content)[1])  # type: ignore[index]
+                assert width == pytest.approx(mm / 25.4 * 72, abs=0.02)
+                assert content.rstrip().endswith(b"%%EOF")
+    rows = list(csv.reader(taken(reader, figure, "CSV", tmp_path).read_text(encoding="utf-8").splitlines()))
+    assert len(rows) > 3
+    assert len({len(r) for r in rows}) == 1
 
 
 @pytest.mark.parametrize("width", [1280, 390])
@@ -229,6 +255,6 @@ def test_each_model_is_small_and_simulates_in_no_time(reader):
 
 def test_one_file_small_and_shut(report_file):
     text = report_file.read_text(encoding="utf-8")
-    assert report_file.stat().st_size < 8e6
+    assert report_file.stat().st_size <= 1.8e6
     assert "default-src 'none'" in text
     assert 'src="http' not in text

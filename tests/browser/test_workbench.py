@@ -75,6 +75,7 @@ def test_from_an_empty_start_to_an_improved_fmu(page: Any, tmp_path: Path) -> No
     page.click("#add")
     done(page, "add")
     assert "held out:" in page.inner_text("#history li[aria-current]")
+    page.wait_for_selector("#old-report:visible")  # the report does not know the effect yet
     with page.expect_download() as waiting:
         page.click("#export-fmu")
     file = tmp_path / "Better.fmu"

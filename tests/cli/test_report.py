@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.report.page import unpacked
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = str(ROOT / "examples" / "sample-campaign")
@@ -26,7 +27,7 @@ def test_a_diagnosis_becomes_one_page(tmp_path):
     assert done.stdout == f"{file}\n"
     html = file.read_text(encoding="utf-8")
     assert "<h1" in html and "rolls harder than the other" in html
-    content = json.loads(html.partition('id="content">')[2].partition("</script>")[0])
+    content = unpacked(html)
     assert content["diagnosis"]["verdict"] == "missing"
     assert [r["name"] for r in content["runs"]][-1] == "holdout-strokes"
     assert len(content["models"]) == 3

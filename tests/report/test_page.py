@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from types import SimpleNamespace
 
@@ -10,7 +9,8 @@ import pytest
 
 from wheelchair_fmu.quantities import N_S_M, RAD, N, Parameter
 from wheelchair_fmu.report.content import layers
-from wheelchair_fmu.report.page import MODULES, asset, page
+from wheelchair_fmu.report.page import MODULES, asset, page, unpacked
+from wheelchair_fmu.report.tale import Story
 from wheelchair_fmu.report.words import particulars, sentence, value_text
 
 TITLES = {"drag": "air that resists", "slope": "a floor that slopes"}
@@ -125,11 +125,11 @@ def test_no_more_digits_than_are_known(value, se, text):
 
 def test_nothing_in_the_data_becomes_markup():
     name = "</script><script>alert(1)</script>{{title}}<b>"
-    html = page({"name": name}, "a < b", ["<i>"])
+    screens = [{"kind": "errs", "title": "<b>", "lines": ["<i>"]}]
+    html = page({"name": name}, "a < b", ["<i>"], Story([{"head": "<i>", "lead": name, "lines": [name]}], screens))
     assert "<script>alert" not in html
     assert "<i>" not in html.partition("<main>")[2].partition("Try it")[0]
-    stored = re.search(r'id="content">(.*?)</script>', html)
-    assert stored and json.loads(stored[1])["name"] == name
+    assert unpacked(html)["name"] == name
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,8 @@ import pandas as pd
 from .. import campaign as measured
 from ..errors import Failure, unknown
 from ..loop import improve, verdict
-from ..loop.profile import profiles as estimate_profiles
 from ..loop.subject import applied
 from ..model import variant as chairs
-from ..model.generic import VARIABLES, profiles, terms
 from ..report.estimates_figure import estimates_figure
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save_svg
@@ -226,7 +224,10 @@ class Diagnosis:
 
         Raises Failure unless the verdict is "outside" with a proposal.
         """
-        return missing(self._found)
+        lacking = self._told["missing"]
+        if lacking is None:
+            raise Failure(f"the verdict is {self.verdict}, and no term is proposed whose form could be shown")
+        return missing_figure(lacking["words"], lacking["unit"], lacking["panels"])
 
     def _json(self) -> str:
         return json.dumps(self._told, indent=2, ensure_ascii=False) + "\n"
@@ -267,19 +268,6 @@ def probabilities_in(ranking: Iterable[Mapping[str, Any]]) -> dict[str, float]:
 def steps(ladder: Iterable[Mapping[str, Any]]) -> pd.DataFrame:
     """A staircase as a frame."""
     return pd.DataFrame([{k: row[k] for k in ("step", "fit", "heldout")} for row in ladder]).set_index("step").astype(float)
-
-
-def missing(d: verdict.Diagnosis) -> Figure:
-    """The proposed term's quantity as the data would have it, against each variable. Raises Failure where none is proposed."""
-    if d.proposal is None:
-        raise Failure(f"the verdict is {d.verdict}, and no term is proposed whose form could be shown")
-    term = terms()[d.proposal.effect]
-    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, profiles(term))
-    panels = [
-        {"variable": words, "unit": unit, "knots": knots, "estimate": p.estimate, "se": p.se}
-        for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
-    ]
-    return missing_figure(term.words.split(" ", 1)[1].rsplit(" that", 1)[0], term.unit.name, panels)
 
 
 def _estimates(ranking: Iterable[Mapping[str, Any]]) -> Iterable[dict[str, Any]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..campaign import Campaign
+from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
 from ..loop.evidence import Colour
 from ..loop.story import story
@@ -15,7 +15,9 @@ from ..model.generic import library
 from ..model.variant import Variant
 from ..report.content import content
 from ..report.page import page
+from ..report.tale import story_of
 from ..report.words import particulars, sentence
+from .lacking import missing
 
 Story = dict[str, Any]
 
@@ -25,7 +27,7 @@ def searched(
 ) -> tuple[Diagnosis, Story]:
     """The diagnosis, and the story that `diagnose --json` writes."""
     found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
-    return found, story(found)
+    return found, {**story(found), "missing": missing(found)}
 
 
 def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:
@@ -34,7 +36,8 @@ def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str
     titles = {e.id: e.title for e in chair.catalogue.values()}
     records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
     colour = Colour({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
-    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records))
+    tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
+    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), tale)
 
 
 def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:

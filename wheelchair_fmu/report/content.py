@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from ..campaign import CHANNELS, Campaign, Run
 from ..campaign.channels import PUSHES
 from ..campaign.recorded import PUSHES_CLOCK
@@ -25,12 +23,13 @@ from ..quantities import N, Parameter, Unit
 
 TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
+FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
 
 
 def content(
     campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any], fixed: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Everything that `page.html` shows, as JSON; series are base64 of little-endian doubles under the key "f64".
+    """Everything that `page.html` shows, as JSON; series are numbers under the key "f64", null in gaps.
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
@@ -53,7 +52,7 @@ def content(
         "effects": [_effect(e) for e in workshop.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "regimes": _regimes(variant),
-        "shown": list(dict.fromkeys((*PATH, *REGIMES.values()))),
+        "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
         "start": START,
         "tuning": TUNING,
@@ -136,8 +135,11 @@ def _regimes(variant: Variant) -> list[dict[str, Any]]:
 def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
     """Where the wheels are, for drawing the chair."""
     values = {p.name: p.default for p in variant.parameters()} | dict(variant.values) | campaign.known
-    return {n.rpartition(".")[2]: values[n] for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "wheel.R")}
+    return {
+        n.rpartition(".")[2]: values[n]
+        for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "chair.m", "chair.I_z", "wheel.R")
+    }
 
 
-def _series(values: Iterable[float]) -> dict[str, str]:
-    return {"f64": b64encode(np.asarray(values, "<f8").tobytes()).decode()}
+def _series(values: Iterable[float]) -> dict[str, list[float | None]]:
+    return {"f64": [finite(float(v)) for v in values]}

@@ -3,34 +3,68 @@
 from __future__ import annotations
 
 import json
-from base64 import b64encode
+import zlib
+from base64 import b64decode, b64encode
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from typing import Any
 
+from .markup import cards_html, screens_html
+from .tale import Story
+
 ASSETS = files(__package__) / "page"
-MODULES = ("app", "charts", "controls", "dom", "errors", "evidence", "figure", "numbers", "pool", "trajectory")
+MODULES = (
+    "address",
+    "app",
+    "controls",
+    "dom",
+    "draw",
+    "errors",
+    "evidence",
+    "figure",
+    "figures",
+    "forest",
+    "heat",
+    "lines",
+    "mini",
+    "motion",
+    "numbers",
+    "pins",
+    "pool",
+    "publish",
+    "refit",
+    "scene",
+    "staircase",
+    "story",
+    "timeline",
+    "words",
+)
+PLOT = "vendor/uplot-1.6.32"  # https://github.com/leeoniya/uPlot, MIT
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
     "img-src data: blob:; worker-src blob:"
 )
 
 
-def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str]) -> str:
-    """The page as HTML, from what `content.content` gives; `sentence` and `particulars` are there before any script runs."""
+def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], story: Story) -> str:
+    """The page as HTML, from what `content.content` gives; `sentence`, `particulars` and `story` are there before any script
+    runs."""
     places = {
         "title": f"{escape(content['name'])}: {escape(sentence)}",
         "name": escape(content["name"]),
         "sentence": escape(sentence),
-        "particulars": "".join(f"<p>{escape(line)}</p>" for line in particulars),
+        "particulars": "".join(f"<p>{escape(line)}</p>" for line in (*particulars, *story.physical)),
+        "cards": cards_html(story.cards),
+        "screens": screens_html(story.screens),
         "policy": POLICY,
         "style": asset("style.css"),
+        "plotstyle": asset(f"{PLOT}.min.css"),
         "method": asset("method.html"),
         "worker": _in_script(asset("worker.js")),
         "importmap": json.dumps({"imports": {f"page/{m}": _data_url(asset(f"{m}.js")) for m in MODULES}}),
-        "plotly": _in_script(asset("vendor/plotly-basic.min.js")),
-        "content": json.dumps(content, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"),
+        "plot": _in_script(asset(f"{PLOT}.iife.min.js")),
+        "content": packed({**content, "story": {"screens": story.screens, "physical": story.physical}}),
     }
     head, *rest = asset("page.html").split("{{")
     parts = [head]
@@ -38,6 +72,19 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str]) 
         name, _, text = piece.partition("}}")
         parts += [places[name], text]
     return "".join(parts)
+
+
+def packed(content: Mapping[str, Any]) -> str:
+    """JSON, deflated, in base64: measurements and models are most of the page."""
+    text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return b64encode(zlib.compress(text.encode(), 9)).decode()
+
+
+def unpacked(html: str) -> dict[str, Any]:
+    """The content of a page."""
+    stored = html.partition('id="content">')[2].partition("</script>")[0]
+    content: dict[str, Any] = json.loads(zlib.decompress(b64decode(stored)))
+    return content
 
 
 def asset(name: str) -> str:

@@ -18,12 +18,12 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
     """The verdict in one sentence; `titles` say what each effect is."""
     if diagnosis["verdict"] == "tie":
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
-    names = [_title(e, titles) for e in diagnosis["effects"]]
+    names = [title_of(e, titles) for e in diagnosis["effects"]]
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     several = len(names) > 1
     return {
-        "missing": f"Missing from the model: {_listed(names, 'and')}.",
-        "small": f"The model is adequate: {_listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
+        "missing": f"Missing from the model: {listed(names, 'and')}.",
+        "small": f"The model is adequate: {listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
         "outside": outside(diagnosis).removesuffix(".")
@@ -38,7 +38,7 @@ def outside(diagnosis: Mapping[str, Any]) -> str:
     if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > A_LITTLE:
         return "Something is left that no effect in the catalogue explains."
     return (
-        f"The error comes down to the noise only with {_listed(bent, 'and')} as nobody would have measured it: "
+        f"The error comes down to the noise only with {listed(bent, 'and')} as nobody would have measured it: "
         "what was given is wrong, or it stands in for what the model lacks."
     )
 
@@ -46,21 +46,22 @@ def outside(diagnosis: Mapping[str, Any]) -> str:
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
     """What is missing where this campaign cannot tell some effects apart."""
     together = grouped(effects, ties)
-    sure = [_title(group[0], titles) for group in together if len(group) == 1]
-    groups = [_listed([_title(e, titles) for e in group], "or") for group in together if len(group) > 1]
+    sure = [title_of(group[0], titles) for group in together if len(group) == 1]
+    groups = [listed([title_of(e, titles) for e in group], "or") for group in together if len(group) > 1]
     first, *more = [f"one of these is missing, and this campaign cannot tell which: {group}" for group in groups]
     said = "; ".join([first, *(f"and {words}" for words in more)])
-    said = f"missing: {_listed(sure, 'and')}; and {said}" if sure else said
+    said = f"missing: {listed(sure, 'and')}; and {said}" if sure else said
     return f"{said[0].upper()}{said[1:]}."
 
 
 def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
     """Effects that help, each with those this campaign cannot tell it from; of many the first, as a long list says nothing."""
-    groups = [_listed([_title(e, titles) for e in group[:HELPERS]], "or") for group in grouped(effects, ties)]
-    return _listed(groups[:HELPERS], "and")
+    groups = [listed([title_of(e, titles) for e in group[:HELPERS]], "or") for group in grouped(effects, ties)]
+    return listed(groups[:HELPERS], "and")
 
 
-def _title(effect: str, titles: Mapping[str, str]) -> str:
+def title_of(effect: str, titles: Mapping[str, str]) -> str:
+    """What an effect is, in words."""
     return titles.get(effect, effect.replace("_", " "))
 
 
@@ -107,7 +108,7 @@ def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
 def value_text(value: float, se: float | None, unit: Unit) -> str:
     """ "1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
     shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
-    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ')}"
+    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ').replace('2', '²')}"
     value, se = value * shown.factor, se * shown.factor if se else None
     if not se or se <= 0:
         return f"{value:.3g}{name}".replace("-", "−")
@@ -121,11 +122,21 @@ def probability(p: float) -> str:
     return f"{p:.1g}" if p > LEAST else f"<{LEAST:.0e}"
 
 
+def probability_words(p: float) -> str:
+    """A probability as a person says it; none is said to be certain."""
+    if p > 0.999:
+        return "more than 999 in 1000"
+    if p < 0.001:
+        return "less than 1 in 1000"
+    return f"{p:.1%}".replace(".0%", "%").replace("%", " %") if p > 0.99 or p < 0.01 else f"{p:.0%}".replace("%", " %")
+
+
 def verdict_words(row: Mapping[str, Any]) -> str:
     """What became of an effect of the ranking. One that the data show was seen, even where others explain them better."""
     seen = row["verdict"] == "cannot_see" and row["p"] < SEEN
     return "not chosen" if seen else str(row["verdict"]).replace("_", " ")
 
 
-def _listed(names: Sequence[str], word: str) -> str:
+def listed(names: Sequence[str], word: str) -> str:
+    """ "a, b and c"."""
     return f" {word} ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)

@@ -1,46 +1,103 @@
-// The page: what the reader sets, the workers' answers, and the charts that follow.
+// The page: what the reader sets, the workers' answers, and everything that follows.
 
-import { Charts } from "page/charts";
-import { Controls } from "page/controls";
-import { byId, decoded, h } from "page/dom";
+import * as address from "page/address";
+import { Controls, same } from "page/controls";
+import { byId, h, unpacked } from "page/dom";
+import { look } from "page/draw";
 import { together } from "page/errors";
 import { evidence } from "page/evidence";
-import { rms } from "page/numbers";
+import { Figures } from "page/figures";
+import { lacking, reckoned, rolled } from "page/motion";
+import { mini } from "page/mini";
+import { display, rms, significant, unitText } from "page/numbers";
+import { Pins } from "page/pins";
 import { Pool } from "page/pool";
-import { Trajectory } from "page/trajectory";
+import { refit } from "page/refit";
+import { Scene } from "page/scene";
+import { Story } from "page/story";
+import { Timeline } from "page/timeline";
+import { channelOf, runOf, stepOf } from "page/words";
 
 const REST = 80; // ms without a change after which the numbers are made exact
+const WRITTEN = 250; // ms after which the address follows
+const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
+const DEEP = 60; // changes that can be undone
 
 class App {
   constructor(campaign) {
     this.campaign = campaign;
     this.results = [];
     this.timings = [];
-    this.pending = this.running = null;
-    this.shown = this.firstShown();
+    this.costs = [];
+    this.steps = new Map(); // by step of the search: brief results of every run
+    this.known = new Set(["calibrated", "effects"].flatMap((k) => campaign[k]).flatMap((p) => (p.parameters ?? [p]).map((q) => q.name)).concat(campaign.diagnosis.models.flatMap((m) => Object.keys(m.values))));
+    this.state = address.read(location.hash, campaign, this.known);
+    if (this.state.theme) document.documentElement.dataset.theme = this.state.theme;
+    this.figures = new Figures(campaign, this);
     evidence(campaign);
-    this.pool = new Pool(byId("worker").textContent, campaign, (run, result) => this.heard(run, result));
-    this.charts = new Charts(campaign, (run, channel) => this.show(run, channel));
-    this.trajectory = new Trajectory(byId("path"), campaign);
-    this.controls = new Controls(byId("controls"), campaign, (values) => this.set(values));
+  }
+
+  /** All that needs the model; throws where the browser has no workers or no WebAssembly. */
+  begin() {
+    const { campaign, state } = this;
+    if (typeof WebAssembly !== "object" || typeof Worker !== "function") throw new Error("it has no WebAssembly or no workers");
+    this.pool = new Pool(byId("worker").textContent, campaign, (run, result) => this.heard(run, result), (words) => this.give(words));
+    this.shown = this.firstShown();
+    this.figures.alive();
+    this.scene = new Scene(this.figures.all.path.drawing, campaign);
+    this.timeline = new Timeline(this.figures.all.overlay.drawing, this.figures.all.path.drawing, campaign, this.scene, (channel) => this.show(this.shown.run, channel), () => this.write());
+    this.timeline.begin(campaign.runs[this.shown.run], state);
+    this.controls = new Controls(byId("controls"), campaign, state.values, (values) => this.set(values), (values) => this.fitTogether(values));
+    this.start = this.controls.start();
+    this.opensAtStart = same(this.controls.values, this.start.values);
+    this.history = { at: -1, all: [] };
     this.pick = this.picker();
+    this.pins = new Pins(campaign, state.pins ?? [], () => this.pinned(), (values) => this.put(values));
+    this.story = new Story(campaign, this, state.screen, () => this.write());
+    this.buttons();
+    this.foretell();
     this.set(this.controls.values);
   }
 
-  /** The run that opens: held out, or the first; the channel is decided by the first exact errors. */
+  /** The model cannot run here: what is stored stands, and one sentence says so. */
+  give(why) {
+    byId("plea").hidden = false;
+    byId("plea").textContent = `This browser cannot run the model (${why}); everything that the diagnosis stored stands below.`;
+    byId("try").hidden = true;
+    byId("physical").hidden = true;
+    for (const stage of document.querySelectorAll(".stage")) stage.replaceChildren();
+    this.figures.redraw();
+  }
+
+  /** Where the page opens at a step of the search, its errors are in the diagnosis: they stand at once. */
+  foretell() {
+    const step = this.opensAtStart && this.campaign.diagnosis.ladder.find((s) => s.step === this.start.step);
+    if (!step) return;
+    byId("now-fit").textContent = rms(step.fit);
+    byId("now-heldout").textContent = rms(step.heldout);
+  }
+
+  /** The run that opens: what the address says, held out, or the first; the channel is decided by the first exact errors. */
   firstShown() {
-    const run = this.campaign.runs.findIndex((r) => r.role === "holdout");
-    const at = Math.max(run, 0);
-    return { run: at, channel: Object.keys(this.campaign.runs[at].channels)[0], chosen: false };
+    const { runs } = this.campaign, said = runs.findIndex((r) => r.name === this.state.run);
+    const at = said >= 0 ? said : Math.max(runs.findIndex((r) => r.role === "holdout"), 0);
+    return { run: at, channel: this.state.channel ?? Object.keys(runs[at].channels)[0], chosen: said >= 0 };
+  }
+
+  get values() {
+    return this.controls.values;
+  }
+
+  put(values) {
+    this.controls.put(values);
   }
 
   /** Simulate everything with these values: quickly now, exactly once they rest. */
-  set(values) {
-    this.values = { ...values };
+  set() {
     this.settled = false;
     clearTimeout(this.resting);
     if (this.running && !this.running.exact) this.pending = true;
-    else this.ask(this.results.length < this.campaign.runs.length);
+    else this.ask(this.results.filter(Boolean).length < this.campaign.runs.length);
   }
 
   ask(exact) {
@@ -48,17 +105,17 @@ class App {
     this.pending = false;
     this.running = { exact, left: new Set([this.shown.run, ...rest]), began: performance.now(), one: null };
     this.say(exact ? "making the numbers exact …" : "simulating …", "busy");
-    this.pool.ask([...this.running.left], this.values, exact);
+    this.pool.ask([...this.running.left], this.values, exact, (run) => exact || run === this.shown.run);
   }
 
   heard(run, result) {
     const { running } = this;
     running.left.delete(run);
     if (result.error) this.failed = `${this.campaign.runs[run].name}: ${result.error}`;
-    else this.results[run] = result;
+    else this.results[run] = result.brief ? { ...this.results[run], ...result } : result;
     if (run === this.shown.run && !result.error) {
-      this.drawRun();
       running.one = performance.now() - running.began;
+      this.want("run");
     }
     if (!running.left.size) this.complete();
   }
@@ -70,60 +127,263 @@ class App {
       this.say(this.failed, "failed");
       this.failed = null;
     } else {
-      this.opened ??= [...this.results];
-      if (!this.shown.chosen) this.openWorst();
-      this.drawAll(exact);
-      this.say(exact ? "exact, as wheelchair compare" : "about, while it moves", exact ? "exact" : "quick");
-      requestAnimationFrame(() => setTimeout(() => { this.timings.push({ exact, one, all: performance.now() - began }); this.settled = exact; }));
+      this.now = this.error();
+      if (exact && !this.opened) this.firstTime();
+      this.want(exact ? "rested" : "all");
+      if (exact && !this.pending) this.record();
+      this.say(this.fitting ? "fitting the sizes together …" : exact ? "exact" : "about, while it moves", this.fitting ? "busy" : exact ? "exact" : "quick");
+      requestAnimationFrame(() => setTimeout(() => { this.timings.push({ exact, one, all: performance.now() - began }); this.settled = exact && !this.fitting; }));
     }
     if (this.pending) this.ask(false);
     else if (!exact) this.resting = setTimeout(() => this.ask(true), REST);
   }
 
-  /** The largest error of a held-out run is what the reader sees first. */
-  openWorst() {
-    let worst = -1;
-    this.results.forEach((r, i) => {
-      if (this.campaign.runs[i].role !== this.campaign.runs[this.shown.run].role) return;
-      for (const [c, s] of Object.entries(r.squares)) {
-        if (s / r.counts[c] > worst) [worst, this.shown] = [s / r.counts[c], { run: i, channel: c, chosen: true }];
-      }
+  error() {
+    const { runs } = this.campaign;
+    return { fit: together(runs, this.results, "fit"), heldout: together(runs, this.results, "holdout") };
+  }
+
+  /** After the first exact numbers: the largest error is what the reader sees, until it is known what the search gained. */
+  firstTime() {
+    this.opened = this.opensAtStart ? [...this.results] : [];
+    if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
+    this.earlier();
+    this.pinned();
+  }
+
+  /** The run and channel of which something is greatest, in runs held out, or in any where it is not `enough` there. */
+  turnTo(measure, enough = -Infinity) {
+    let most = -Infinity, best = this.shown;
+    for (const wanted of [this.judgedRuns(), this.campaign.runs.map((_, i) => i)]) {
+      if (most > enough) break;
+      for (const i of wanted)
+        for (const channel of Object.keys(this.campaign.runs[i].channels)) {
+          const size = measure(i, channel);
+          if (size > most) [most, best] = [size, { run: i, channel, chosen: false }];
+        }
+    }
+    if (best.run !== this.shown.run || best.channel !== this.shown.channel) this.turn(best);
+  }
+
+  /** Every step of the search, simulated beside: for what was before, and for errors in units of sensors. */
+  async earlier() {
+    const { runs, diagnosis } = this.campaign, first = [this.start, diagnosis.models.at(-1)], order = [...new Set([...first, ...diagnosis.models])];
+    for (const model of order) {
+      const found = model === this.start && this.opensAtStart ? this.opened : await Promise.all(runs.map((_, run) => this.pool.later({ run, values: model.values, aside: true, brief: true }).catch(() => null)));
+      this.steps.set(model.step, found);
+      if (model === diagnosis.models.at(-1)) this.gained(found);
+      this.figures.all.physical.redraw();
+      this.fallen();
+    }
+  }
+
+  /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
+  fallen() {
+    const [from, to] = [this.start.step, this.campaign.diagnosis.models.at(-1).step];
+    if (from === to || ![from, to].every((s) => this.steps.has(s))) return;
+    const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
+    const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
+    if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
+    const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
+    const card = document.querySelectorAll(".card")[1];
+    card.querySelector(".physical")?.remove();
+    card.querySelector(".lead").nextElementSibling?.after(h("p", { class: "physical" }, words));
+  }
+
+  /** Where the search gained most is what the reader sees, unless he has chosen. */
+  gained(last) {
+    if (this.shown.chosen || !this.opensAtStart || last.includes(null)) return;
+    const mean = (r, c) => r.squares[c] / r.counts[c], fall = (i, c) => (mean(this.opened[i], c) - mean(last[i], c)) * (c in last[i].squares ? 1 : 0);
+    this.turnTo(fall, SEEN);
+  }
+
+  /** The shown run as it was where the search began. */
+  before() {
+    const { run } = this.shown, there = this.opened?.[run] ?? this.beforehand?.[run];
+    if (there || !this.opened || this.opensAtStart) return there ?? null;
+    this.beforehand ??= [];
+    if (this.asking !== run) {
+      this.asking = run;
+      this.pool.later({ run, values: this.start.values, aside: true }).then((result) => { this.beforehand[run] = result; this.want("run"); }).catch(() => {});
+    }
+    return null;
+  }
+
+  /** [{channel, unit, values: [{step, value, times}]}] of runs held out, as they are known. */
+  physical() {
+    const { campaign } = this, wanted = this.judgedRuns();
+    return campaign.channels.map((record) => {
+      const { factor, unit } = display(record);
+      return { channel: channelOf(record.name), unit: unitText(unit), values: campaign.diagnosis.models.filter((m) => this.steps.has(m.step)).map((m) => {
+        let squares = 0, counts = 0, gaps = 0;
+        for (const i of wanted) {
+          const r = this.steps.get(m.step)[i];
+          if (!r || !(record.name in r.squares)) continue;
+          squares += r.squares[record.name]; counts += r.counts[record.name]; gaps += r.gaps[record.name];
+        }
+        return { step: stepOf(campaign, m.step), value: counts ? factor * Math.sqrt(gaps / counts) : undefined, times: counts ? Math.sqrt(squares / counts) : NaN };
+      }) };
     });
-    this.pick.show(this.shown);
-    this.drawRun();
+  }
+
+  judgedRuns() {
+    const held = this.campaign.runs.map((_, i) => i).filter((i) => this.campaign.runs[i].role === "holdout");
+    return held.length ? held : this.campaign.runs.map((_, i) => i);
+  }
+
+  judged() {
+    return this.campaign.runs.some((r) => r.role === "holdout") ? "runs held out" : "the fitted runs";
   }
 
   show(run, channel) {
-    const there = this.campaign.runs[run].channels;
-    const wanted = channel ?? this.shown.channel;
-    this.shown = { run, channel: wanted in there ? wanted : Object.keys(there)[0], chosen: true };
-    this.pick.show(this.shown);
-    this.drawRun();
-    this.charts.where(this.results, this.shown);
+    const there = this.campaign.runs[run].channels, wanted = channel ?? this.shown.channel;
+    this.turn({ run, channel: wanted in there ? wanted : Object.keys(there)[0], chosen: true });
+    this.write();
+  }
+
+  turn(shown) {
+    const other = shown.run !== this.shown.run;
+    this.shown = shown;
+    this.pick.show(shown);
+    if (other) this.timeline.begin(this.campaign.runs[shown.run]);
+    if (other && !this.settled && this.results[shown.run]?.brief) this.set();
+    this.want("run");
+    if (this.settled) this.want("rested");
+  }
+
+  /** Draw with the next frame; of several wishes the greatest counts. */
+  want(what) {
+    this.wished ??= new Set();
+    this.wished.add(what);
+    this.frame ??= requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    const began = performance.now(), wished = this.wished;
+    this.frame = this.wished = null;
+    if (!wished) return;
+    if (wished.has("run")) this.drawRun();
+    if (wished.has("all") || wished.has("rested")) this.drawAll(wished.has("rested"));
+    this.costs.push({ ms: performance.now() - began, rested: wished.has("rested") });
   }
 
   drawRun() {
-    const result = this.results[this.shown.run];
-    if (!result) return;
-    const before = this.opened?.[this.shown.run];
-    this.charts.overlay(this.shown, result, before);
-    this.trajectory.show(this.shown.run, result, before);
+    const result = this.results[this.shown.run], before = this.before();
+    if (!result?.predicted) return;
+    const run = this.campaign.runs[this.shown.run], { geometry } = this.campaign, at = result.results;
+    const moved = (r) => ({ x: r["chair.x"], y: r["chair.y"], psi: r["chair.psi"] });
+    this.motion = { time: run.time, model: moved(at), measured: reckoned(run, at), before: before && before !== result ? moved(before.results) : null, results: at, inputs: run.inputs,
+      rolled: rolled(run.time, at, geometry.t_r), lacking: lacking(run, result, { mass: this.values["chair.m"] ?? geometry.m, inertia: this.values["chair.I_z"] ?? geometry.I_z }) };
+    this.scene.show(this.motion, this.look ??= look(), run.name);
+    const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
+    this.timeline.show(this.shown.channel, result, before, pinned);
+    mini(document.querySelector(".mini"), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
   }
 
   /** `rested`: also what takes long to sort. */
-  drawAll(rested = true) {
-    const { runs } = this.campaign, now = { fit: together(runs, this.results, "fit"), heldout: together(runs, this.results, "holdout") };
-    byId("now-fit").textContent = rms(now.fit);
-    byId("now-heldout").textContent = rms(now.heldout);
-    this.now = now;
-    this.charts.staircase(now);
-    this.charts.where(this.results, this.shown);
-    if (rested) this.charts.regimes(this.results);
+  drawAll(rested) {
+    byId("now-fit").textContent = rms(this.now.fit);
+    byId("now-heldout").textContent = rms(this.now.heldout);
+    this.figures.follow();
+    this.story.draw();
+    if (!rested) return;
+    this.figures.rested();
+    this.pins.show({ values: this.values, errors: this.now });
+    const spoken = `Error on runs held out ${rms(this.now.heldout)}, on fitted runs ${rms(this.now.fit)}; 1.00 is noise alone.`;
+    if (byId("said").textContent !== spoken) byId("said").textContent = spoken;
   }
 
-  redraw() {
-    if (this.opened) this.drawAll();
-    this.drawRun();
+  /** Settings that are kept: what of them is not known is simulated beside. */
+  async pinned() {
+    this.pins.show({ values: this.values, errors: this.now });
+    this.write();
+    for (const one of this.pins.kept) {
+      one.results ??= [];
+      const { run } = this.shown;
+      one.results[run] ??= await this.pool.later({ run, values: one.values, aside: true }).catch(() => null);
+      if (!one.errors) {
+        const all = await Promise.all(this.campaign.runs.map((_, i) => this.pool.later({ run: i, values: one.values, aside: true, brief: true }).catch(() => null)));
+        one.errors = { fit: together(this.campaign.runs, all, "fit"), heldout: together(this.campaign.runs, all, "holdout") };
+      }
+    }
+    this.pins.show({ values: this.values, errors: this.now });
+    this.want("run");
+  }
+
+  /** The sizes of what is ticked, and the calibrated values, fitted together. */
+  async fitTogether(values) {
+    const names = Object.keys(values).filter((n) => (n.startsWith("effect.") ? values[n] !== 0 : n.startsWith("offset."))).concat(this.campaign.calibrated.map((p) => p.name));
+    const mine = (this.fitting = { values });
+    this.say("fitting the sizes together …", "busy");
+    const found = await refit(this.pool, this.campaign, values, names, () => this.fitting === mine && this.values === values).catch((error) => { this.failed = error.message; return null; });
+    if (this.fitting !== mine) return;
+    this.fitting = null;
+    if (found && this.values === values) this.put(found);
+    else this.set();
+  }
+
+  /** What can be undone: settings at rest. */
+  record() {
+    const { history } = this;
+    if (this.fitting || (history.at >= 0 && same(history.all[history.at], this.values))) return this.enable();
+    history.all = [...history.all.slice(0, history.at + 1), { ...this.values }].slice(-DEEP);
+    history.at = history.all.length - 1;
+    this.enable();
+    this.write();
+  }
+
+  go(by) {
+    const { history } = this, at = history.at + by;
+    if (!history.all[at]) return;
+    history.at = at;
+    this.put({ ...history.all[at] });
+  }
+
+  enable() {
+    byId("undo").disabled = this.history.at <= 0;
+    byId("redo").disabled = this.history.at >= this.history.all.length - 1;
+  }
+
+  buttons() {
+    byId("undo").addEventListener("click", () => this.go(-1));
+    byId("redo").addEventListener("click", () => this.go(1));
+    byId("reset").addEventListener("click", () => this.put({ ...this.start.values }));
+    byId("link").addEventListener("click", () => this.copy());
+  }
+
+  /** The address follows, when things rest. */
+  write() {
+    clearTimeout(this.writing);
+    this.writing = setTimeout(() => this.written(), WRITTEN);
+  }
+
+  written() {
+    const { timeline, shown, campaign } = this, { time } = timeline, theme = document.documentElement.dataset.theme, round = (v) => Math.round(v * 1000) / 1000;
+    const zoomed = timeline.from !== time[0] || timeline.to !== time.at(-1);
+    this.hash = address.write({ ...(same(this.values, this.start.values) ? {} : { values: this.values }), run: campaign.runs[shown.run].name, channel: shown.channel, t: round(timeline.at),
+      ...(zoomed ? { from: round(timeline.from), to: round(timeline.to) } : {}), screen: this.story.at, ...(this.pins.kept.length ? { pins: this.pins.kept.map((k) => k.values) } : {}), ...(theme ? { theme } : {}) });
+    history.replaceState(null, "", this.hash);
+  }
+
+  async copy() {
+    this.written();
+    const button = byId("link"), words = button.textContent;
+    button.textContent = await navigator.clipboard.writeText(location.href).then(() => "copied", () => "the address is the link");
+    setTimeout(() => { button.textContent = words; }, 2000);
+  }
+
+  recolour() {
+    this.look = look();
+    this.timeline?.recolour();
+    this.figures.redraw();
+    if (this.pool) { this.want("run"); if (this.now) this.want("rested"); }
+  }
+
+  resize() {
+    this.figures.redraw();
+    this.timeline?.resize();
+    this.want("run");
+    if (this.now) this.want("rested");
   }
 
   say(words, state) {
@@ -135,11 +395,11 @@ class App {
   picker() {
     const run = h("select", { id: "run", onchange: () => this.show(Number(run.value), channel.value) });
     const channel = h("select", { id: "channel", onchange: () => this.show(Number(run.value), channel.value) });
-    this.campaign.runs.forEach((r, i) => run.append(h("option", { value: i }, r.role === "holdout" ? `${r.name} (held out)` : r.name)));
+    this.campaign.runs.forEach((r, i) => run.append(h("option", { value: i }, runOf(r))));
     byId("pick").append(h("label", {}, "Run ", run), h("label", {}, "Channel ", channel));
     const show = (shown) => {
       run.value = shown.run;
-      channel.replaceChildren(...Object.keys(this.campaign.runs[shown.run].channels).map((c) => h("option", { value: c }, c.replaceAll("_", " "))));
+      channel.replaceChildren(...Object.keys(this.campaign.runs[shown.run].channels).map((c) => h("option", { value: c }, channelOf(c))));
       channel.value = shown.channel;
     };
     show(this.shown);
@@ -153,18 +413,48 @@ function themed(redraw) {
   byId("theme").addEventListener("click", () => {
     root.dataset.theme = dark() ? "light" : "dark";
     redraw();
+    if (window.report.pool) window.report.write();
   });
   media.addEventListener("change", redraw);
 }
 
-const app = new App(decoded(JSON.parse(byId("content").textContent)));
-themed(() => {
-  app.charts.recolour();
-  app.redraw();
-});
+/** One sentence where this browser cannot do what the page needs. */
+function plead(why) {
+  byId("plea").hidden = false;
+  byId("plea").textContent = `This browser cannot run the model (${why}); what the diagnosis found stands in the text.`;
+  for (const id of ["try", "evidence", "ties"]) byId(id).hidden = true;
+}
+
+async function opened() {
+  if (typeof DecompressionStream !== "function") throw new Error("it cannot unpack the measurements");
+  const app = new App(await unpacked(byId("content").textContent));
+  window.report = app; // for whoever wants to script the page
+  themed(() => app.recolour());
+  try {
+    app.begin();
+  } catch (error) {
+    app.pool = null;
+    app.give(error.message);
+  }
+  return app;
+}
+
+const app = await opened().catch((error) => { plead(error.message); throw error; });
 let width = innerWidth, settling;
 addEventListener("resize", () => {
   clearTimeout(settling);
-  if (innerWidth !== width) settling = setTimeout(() => app.redraw((width = innerWidth)), REST);
+  if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
-window.report = app; // for whoever wants to script the page
+addEventListener("hashchange", () => { if (location.hash !== app.hash) location.reload(); });
+let theme;
+addEventListener("beforeprint", () => {
+  theme = document.documentElement.dataset.theme;
+  document.documentElement.dataset.theme = "light"; // paper is white
+  app.recolour();
+  if (app.wished) app.paint();
+});
+addEventListener("afterprint", () => {
+  if (theme) document.documentElement.dataset.theme = theme;
+  else delete document.documentElement.dataset.theme;
+  app.recolour();
+});

@@ -2,14 +2,17 @@
 
 import { h } from "page/dom";
 import { display, inUnit, significant, unitText } from "page/numbers";
+import { capital, stepOf } from "page/words";
 
 const STEPS = 400; // of a slider
 
 export class Controls {
-  constructor(form, campaign, changed) {
-    Object.assign(this, { form, campaign, changed });
+  /** `changed(values)` hears every change, `fit(values, names)` that sizes are to be fitted together. */
+  constructor(form, campaign, values, changed, fit) {
+    Object.assign(this, { form, campaign, changed, fit });
     this.models = campaign.diagnosis.models;
-    this.values = { ...this.start().values };
+    this.values = { ...(values ?? this.start().values) };
+    this.stored = this.known();
     form.addEventListener("submit", (event) => event.preventDefault());
     this.build();
     this.follow();
@@ -20,6 +23,13 @@ export class Controls {
     return this.models.find((m) => m.step === this.campaign.diagnosis.begins);
   }
 
+  /** Fitted values by the effects that are in them: of steps of the search, and of effects that were refitted alone. */
+  known() {
+    const found = new Map();
+    for (const values of [...this.campaign.diagnosis.ranking.map((r) => r.values), ...this.models.filter((m) => m.step !== "nominal").map((m) => m.values)]) if (values) found.set(key(values), values);
+    return found;
+  }
+
   build() {
     const rows = new Map(this.campaign.diagnosis.ranking.map((r) => [r.effect, r]));
     for (const e of this.campaign.effects) if (!rows.has(e.id) && this.proposed(e)) rows.set(e.id, this.proposed(e));
@@ -27,14 +37,16 @@ export class Controls {
     const likely = order.filter((e) => rows.get(e.id).values), others = order.filter((e) => !rows.get(e.id).values);
     this.boxes = new Map();
     this.sliders = new Map();
-    this.steps = this.models.map((m) => h("button", { type: "button", class: "step", onclick: () => this.put({ ...m.values }) }, m.step.replaceAll("_", " ")));
+    this.steps = this.models.map((m) => h("button", { type: "button", class: "step", onclick: () => this.put({ ...m.values }) }, stepOf(this.campaign, m.step)));
     const effects = (list) => list.map((e) => this.effect(e, rows.get(e.id)));
+    const first = likely.length ? likely : others.slice(0, 5), rest = likely.length ? others : others.slice(5);
+    this.again = h("button", { type: "button", class: "quiet", onclick: () => this.fit(this.values) }, "fit these sizes together");
     this.form.replaceChildren(
-      h("fieldset", {}, h("legend", {}, "Go to a step of the search"), h("div", { class: "steps" }, this.steps)),
       h("fieldset", {}, h("legend", {}, "Put an effect in"),
-        h("p", { class: "hint" }, "Ticking puts in the size that was fitted, with the calibrated values fitted along with it."),
-        effects(likely.length ? likely : others.slice(0, 5)),
-        h("details", {}, h("summary", {}, `${others.length} effects that the search did not refit`), effects(likely.length ? others : others.slice(5)))),
+        h("p", { class: "hint" }, "Sizes of all that is ticked are fitted together, with the calibrated values."),
+        effects(first), this.again,
+        rest.length ? h("details", {}, h("summary", {}, `${rest.length} effects that the search did not refit`), effects(rest)) : null),
+      h("fieldset", {}, h("legend", {}, "Go to a step of the search"), h("div", { class: "steps" }, this.steps)),
       h("fieldset", {}, h("legend", {}, "Calibrated values"),
         h("details", {}, h("summary", {}, "change them"), this.campaign.calibrated.map((p) => this.slider(p, this.reach(p))))),
     );
@@ -48,9 +60,9 @@ export class Controls {
 
   effect(effect, row) {
     const box = h("input", { type: "checkbox", id: `effect-${effect.id}`, onchange: () => this.tick(effect, row, box.checked) });
-    const sliders = h("div", { class: "sliders" }, effect.parameters.map((p) => this.slider(p, this.reach(p, row))));
+    const sliders = h("div", { class: "sliders" }, effect.parameters.map((p) => this.slider(p, this.reach(p, row), row)));
     this.boxes.set(effect.id, { box, sliders, effect });
-    return h("div", { class: "effect" }, h("label", { for: box.id }, box, h("span", {}, h("b", {}, effect.id.replaceAll("_", " ")), h("small", {}, effect.title))), sliders);
+    return h("div", { class: "effect" }, h("label", { for: box.id, title: effect.id }, box, h("span", {}, capital(effect.title))), sliders);
   }
 
   /** How far a slider goes: enough for what was found, within the bounds. */
@@ -64,8 +76,8 @@ export class Controls {
     return [Math.max(p.lower ?? -Infinity, -size), Math.min(p.upper ?? Infinity, size)];
   }
 
-  slider(p, [low, high]) {
-    const { unit, factor } = display(p), id = `slider-${p.name}`, name = p.name.split(".").at(-1);
+  slider(p, [low, high], row) {
+    const { unit, factor } = display(p), id = `slider-${p.name}`;
     const range = h("input", { type: "range", id, min: low * factor, max: high * factor, step: "any", "aria-describedby": `${id}-help` });
     const number = h("input", { type: "number", min: (p.lower ?? -1e300) * factor, max: (p.upper ?? 1e300) * factor, step: "any", "aria-label": `${p.name} [${unit}]` });
     const put = (source) => {
@@ -78,10 +90,11 @@ export class Controls {
     range.addEventListener("keydown", (event) => this.stepped(event, range, (high - low) * factor));
     number.addEventListener("change", () => put(number));
     this.sliders.set(p.name, { range, number, factor, record: p });
-    const label = p.name.startsWith("effect.") ? name : p.name;
-    const help = p.delta ? `${p.meaning}; of interest from ${inUnit(p.delta, p, 2)}` : p.meaning;
-    return h("div", { class: "slider" }, h("label", { for: id }, label, h("small", { id: `${id}-help` }, help)), range,
-      h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit))));
+    const found = row?.parameters[p.name.split(".").at(-1)], fitted = found && seen(found) ? found.estimate : row ? null : this.start().values[p.name];
+    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `${p.name}: back to the fitted size`, onclick: () => this.put({ ...this.values, [p.name]: fitted }) }, "↺");
+    const help = [p.name.startsWith("effect.") ? null : p.name, p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, fitted === null || fitted === undefined ? null : `▲ fitted ${inUnit(fitted, p)}`].filter(Boolean).join("; ");
+    return h("div", { class: "slider" }, h("label", { for: id }, capital(p.meaning)), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
+      h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit)), fitted === null || fitted === undefined ? null : back), h("small", { id: `${id}-help` }, help));
   }
 
   /** Arrow keys move by a four-hundredth, with Shift by a fortieth: "any" alone would leave that to the browser. */
@@ -93,20 +106,17 @@ export class Controls {
     range.dispatchEvent(new Event("input"));
   }
 
-  /** In: the fitted size, or the smallest interesting one. Out: zero. Calibrated values follow. */
+  /** In or out. What the search fitted for just these effects is put in as it is; other sizes are fitted together now. */
   tick(effect, row, on) {
-    const values = { ...this.values }, others = [...this.boxes.values()].filter((b) => b.effect !== effect && b.box.checked);
+    const values = { ...this.values };
     for (const p of effect.parameters) {
-      const found = row.parameters[p.name.split(".").at(-1)];
-      const fitted = row.values?.[p.name] ?? (found && seen(found) ? found.estimate : p.delta);
-      values[p.name] = on ? Math.min(Math.max(fitted, p.lower ?? -Infinity), p.upper ?? Infinity) || p.delta : 0;
+      const found = row.parameters[p.name.split(".").at(-1)], fitted = row.values?.[p.name] ?? (found && seen(found) ? found.estimate : p.delta);
+      if (on) values[p.name] = Math.min(Math.max(fitted, p.lower ?? -Infinity), p.upper ?? Infinity) || p.delta;
+      else delete values[p.name];
     }
-    if (!others.length) {
-      const fitted = (on && row.values) || this.start().values, ofChair = (name) => !name.startsWith("effect.");
-      for (const name of Object.keys(values)) if (ofChair(name)) delete values[name];
-      for (const [name, value] of Object.entries(fitted)) if (ofChair(name)) values[name] = value;
-    }
-    this.put(values);
+    const known = key(values) === key(this.start().values) ? this.start().values : this.stored.get(key(values));
+    this.put(known ? { ...known } : values);
+    if (!known) this.fit(this.values);
   }
 
   put(values) {
@@ -121,19 +131,30 @@ export class Controls {
       box.checked = effect.parameters.some((p) => this.values[p.name]);
       sliders.hidden = !box.checked && document.activeElement?.closest?.(".sliders") !== sliders;
     }
+    this.again.hidden = ![...this.boxes.values()].some(({ box }) => box.checked);
     for (const [name, { range, number, factor, record }] of this.sliders) {
       const value = (this.values[name] ?? this.campaign.known[name] ?? record.default) * factor;
       if (document.activeElement !== range || Math.abs(range.valueAsNumber - value) > 1e-9 * Math.abs(value)) range.value = value;
       if (document.activeElement !== number) number.value = Number(value.toPrecision(5));
-      range.setAttribute("aria-valuetext", significant(value, 4));
+      range.setAttribute("aria-valuetext", `${significant(value, 4)} ${unitText(display(record).unit)}`);
     }
     this.models.forEach((m, i) => this.steps[i].setAttribute("aria-pressed", same(m.values, this.values)));
   }
 }
 
+/** Marks under a slider: the band that is of no interest, zero, and what was fitted. */
+function marks(p, low, high, fitted) {
+  const at = (v) => `calc(8px + (100% - 16px) * ${Math.min(1, Math.max(0, (v - low) / (high - low))).toFixed(4)})`, inside = (v) => v >= low && v <= high;
+  const band = p.delta && p.name.startsWith("effect.") ? h("i", { class: "of-no-interest", style: `left:${at(-p.delta)};right:calc(100% - ${at(p.delta)})` }) : null;
+  return h("span", { class: "marks", "aria-hidden": "true" }, band, fitted !== null && fitted !== undefined && inside(fitted) ? h("i", { class: "fitted", style: `left:${at(fitted)}` }, "▲") : null);
+}
+
 const seen = (found) => found.se === null || found.se < 3 * Math.abs(found.estimate);
 
-function same(a, b) {
+/** The effects that are on in some values. */
+const key = (values) => [...new Set(Object.keys(values).filter((n) => n.startsWith("effect.") && values[n] !== 0).map((n) => n.split(".")[1]))].sort().join(" ");
+
+export function same(a, b) {
   const names = new Set([...Object.keys(a), ...Object.keys(b)]);
   return [...names].every((n) => (a[n] ?? 0) === (b[n] ?? 0));
 }

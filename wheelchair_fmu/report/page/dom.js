@@ -14,14 +14,16 @@ export function h(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** Series come as base64 of little-endian doubles, {f64: "..."}; everything else as it is. */
-export function decoded(value) {
+/** What is packed in base64 of deflated JSON; series come as {f64: [...]}, null in gaps. */
+export async function unpacked(text) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  return decoded(JSON.parse(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text()));
+}
+
+function decoded(value) {
   if (value === null || typeof value !== "object") return value;
-  if (typeof value.f64 === "string") {
-    const bytes = Uint8Array.from(atob(value.f64), (c) => c.charCodeAt(0));
-    return new Float64Array(bytes.buffer);
-  }
   if (Array.isArray(value)) return value.map(decoded);
+  if (Array.isArray(value.f64)) return Float64Array.from(value.f64, (v) => v ?? NaN);
   return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, decoded(v)]));
 }
 

@@ -2,6 +2,7 @@
 
 import { byId, csv, h, save } from "page/dom";
 import { inUnit, probability, rms, significant, withError } from "page/numbers";
+import { capital, channelOf, listed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
 const SEEN = 0.05; // a probability below which the data show something like the effect
@@ -11,14 +12,14 @@ const VERDICTS = {
 
 export function evidence(campaign) {
   const { diagnosis, effects } = campaign, records = new Map(effects.map((e) => [e.id, e]));
-  byId("evidence").append(table(diagnosis.ranking.filter((r) => records.has(r.effect)), records, campaign.name));
-  ties(byId("ties"), diagnosis, records);
+  byId("evidence").append(table(diagnosis.ranking.filter((r) => records.has(r.effect)), records, campaign));
+  ties(byId("ties"), campaign);
 }
 
-function table(ranking, records, name) {
-  const heads = [["Effect"], ["Estimate ± SE"], ["Of interest from"], ["Corrected p", 1], ["Power", 1], ["Hidden in the fit", 1],
-    ["Held out, before → after", 1], ["Rivals"], ["Verdict"]];
-  const body = h("tbody", {}, ranking.map((row, i) => line(row, records.get(row.effect), i >= FIRST)));
+function table(ranking, records, campaign) {
+  const heads = [["Effect"], ["Estimate ± SE"], ["Matters from"], ["Chance of noise", 1], ["Would be seen", 1], ["Hidden in the fit", 1],
+    ["Held out, before → after", 1], ["Alike"], ["Verdict"]];
+  const body = h("tbody", {}, ranking.map((row, i) => line(campaign, row, records.get(row.effect), i >= FIRST)));
   const more = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, `show all ${ranking.length} effects`);
   more.addEventListener("click", () => {
     const open = body.classList.toggle("all");
@@ -29,24 +30,24 @@ function table(ranking, records, name) {
     h("table", { class: "evidence" }, h("caption", {}, "Every effect of the catalogue, the likeliest first"),
       h("thead", {}, h("tr", {}, heads.map(([text, right]) => h("th", { scope: "col", class: right ? "number" : null }, text)))), body)),
     h("p", { class: "tools" }, ranking.length > FIRST ? more : null,
-      h("button", { type: "button", class: "quiet", onclick: () => save(`${name}-evidence.csv`, csv(columns(ranking))) }, "CSV")));
+      h("button", { type: "button", class: "quiet", onclick: () => save(`${campaign.name}-evidence.csv`, csv(columns(ranking))) }, "CSV")));
 }
 
-function line(row, record, later) {
+function line(campaign, row, record, later) {
   const parameters = record.parameters.map((p) => [p, row.parameters[p.name.split(".").at(-1)]]).filter(([, v]) => v);
   const several = parameters.length > 1;
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, p.name.split(".").at(-1), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
-    h("th", { scope: "row" }, row.effect.replaceAll("_", " "), h("small", {}, record.title)),
+    h("th", { scope: "row" }, capital(record.title), h("small", {}, h("code", {}, row.effect))),
     h("td", { "data-head": "Estimate ± SE" }, parameters.map(([p, v]) => own(withError(v.estimate, v.se, p), p))),
-    h("td", { "data-head": "Of interest from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
-    h("td", { class: "number", "data-head": "Corrected p" }, probability(row.p)),
-    h("td", { class: "number", "data-head": "Power" }, row.power.toFixed(2)),
+    h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
+    h("td", { class: "number", "data-head": "Chance of noise" }, probability(row.p)),
+    h("td", { class: "number", "data-head": "Would be seen" }, `${Math.round(100 * row.power)} %`),
     h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
-    h("td", { "data-head": "Rivals" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${r.effect.replaceAll("_", " ")} `, h("span", { class: "faint" }, r.cosine.toFixed(2)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.verdict === "cannot_see" && row.p < SEEN ? "seen, not chosen" : VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed"].includes(row.verdict) ? "another explains it better" : VERDICTS[row.verdict] ?? row.verdict)));
 }
 
 function columns(ranking) {
@@ -60,22 +61,23 @@ function columns(ranking) {
   return out;
 }
 
-function ties(section, diagnosis, records) {
-  const named = (id) => h("b", {}, id.replaceAll("_", " "));
-  for (const group of diagnosis.ties)
-    section.append(h("p", {}, "These explain the campaign equally well: ", group.flatMap((id, i) => [i ? ", " : "", named(id)]), "."));
-  if (!diagnosis.ties.length) section.append(h("p", {}, diagnosis.effects.length ? "These runs tell what was found from every other effect in the catalogue." : "No effect was found, so none is tied."));
+/** How alike two signatures are: never the same, where it is only so to two digits. */
+const alike = (cosine) => (cosine >= 0.995 && cosine < 1 ? cosine.toFixed(4) : cosine.toFixed(2));
+
+function ties(section, campaign) {
+  const { diagnosis } = campaign, named = (id) => titleOf(campaign, id);
+  for (const group of diagnosis.ties) section.append(h("p", {}, `These explain the campaign equally well: ${listed(group.map(named))}.`));
+  const told = campaign.story.screens.find((s) => s.kind === "rivals").lines;
+  if (!diagnosis.ties.length) section.append(...(diagnosis.effects.length ? told.map((line) => h("p", {}, line)) : [h("p", {}, "No effect was found, so none is tied.")]));
   const next = diagnosis.next_experiment;
   if (next) {
     const times = next.repeats === 1 ? "once" : `${next.repeats} times`;
-    section.append(h("p", { class: "next" }, h("b", {}, `Measure next, ${times}: `), `${next.manoeuvre}. `,
-      `It tells apart ${next.separates.map((id) => id.replaceAll("_", " ")).join(" and ")}: ${next.why}.`));
+    section.append(h("p", { class: "next" }, h("b", {}, `Measure next, ${times}: `), `${next.manoeuvre}. It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
   }
   const left = diagnosis.leftover;
   if (left?.where) {
-    const { run, channel, rms: size } = left.where;
-    section.append(h("p", {}, left.proposal ? `Something structured is left that no effect of the catalogue explains (p ${probability(left.p)}).` :
-      `A search for anything else that is left, among generic forces and errors, found nothing that stands (p ${probability(left.p)}).`,
-      ` The largest error that remains is ${significant(size, 3)} standard deviations, in ${channel.replaceAll("_", " ")} of ${run}.`));
+    const { run, channel, rms: size } = left.where, where = `${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;
+    section.append(h("p", {}, left.proposal ? `Without what helps most, the model errs most in ${where}.` :
+      `A search for anything else that is left, among generic forces and errors, found nothing that stands. The largest error is in ${where}.`));
   }
 }

@@ -1,35 +1,59 @@
-// A figure's frame: a heading, a place to draw, and buttons that hand out what is drawn.
+// A figure's frame: a heading, one menu that hands out what is drawn, the drawing, and its numbers as a table.
 
-import { h, save } from "page/dom";
+import { csv, h, save } from "page/dom";
+import { look } from "page/draw";
+import { WIDTHS, publish } from "page/publish";
 
-/** Fills a <figure>; returns the place to draw in. */
-export function figure(place, title, downloads) {
-  const id = `${place.id}-title`, drawing = h("div", { class: "drawing" });
-  const buttons = Object.entries(downloads).map(([kind, act]) => h("button", { type: "button", class: "quiet", "aria-label": `${title} as ${kind}`, onclick: act }, kind));
-  place.setAttribute("aria-labelledby", id);
-  place.append(h("figcaption", {}, h("h3", { id }, title), h("span", { class: "tools" }, buttons)), drawing);
-  return drawing;
+const ROWS = 60; // of a table in the page; the CSV has all
+let open = null;
+
+document.addEventListener("click", ({ target }) => { if (open && !open.contains(target)) open.open = false; });
+document.addEventListener("keydown", ({ key }) => { if (key === "Escape" && open?.open) { open.open = false; open.firstElementChild.focus(); } });
+
+/** Fills a <figure>. `says` is {title, subject(), file(), caption(), columns(), draw(width, look)}; without `own` the drawing
+ *  is made by `draw` again with every `redraw()`. */
+export class Figure {
+  constructor(place, says, own = false) {
+    Object.assign(this, { place, says, own });
+    const id = `${place.id}-title`;
+    this.drawing = h("div", { class: "drawing" });
+    this.caption = h("p", { class: "caption", id: `${place.id}-caption` });
+    place.setAttribute("aria-labelledby", id);
+    place.setAttribute("aria-describedby", this.caption.id);
+    this.numbers = h("details", { class: "numbers" }, h("summary", {}, "the numbers"));
+    this.numbers.addEventListener("toggle", () => this.tabulate());
+    place.replaceChildren(h("figcaption", {}, h("h3", { id }, says.title), this.menu()), this.drawing, this.caption, this.numbers);
+  }
+
+  menu() {
+    const { says } = this, button = (label, act) => h("button", { type: "button", class: "quiet", onclick: act, "aria-label": `${says.title} as ${label}` }, label);
+    const kinds = ["svg", "png", "pdf"].map((kind) => h("div", {}, Object.keys(WIDTHS).map((mm) => button(`${kind.toUpperCase()} ${mm} mm`, () => publish(says, kind, Number(mm))))));
+    const made = h("details", { class: "menu" }, h("summary", { "aria-label": `Save ${says.title}` }, "save"),
+      h("div", { class: "choices" }, kinds, h("div", {}, button("CSV", () => save(`${says.file()}.csv`, csv(says.columns()))))));
+    made.addEventListener("toggle", () => { if (made.open) open = made; });
+    return made;
+  }
+
+  redraw() {
+    if (!this.own) this.drawing.replaceChildren(this.says.draw(Math.max(280, this.drawing.clientWidth || 640), look()));
+    this.said();
+  }
+
+  /** What the caption and the table say, without drawing anew. */
+  said() {
+    this.caption.textContent = this.says.caption();
+    if (this.numbers.open) this.tabulate();
+  }
+
+  tabulate() {
+    if (!this.numbers.open) return;
+    const columns = this.says.columns(), names = Object.keys(columns), length = Math.max(...names.map((n) => columns[n].length));
+    const every = Math.max(1, Math.ceil(length / ROWS)), shown = Array.from({ length: Math.ceil(length / every) }, (_, i) => i * every);
+    this.numbers.replaceChildren(this.numbers.firstElementChild, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": `Numbers of ${this.says.title}` },
+      h("table", {}, h("caption", {}, every > 1 ? `Every ${every}th row; the CSV has all` : this.says.title),
+        h("thead", {}, h("tr", {}, names.map((n) => h("th", { scope: "col" }, n)))),
+        h("tbody", {}, shown.map((i) => h("tr", {}, names.map((n) => h("td", {}, printed(columns[n][i])))))))));
+  }
 }
 
-/** An SVG element as a file, SVG or PNG by the name's ending, with the styles it has on the page. */
-export async function image(element, name) {
-  const copy = element.cloneNode(true), { width, height } = element.viewBox.baseVal;
-  const styled = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font", "opacity", "vector-effect"];
-  const [from, to] = [element, copy].map((root) => [root, ...root.querySelectorAll("*")]);
-  from.forEach((node, i) => {
-    const style = getComputedStyle(node);
-    for (const property of styled) to[i].style.setProperty(property, style.getPropertyValue(property));
-  });
-  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
-  copy.setAttribute("width", width);
-  copy.setAttribute("height", height);
-  copy.style.background = getComputedStyle(document.body).backgroundColor;
-  const blob = new Blob([new XMLSerializer().serializeToString(copy)], { type: "image/svg+xml" });
-  if (name.endsWith(".svg")) return save(name, blob);
-  const picture = new Image(), url = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(await blob.text())}`;
-  picture.src = url;
-  await picture.decode();
-  const canvas = h("canvas", { width: 2 * width, height: 2 * height });
-  canvas.getContext("2d").drawImage(picture, 0, 0, 2 * width, 2 * height);
-  save(name, canvas.toDataURL("image/png"));
-}
+const printed = (v) => (typeof v === "number" ? (Number.isFinite(v) ? String(Number(v.toPrecision(4))).replace("-", "−") : "–") : v ?? "–");

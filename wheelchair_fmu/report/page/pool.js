@@ -1,54 +1,62 @@
-// Workers that simulate runs. Each run stays with one worker, which remembers its start; only the newest question counts.
+// Workers that simulate runs. Each run stays with one worker, which remembers its start; only the newest question counts, and
+// what is asked aside waits until nothing else is to be done.
 
 export class Pool {
-  /** `source` is the worker's text, `campaign` what it loads; `told(run, result)` hears every answer to the newest question. */
-  constructor(source, campaign, told) {
+  /** `source` is the worker's text, `campaign` what it loads; `told(run, result)` hears every answer to the newest question,
+   *  `broken(words)` that a worker cannot run. */
+  constructor(source, campaign, told, broken) {
     const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     const count = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 4, campaign.runs.length));
-    this.told = told;
-    this.newest = 0;
+    Object.assign(this, { told, newest: 0, waiting: new Map(), aside: [], asked: 0 });
     this.workers = Array.from({ length: count }, () => {
-      const worker = { thread: new Worker(url), queue: [], busy: false };
+      const worker = { thread: new Worker(url), queue: [], aside: [], busy: false };
       worker.thread.onmessage = ({ data }) => this.heard(worker, data);
+      worker.thread.onerror = (event) => { event.preventDefault(); broken(event.message); };
       worker.thread.postMessage({ load: campaign });
       return worker;
     });
-    this.waiting = new Map();
   }
 
-  /** Simulate these runs, in this order, with these values. Questions not yet begun are dropped. */
-  ask(runs, values, exact) {
+  /** Simulate these runs, in this order, with these values; `full(run)` says of which the series are wanted. Questions not yet
+   *  begun are dropped. */
+  ask(runs, values, exact, full = () => true) {
     this.newest++;
     for (const worker of this.workers) worker.queue = [];
     for (const run of runs)
-      this.workers[run % this.workers.length].queue.push({ job: this.newest, run, values, exact });
+      this.workers[run % this.workers.length].queue.push({ job: this.newest, run, values, exact, brief: !full(run) });
     this.workers.forEach((worker) => this.next(worker));
     return this.newest;
   }
 
-  /** One bare simulation; resolves to its result. */
-  trace(record) {
+  /** One question beside these: resolves to its answer. `urgent` goes before what was asked with `ask`. */
+  later(message, urgent = false) {
     return new Promise((resolve, reject) => {
-      const job = `trace ${this.waiting.size} ${performance.now()}`;
+      const job = `aside ${++this.asked}`, worker = this.workers[(message.run ?? 0) % this.workers.length];
       this.waiting.set(job, { resolve, reject });
-      this.workers[0].thread.postMessage({ job, trace: record });
+      if (urgent) worker.queue.unshift({ ...message, job });
+      else worker.aside.push({ ...message, job });
+      this.next(worker);
     });
   }
 
+  /** One bare simulation; resolves to its result. */
+  trace(record) {
+    return this.later({ trace: record }, true);
+  }
+
   next(worker) {
-    if (worker.busy || !worker.queue.length) return;
+    const queue = worker.queue.length ? worker.queue : worker.aside;
+    if (worker.busy || !queue.length) return;
     worker.busy = true;
-    worker.thread.postMessage(worker.queue.shift());
+    worker.thread.postMessage(queue.shift());
   }
 
   heard(worker, data) {
-    if (this.waiting.has(data.job)) {
-      const { resolve, reject } = this.waiting.get(data.job);
-      this.waiting.delete(data.job);
-      return data.error ? reject(new Error(data.error)) : resolve(data);
-    }
     worker.busy = false;
+    const waiting = this.waiting.get(data.job);
+    this.waiting.delete(data.job);
     this.next(worker);
+    if (waiting) return data.error ? waiting.reject(new Error(data.error)) : waiting.resolve(data);
     if (data.job === this.newest) this.told(data.run, data);
   }
 }

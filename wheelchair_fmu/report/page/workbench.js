@@ -135,6 +135,7 @@ class Workbench {
   showReport() {
     const { report } = this.state, frame = byId("report");
     byId("no-report").hidden = Boolean(report);
+    byId("old-report").hidden = !(report && ["add", "calibrate"].includes(this.state.job?.kind) && this.state.job.state === "done");
     frame.hidden = !report;
     byId("export-report").toggleAttribute("href", Boolean(report));
     if (report) byId("export-report").href = `${this.here}/export/report.html`;

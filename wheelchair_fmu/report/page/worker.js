@@ -2,7 +2,9 @@
  *
  * A page's worker has no imports, so this file stands alone. Messages in:
  *   {load: {models, runs, noise, pushed, start, tuning, tolerance}}   once; see report/content.py
- *   {job, run, values, exact}                                 simulate one run with parameter values by name (SI)
+ *   {job, run, values, exact, brief}        simulate one run with parameter values by name (SI); brief: errors' squares alone
+ *   {job, run, values, aside}               the same exactly, without remembering it
+ *   {job, run, values, slopes: [[name, step]]}   normal equations of a fit of these parameters
  *   {job, trace}                                              only simulate: a record {values, time, inputs, tolerance, grid}
  * and out: {job, ...result} or {job, error}. Matrices are stored by rows throughout. */
 "use strict";
@@ -55,6 +57,11 @@ class Kernel {
   /** A copy of `count` doubles. */
   get(at, count) {
     return new Float64Array(this.wasm.memory.buffer, at, count).slice();
+  }
+
+  /** What a parameter is where nobody sets it. */
+  start(name) {
+    return this.parameters.find(([n]) => n === name)?.[1] ?? 0;
   }
 
   vector(values) {
@@ -343,33 +350,59 @@ function nearby(f, values, last) {
   return { start, y, predicted, spread: last.spread, innovations: r };
 }
 
-function evaluate(index, values, exact) {
+function evaluate(index, values, exact, aside) {
   const kernel = kernelFor(values), f = frame(kernel, index, values), last = remembered[index];
+  if (aside) return summary(f, exactly(f, values));
   if (!exact && last?.whitener.kernel === kernel) return summary(f, nearby(f, values, last));
   remembered[index] = exactly(f, values);
   return summary(f, remembered[index]);
 }
 
-/** Errors by channel, as loop/evidence.py's `errors`, and the series that the page draws. */
+/** What one run says of a fit: innovations r and how they go with each of `steps` [[name, step]], as {jtj, jtr, squares}.
+ *  The filter is that of the values themselves, as in loop/fit.py. */
+function slopes(index, values, steps) {
+  const kernel = kernelFor({ ...values, ...Object.fromEntries(steps.map(([name]) => [name, values[name] || 1])) }), f = frame(kernel, index, values);
+  const s = linearised(f, values, f.run.start), r = innovations(f, s, s.predicted), k = steps.length;
+  const moved = steps.map(([name, step]) => {
+    const there = frame(kernel, index, { ...values, [name]: (values[name] ?? campaign.known[name] ?? kernel.start(name)) + step });
+    const { y } = kernel.run(...given(there, { ...values, [name]: (values[name] ?? campaign.known[name] ?? kernel.start(name)) + step }, s.start), campaign.tolerance);
+    return innovations(there, s, readings(there, y)).map((v, i) => (v - r[i]) / step);
+  });
+  const jtj = new Float64Array(k * k), jtr = new Float64Array(k);
+  let squares = 0;
+  for (let i = 0; i < r.length; i++) {
+    if (!Number.isFinite(r[i])) continue;
+    squares += r[i] * r[i];
+    for (let a = 0; a < k; a++) {
+      jtr[a] += moved[a][i] * r[i];
+      for (let b = 0; b <= a; b++) jtj[a * k + b] += moved[a][i] * moved[b][i];
+    }
+  }
+  for (let a = 0; a < k; a++) for (let b = a + 1; b < k; b++) jtj[a * k + b] = jtj[b * k + a];
+  return { jtj, jtr, squares };
+}
+
+/** Errors by channel, as loop/evidence.py's `errors`, their squares and those in SI units (`gaps`), and the series that the
+ *  page draws. */
 function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread, innovations }) {
-  const errors = {}, simulated = {}, squares = {}, counts = {};
+  const errors = {}, simulated = {}, squares = {}, counts = {}, gaps = {};
   names.forEach((name, z) => {
     const e = new Float64Array(n), p = new Float64Array(n), offset = offsets[z], drifts = campaign.drifting.includes(name);
-    let sum = 0, count = 0;
+    let sum = 0, count = 0, apart = 0;
     for (let i = 0; i < n; i++) {
       const d = measured[i * nz + z] - predicted[i * nz + z]; // NaN in gaps
       e[i] = !drifts || Number.isNaN(d) ? d * spread[i * nz + z] : innovations[i * nz + z];
       p[i] = predicted[i * nz + z] + offset; // as the sensor reads it
-      if (!Number.isNaN(e[i])) { sum += e[i] * e[i]; count++; }
+      if (!Number.isNaN(e[i])) { sum += e[i] * e[i]; apart += d * d; count++; }
     }
-    [errors[name], simulated[name], squares[name], counts[name]] = [e, p, sum, count];
+    [errors[name], simulated[name], squares[name], counts[name], gaps[name]] = [e, p, sum, count, apart];
   });
   const results = {}, width = kernel.outputs.length;
   for (const name of campaign.shown) {
     const at = kernel.outputs.indexOf(name), series = (results[name] = new Float64Array(n));
     for (let i = 0; i < n; i++) series[i] = y[i * width + at];
   }
-  return { errors, predicted: simulated, squares, counts, results, start };
+  return { errors, predicted: simulated, squares, counts, gaps, results, start };
 }
 
 /** A bare simulation, for comparing this page with another program. */
@@ -379,18 +412,24 @@ function trace({ values, time, inputs, tolerance, grid }) {
   return { outputs: kernel.outputs, y };
 }
 
-function answer({ load: all, job, run, values, exact, trace: wanted }) {
+/** The same without series. */
+const briefly = ({ squares, counts, gaps, start }) => ({ squares, counts, gaps, start, brief: true });
+
+function answer({ load: all, job, run, values, exact, brief, aside, slopes: steps, trace: wanted }) {
   if (all) return load(all);
   const began = performance.now();
   try {
-    const result = wanted ? trace(wanted) : evaluate(run, values, exact);
-    return { job, run, ...result, ms: performance.now() - began };
+    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : evaluate(run, values, exact, aside);
+    return { job, run, ...(brief ? briefly(result) : result), ms: performance.now() - began };
   } catch (error) {
     return { job, run, error: error.message };
   }
 }
 
+/** Series go to the page without being copied: nothing here needs them again. */
+const buffers = ({ errors, predicted, results }) => [errors, predicted, results].filter(Boolean).flatMap((all) => Object.values(all).map((a) => a.buffer));
+
 self.onmessage = ({ data }) => {
   const reply = answer(data);
-  if (reply) self.postMessage(reply);
+  if (reply) self.postMessage(reply, buffers(reply));
 };

@@ -1,0 +1,233 @@
+"""The story, one timeline, undoing, keeping, links, and everyone: the page in a browser, as a reader uses it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader, report_of
+from wheelchair_fmu.report.page import page as page_of
+from wheelchair_fmu.report.page import unpacked
+from wheelchair_fmu.report.tale import Story
+
+HIDDEN = "rolling_resistance_asymmetry"
+TOLD = json.loads(DIAGNOSIS.read_text())
+TOP = TOLD["ladder"][-1]
+
+
+def test_five_screens_go_from_the_error_to_what_to_do(reader):
+    page = reader.page
+    shown = page.locator(".screen:visible")
+    assert shown.count() == 1 and "errs" in shown.inner_text()
+    assert page.locator(".screen:visible .stage svg").count() == 1
+    page.click("text=next →")
+    page.click(".choice >> text=one rear wheel that rolls harder")
+    assert "Yes" in page.inner_text(".answer")
+    page.click(".choice >> text=a slope across the chair")
+    assert "Yes" not in page.inner_text(".answer")
+    page.click(".tab >> nth=2")
+    page.click(".screen:visible .big")
+    reader.settle()
+    page.wait_for_function("text => document.querySelector('.counter').innerText.includes(text)", arg=f"{TOP['heldout']:.2f}")
+    page.click(".tab >> nth=3")
+    assert page.locator(".screen:visible .stage svg").count() == 1
+    page.click(".tab >> nth=4")
+    assert "wheelchair add" in page.inner_text(".screen:visible")
+
+
+def test_a_tick_climbs_the_staircase_and_further_sizes_are_fitted_together(reader):
+    page = reader.page
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    assert page.evaluate("report.values") == TOLD["models"][-1]["values"]
+    assert page.evaluate("report.now") == pytest.approx({k: TOP[k] for k in ("fit", "heldout")}, abs=0.01)
+    page.evaluate("document.querySelector('#effect-accelerometer_bias').closest('details')?.setAttribute('open', '')")
+    page.check("#effect-accelerometer_bias")
+    reader.settle()
+    assert page.evaluate("report.now.fit") <= TOP["fit"] + 0.002  # a model that has more to fit with does not fit worse
+    values = page.evaluate("report.values")
+    assert values[f"effect.{HIDDEN}.D"] == pytest.approx(1.6, abs=0.2)
+    assert abs(values["effect.accelerometer_bias.x"]) < 0.03  # not the size that ticking begins with
+
+
+def test_sizes_fitted_in_the_page_are_those_of_the_search(reader):
+    """From far off, the page's fit comes to where Python's came."""
+    page = reader.page
+    reader.set({**TOLD["models"][-1]["values"], f"effect.{HIDDEN}.D": 0.7})
+    page.click("text=fit these sizes together")
+    reader.settle()
+    row = next(r for r in TOLD["ranking"] if r["effect"] == HIDDEN)["parameters"]["D"]
+    assert page.evaluate("report.values")[f"effect.{HIDDEN}.D"] == pytest.approx(row["estimate"], abs=2 * row["se"])
+
+
+def test_undo_reset_and_a_link_that_survives_a_reload(reader):
+    page = reader.page
+    start = page.evaluate("report.values")
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    ticked = page.evaluate("report.values")
+    page.click("#undo")
+    reader.settle()
+    assert page.evaluate("report.values") == start
+    page.click("#redo")
+    reader.settle()
+    assert page.evaluate("report.values") == ticked
+    page.click("text=keep this as A")
+    page.select_option("#run", label="slalom-quick")
+    page.evaluate("report.timeline.zoom(2, 5), report.timeline.go(3), report.written()")
+    page.reload()
+    reader.settle()
+    assert page.evaluate("report.values") == ticked
+    assert page.evaluate(
+        "[report.campaign.runs[report.shown.run].name, report.timeline.from, report.timeline.to, report.timeline.at]"
+    ) == ["slalom-quick", 2, 5, 3]
+    page.click("#reset")
+    reader.settle()
+    assert page.evaluate("report.values") == start
+    page.wait_for_function("() => document.querySelectorAll('.pins tbody tr').length === 2")
+    page.wait_for_function("text => document.querySelector('.pins tbody td').innerText === text", arg=f"{TOP['heldout']:.2f}")
+    page.click("[aria-label='go to A']")
+    reader.settle()
+    assert page.evaluate("report.values") == ticked
+
+
+@pytest.mark.parametrize("end", ["%7B%22values%22%3A%7B%22nonsense%22%3A1%7D%7D", "method", "%E0%A4%A", "%22text%22", "null"])
+def test_an_address_that_fits_nothing_is_passed_over(browser, report_file, end):
+    opened = Reader(browser, report_file)
+    start = opened.page.evaluate("report.values")
+    opened.page.goto("about:blank")
+    opened.page.goto(f"{report_file.as_uri()}#{end}")
+    opened.settle()
+    assert opened.page.evaluate("report.values") == start
+    opened.close()
+
+
+def test_one_time_for_chair_curves_and_readings(reader):
+    page = reader.page
+    over = page.locator("#overlay .u-over").first
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    page.mouse.move(box["x"] + box["width"] * 0.2, box["y"] + 20)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] * 0.5, box["y"] + 40, steps=4)
+    page.mouse.up()
+    zoomed = page.evaluate("[report.timeline.from, report.timeline.to]")
+    length = page.evaluate("report.timeline.time.at(-1)")
+    assert zoomed == pytest.approx([0.2 * length, 0.5 * length], abs=0.02 * length)
+    page.evaluate("report.timeline.zoom(2, 6)")
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    assert page.evaluate("report.timeline.plots.map(p => [p.scales.x.min, p.scales.x.max])") == [[2, 6], [2, 6]]
+    before = page.evaluate("report.scene.canvas.toDataURL()")
+    page.evaluate("report.timeline.go(4)")
+    assert page.evaluate("report.scene.canvas.toDataURL()") != before
+    run = page.evaluate("report.campaign.runs[report.shown.run].channels.yaw_rate[report.timeline.sample] * 180 / Math.PI")
+    assert f"{abs(run):.3g}" in page.inner_text('.readings tr[data-channel="yaw_rate"] td >> nth=0')
+    page.select_option("[aria-label='speed of playing']", "4")
+    page.click("[aria-label=play]")
+    page.wait_for_function("() => report.timeline.at > 4.5")
+    page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
+
+
+def test_a_change_is_said_aloud(reader):
+    reader.page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    reader.page.wait_for_function(
+        "text => document.getElementById('said').innerText.includes(text)", arg=f"held out {TOP['heldout']:.2f}"
+    )
+
+
+@pytest.mark.parametrize("gone", ["WebAssembly", "Worker"])
+def test_without_what_the_model_needs_one_sentence_and_what_is_stored(browser, report_file, gone):
+    context = browser.new_context(offline=True)
+    context.add_init_script(f"delete globalThis.{gone}")
+    page, complaints = context.new_page(), []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(report_file.as_uri())
+    page.wait_for_selector("#plea:visible")
+    assert "cannot run the model" in page.inner_text("#plea")
+    assert f"{TOP['heldout']:.2f}" in page.text_content("#staircase svg")
+    assert page.locator("#forest svg").count() == 1
+    assert page.is_hidden("#try") and page.locator(".card").count() == 3
+    context.close()
+    assert not complaints
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_that_shuts_anyone_out(browser, report_file, width, scheme):
+    """WCAG 2.2 AA, by axe-core, with everything open that can be opened."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed: make test-browser does")
+    reader = Reader(browser, report_file, width, scheme)
+    reader.page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    reader.page.evaluate("for (const d of document.querySelectorAll('details')) d.open = true")
+    found = axe.Axe().run(reader.page).response["violations"]
+    said = [(v["id"], v["impact"], v["nodes"][0]["html"][:160]) for v in found]
+    assert not [s for s in said if s[1] in ("critical", "serious", "moderate")], said
+    reader.close()
+
+
+def test_on_a_phone_a_tick_and_its_effect_are_on_one_screen(browser, report_file):
+    reader = Reader(browser, report_file, 390)
+    box = reader.page.locator(f"#effect-{HIDDEN}")
+    box.scroll_into_view_if_needed()
+    reader.page.evaluate("window.scrollBy(0, 200)")
+    box.check()
+    reader.settle()
+    figure = reader.page.locator("#now-heldout").bounding_box()
+    assert 0 <= figure["y"] < 844 and reader.page.inner_text("#now-heldout") == f"{TOP['heldout']:.2f}"
+    curve = reader.page.locator(".mini").bounding_box()
+    assert 0 <= curve["y"] < 844
+    reader.close()
+
+
+def test_names_of_any_length_and_character(browser, report_file, tmp_path):
+    content = unpacked(report_file.read_text(encoding="utf-8"))
+    story = Story([{"head": "What", "lead": "ß" * 300, "lines": []}], content["story"]["screens"])
+    content["name"] = "<b>&amp;" + "Wägelchen_" * 30
+    for i, run in enumerate(content["runs"]):
+        run["name"] = f"{i}" + ["\"quote'", "</script>", "輪椅" * 60, "x" * 250, "e\u0301\u202e"][i % 5]
+    file = tmp_path / "odd.html"
+    file.write_text(page_of(content, "a" * 400, [], story), encoding="utf-8")
+    for width in (1280, 390):
+        reader = Reader(browser, file, width)
+        assert reader.page.evaluate("document.documentElement.scrollWidth") <= width
+        reader.close()
+
+
+@pytest.mark.parametrize("verdict", ["tie", "small", "outside", "adequate", "cannot_see", "missing"])
+def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp_path: Path, verdict: str) -> None:
+    """A diagnosis of the sample campaign that says something else, which is enough for the page."""
+    told = json.loads(DIAGNOSIS.read_text())
+    pair = [HIDDEN, "camber_misalignment"]
+    told["verdict"] = verdict
+    told["effects"] = {"tie": pair, "missing": pair, "small": [HIDDEN]}.get(verdict, [])
+    told["ties"] = [pair] if verdict == "tie" else []
+    for row in told["ranking"]:
+        row["verdict"] = verdict if row["effect"] in told["effects"] else "not needed"
+    if verdict == "outside":
+        panel = {"variable": "speed", "unit": "m/s", "knots": [0, 1, 2], "estimate": [None, 0.5, 1.0], "se": [None, 0.1, 0.2]}
+        told["missing"] = {"words": "force along the chair", "unit": "N", "panels": [panel]}
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    assert reader.page.locator(".card").count() == 3
+    assert reader.page.is_visible("#missing") == (verdict == "outside")
+    for i in range(5):
+        reader.page.click(f".tab >> nth={i}")
+        assert reader.page.locator(".screen:visible h3").inner_text()
+    assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
+    reader.close()
+
+
+def test_print_is_two_pages_on_white(browser, report_file):
+    reader = Reader(browser, report_file, scheme="dark")
+    reader.page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    reader.close()

@@ -1,0 +1,138 @@
+"""What the page tells in words: cards and screens of every verdict, from diagnoses made up and from the sample campaign's."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from wheelchair_fmu.campaign import CHANNELS
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.generic import library
+from wheelchair_fmu.report.advice import INSPECT, inspect
+from wheelchair_fmu.report.markup import cards_html, screens_html
+from wheelchair_fmu.report.tale import story_of, texts
+from wheelchair_fmu.report.told import Told, exceeds, near_rivals
+
+EFFECTS = {**bundled(), **library()}
+TITLES = {name: e.title for name, e in bundled().items()}
+RECORDS = {p.name: p for e in EFFECTS.values() for p in e.owned}
+UNITS = {c.name: c.unit for c in CHANNELS}
+SAMPLE = json.loads((Path(__file__).parents[1] / "browser" / "sample-diagnosis.json").read_text())
+DRAG, LEAN = "rolling_resistance_asymmetry", "camber_misalignment"
+JARGON = ("likelihood", "whitened", "RMS", "p-value", "covariance", "posterior", "σ")
+
+
+def told(verdict, effects=(), ties=(), **more):
+    return {**SAMPLE, "verdict": verdict, "effects": list(effects), "ties": [list(t) for t in ties], **more}
+
+
+def tale(diagnosis):
+    return story_of(diagnosis, TITLES, RECORDS, UNITS)
+
+
+CASES = {
+    "missing": told("missing", [DRAG]),
+    "two": told("missing", [DRAG, LEAN]),
+    "tie": told("tie", [DRAG, LEAN], [[DRAG, LEAN]]),
+    "small": told("small", [DRAG]),
+    "outside": told(
+        "outside", leftover={"p": 1e-9, "where": None, "proposal": {"term": "generic_M_w_spring", "estimate": 2.5, "se": 0.14}}
+    ),
+    "outside, no term": told("outside"),
+    "adequate": told("adequate"),
+    "cannot_see": told("cannot_see"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_three_cards_and_five_screens_in_plain_sentences(case):
+    story = tale(CASES[case])
+    assert [c["head"] for c in story.cards] == ["What", "How sure", "What to do"]
+    assert [s["kind"] for s in story.screens] == ["errs", "guess", "put", "rivals", "next"]
+    for line in texts([*story.cards, *story.screens]):
+        assert line and line[0] == line[0].upper(), line
+        plain = re.sub(r"wheelchair add [\w ]+", "", line)
+        assert "_" not in plain, f"a code name: {line}"
+        assert "None" not in line and "nan" not in line.lower().split(), line
+    for line in texts(story.cards):
+        assert not [word for word in JARGON if word in line], line
+
+
+def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
+    what, sure, do = tale(CASES["missing"]).cards
+    assert what["lead"] == "One rear wheel that rolls harder than the other"
+    assert what["lines"][-1] == "That is 4 times the size that would matter, 0.4 N."
+    assert sure["lead"].startswith("More than 999 in 1000")
+    assert "from 1.69 to 1.00" in sure["lines"][0]
+    assert do["lead"] == "Lift the rear and spin both wheels: one stops sooner."
+    assert do["lines"][-1].endswith(f"wheelchair add {DRAG}.")
+
+
+def test_two_effects_are_a_list_and_a_tie_shows_both_sizes():
+    two, tie = tale(CASES["two"]).cards[0], tale(CASES["tie"]).cards
+    assert two["lead"] == "Two effects" and len(two["lines"]) == 2
+    assert tie[0]["lead"] == "One of two causes"
+    assert [line.partition(":")[0] for line in tie[0]["lines"]] == [
+        "One rear wheel that rolls harder than the other",
+        "Rear wheels that lean",
+    ]
+    assert "Which: not yet" in tie[1]["lead"]
+
+
+def test_a_tie_says_what_tells_the_two_apart():
+    following = {"manoeuvre": "a slalom at 1 m/s", "separates": [DRAG, LEAN], "repeats": 2, "why": ""}
+    do = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], next_experiment=following)).cards[2]
+    assert do["lead"] == "Measure a slalom at 1 m/s, 2 times: it would tell them apart."
+
+
+def test_a_rival_that_does_nearly_as_well_is_named():
+    """With as good an error on runs held out, it must not read as if the runs told the two apart without doubt."""
+    t = Told(CASES["missing"], TITLES, RECORDS)
+    assert LEAN in [r["effect"] for r in near_rivals(t)]
+    assert any("nearly as well" in line for line in tale(CASES["missing"]).cards[1]["lines"])
+    poor = [{**r, "lr": r["lr"] / (1 if r["effect"] == DRAG else 5)} for r in SAMPLE["ranking"]]
+    alone = tale(told("missing", [DRAG], ranking=poor)).cards[1]["lines"]
+    assert alone[-1] == "No other effect in the catalogue explains these runs as well."
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ({"probability": 0.25}, 0.25),
+        ({"parameters": {"k": {"estimate": 1.0, "se": 0.5, "smallest_interesting": 1.0}}}, 0.5),
+        ({"parameters": {"k": {"estimate": 0.0, "se": 1.0, "smallest_interesting": 1.96}}}, 0.05),
+        ({"parameters": {"k": {"estimate": -2.0, "se": None, "smallest_interesting": 1.0}}}, 1.0),
+    ],
+)
+def test_the_chance_that_a_size_matters(row, expected):
+    assert exceeds({"parameters": {}, **row}) == pytest.approx(expected, abs=1e-3)
+
+
+def test_what_is_left_is_told_in_units_of_sensors_where_it_is_known():
+    physical = {"yaw_rate": {"heldout_rms": 0.0061, "unit": "rad/s", "share_of_sd": 0.04, "constant_rms": 0.15}}
+    assert tale(told("missing", [DRAG], physical=physical)).physical == [
+        "The yaw rate is foretold to 0.35 deg/s, 4% of how much it varies."
+    ]
+    assert not tale(CASES["missing"]).physical
+
+
+def test_the_right_guess_is_among_the_choices_and_the_rest_are_not_right():
+    choices = next(s for s in tale(CASES["two"]).screens if s["kind"] == "guess")["choices"]
+    assert {c["effect"] for c in choices if c["right"]} == {DRAG, LEAN}
+    assert len(choices) > 2 and all(c["answer"] for c in choices)
+
+
+def test_every_effect_of_the_catalogue_can_be_inspected():
+    assert set(INSPECT) == set(bundled())
+    assert inspect("rubbing_brake", "a brake that rubs") == "Look at the chair for a brake that rubs."
+
+
+def test_nothing_in_a_sentence_becomes_markup():
+    line = ['<script>alert(1)</script> & "x"']
+    html = cards_html([{"head": "<b>", "lead": line[0], "lines": line}]) + screens_html(
+        [{"kind": '"><i>', "title": "<b>", "lines": line}]
+    )
+    assert "<script" not in html and "<i>" not in html and "<b>" not in html

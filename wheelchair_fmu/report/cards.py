@@ -1,0 +1,78 @@
+"""The three cards above the fold: what is missing, how sure that is, what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..loop.ties import grouped
+from .told import Told, actions, capital, exceeds, fall_words, number, rival_words, size_lines, sized
+from .words import listed, probability_words, value_text
+
+
+def cards(t: Told) -> list[dict[str, Any]]:
+    """What, how sure, what to do: [{"head", "lead", "lines"}]."""
+    lead, lines = _what(t)
+    sure, reasons = _how_sure(t)
+    first, *more = [f"{part}." for line in actions(t)[:1] for part in line.rstrip(".").split(". ")] + actions(t)[1:]
+    return [
+        {"head": "What", "lead": lead, "lines": lines},
+        {"head": "How sure", "lead": sure, "lines": reasons},
+        {"head": "What to do", "lead": first, "lines": more},
+    ]
+
+
+def _what(t: Told) -> tuple[str, list[str]]:
+    if t.verdict == "tie":
+        sure = [e for e in t.found if not any(e in tie for tie in t.diagnosis["ties"])]
+        groups = [
+            [sized(t, e) for e in group] for group in grouped(t.diagnosis["effects"], t.diagnosis["ties"]) if len(group) > 1
+        ]
+        lead = "One of two causes" if len(groups) == 1 and len(groups[0]) == 2 else "One of several causes"
+        return lead, [*(sized(t, e) for e in sure), *(line for group in groups for line in group)]
+    if t.verdict in ("missing", "small") and t.found:
+        if len(t.found) == 1:
+            return capital(t.title(t.found[0])), size_lines(t, t.found[0])
+        return f"{number(len(t.found))} effects", [sized(t, e) for e in t.found]
+    if t.verdict == "outside":
+        return _outside(t)
+    if t.verdict == "adequate":
+        return "Nothing is missing", ["The model explains these runs to within the noise of the sensors."]
+    return "Nothing was found", ["The model explains these runs, but they could not have shown most of the effects."]
+
+
+def _outside(t: Told) -> tuple[str, list[str]]:
+    found = t.proposal
+    if found:
+        record = t.records[f"effect.{found['term']}.q"]
+        size = value_text(found["estimate"], found["se"], record.unit)
+        return "A force that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
+    bent = [n for n, v in (t.diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+    helped = [sized(t, e) for e in t.found]
+    return "Something that no effect in the catalogue describes", (
+        helped or ([f"It comes down only with an unbelievable {listed(bent, 'and')}."] if bent else [])
+    )
+
+
+def _how_sure(t: Told) -> tuple[str, list[str]]:
+    fall, rivals = fall_words(t), rival_words(t)
+    if t.verdict == "tie":
+        together = [
+            f"{capital(t.title(e))} leaves {t.rows[e]['heldout_after']:.2f}." for e in t.found if t.rows[e]["heldout_after"]
+        ]
+        return "That one of them is there: yes. Which: not yet", ["Both explain these runs equally well.", *together]
+    if t.verdict in ("missing", "small") and t.found:
+        sure = min(exceeds(t.rows[e]) for e in t.found)
+        what = "all are" if len(t.found) > 1 else "it is"
+        return f"{capital(probability_words(sure))} that {what} large enough to matter", [fall, *rivals]
+    if t.verdict == "outside":
+        p = t.diagnosis["leftover"].get("p") if t.diagnosis.get("leftover") else None
+        chance = [] if p is None or not t.proposal else [f"Noise alone would give as much with a chance of {_chance(p)}."]
+        return "Sure that something is there, less so what", [fall, *chance, *rivals]
+    seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
+    share = f"{len(seen)} of {len(t.rows)}"
+    lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
+    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}"]
+
+
+def _chance(p: float) -> str:
+    return "less than one in a million" if p < 1e-6 else f"{p:.2g}"

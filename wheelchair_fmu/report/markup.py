@@ -1,0 +1,30 @@
+"""Cards and screens of the story as HTML, there before any script runs and without any."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import Any
+
+
+def cards_html(cards: Sequence[Mapping[str, Any]]) -> str:
+    """Three cards above the fold."""
+    return "".join(
+        f'<section class="card"><h2>{escape(c["head"])}</h2><p class="lead">{escape(c["lead"])}</p>'
+        f"{_lines(c['lines'])}</section>"
+        for c in cards
+    )
+
+
+def screens_html(screens: Sequence[Mapping[str, Any]]) -> str:
+    """Five screens, one under the other until a script shows them one by one."""
+    return "".join(
+        f'<section class="screen" data-kind="{escape(s["kind"])}" aria-labelledby="screen-{i}">'
+        f'<h3 id="screen-{i}" tabindex="-1"><span>{i}</span> {escape(s["title"])}</h3>'
+        f'<div class="told">{_lines(s["lines"])}</div><div class="stage"></div></section>'
+        for i, s in enumerate(screens, 1)
+    )
+
+
+def _lines(lines: Sequence[str]) -> str:
+    return "".join(f"<p>{escape(line)}</p>" for line in lines)

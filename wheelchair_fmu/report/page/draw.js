@@ -1,0 +1,78 @@
+// What every figure is drawn with: SVG elements, colours of the theme or of paper, and axes.
+
+const NS = "http://www.w3.org/2000/svg";
+const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good"];
+
+/** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
+export const PRINT = {
+  ink: "#111111", faint: "#505050", line: "#d9d9d9", paper: "#ffffff", measured: "#4d4d4d", model: "#0072b2", before: "#9a6fb0",
+  error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", print: true,
+};
+
+/** The colours of the page as it is now. */
+export function look() {
+  const style = getComputedStyle(document.documentElement);
+  return Object.fromEntries(NAMES.map((n) => [n, style.getPropertyValue(`--${n}`).trim()]));
+}
+
+export function svg(tag, attributes = {}, ...children) {
+  const made = document.createElementNS(NS, tag);
+  for (const [name, value] of Object.entries(attributes)) if (value !== null && value !== undefined) made.setAttribute(name, value);
+  made.append(...children.flat(Infinity).filter((c) => c !== null && c !== undefined && c !== false));
+  return made;
+}
+
+/** An SVG element of this size, hidden from screen readers: a table says the same. */
+export const canvas = (width, height, children) =>
+  svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, "aria-hidden": "true", "font-family": "system-ui, 'Helvetica Neue', Arial, sans-serif", "font-size": 12 }, children);
+
+/** Text at a place; `anchor` is start, middle or end. */
+export const text = (x, y, words, fill, anchor = "start", more = {}) => svg("text", { x: round(x), y: round(y), fill, "text-anchor": anchor, ...more }, String(words));
+
+export const line = (x1, y1, x2, y2, stroke, more = {}) => svg("path", { d: `M${round(x1)} ${round(y1)}L${round(x2)} ${round(y2)}`, stroke, fill: "none", ...more });
+
+/** A path through points; a gap where one is not finite. */
+export function course(xs, ys, stroke, more = {}) {
+  let d = "", pen = "M";
+  for (let i = 0; i < xs.length; i++) {
+    if (!Number.isFinite(xs[i]) || !Number.isFinite(ys[i])) { pen = "M"; continue; }
+    d += `${pen}${round(xs[i])} ${round(ys[i])}`;
+    pen = "L";
+  }
+  return svg("path", { d, stroke, fill: "none", "stroke-linejoin": "round", ...more });
+}
+
+export const round = (v) => Math.round(v * 10) / 10;
+
+/** Round numbers from low to high, about so many. */
+export function ticks(low, high, about = 5) {
+  const raw = (high - low) / Math.max(1, about), size = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((k) => k * size).find((s) => s >= raw) ?? raw, out = [];
+  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) out.push(Math.abs(v) < 1e-9 * step ? 0 : v);
+  return out;
+}
+
+/** A tick's number, without the rounding errors of adding steps. */
+export const tick = (v) => String(Number(v.toPrecision(6))).replace("-", "−");
+
+/** Least and greatest of what is finite; [0, 1] of nothing. */
+export function extent(...series) {
+  let low = Infinity, high = -Infinity;
+  for (const values of series) for (const v of values) if (Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+/** Words in lines of at most so many letters. */
+export function wrapped(words, letters) {
+  const lines = [""];
+  for (const word of words.split(/\s+/)) {
+    for (const piece of word.match(new RegExp(`.{1,${Math.max(Math.floor(letters), 4)}}`, "gu")) ?? [""]) {
+      if (lines.at(-1) && lines.at(-1).length + 1 + piece.length > letters) lines.push(piece);
+      else lines[lines.length - 1] += (lines.at(-1) ? " " : "") + piece;
+    }
+  }
+  return lines;
+}
+
+/** So many letters of a name, the end given by dots. */
+export const short = (name, letters) => (name.length > letters ? `${name.slice(0, letters - 1)}…` : name);

@@ -1,0 +1,192 @@
+// Every figure of the page: what it is called, how it is drawn, what its caption and its table say.
+
+import { byId } from "page/dom";
+import { byChannel, excessBy } from "page/errors";
+import { Figure } from "page/figure";
+import { forest, panels } from "page/forest";
+import { Heat, heat } from "page/heat";
+import { labelled, lines, path } from "page/lines";
+import { between, display, rms, significant, unitText, withError } from "page/numbers";
+import { staircase } from "page/staircase";
+import { capital, channelOf, runOf, stepOf, titleOf } from "page/words";
+
+const FIRST = 12; // effects in the forest plot
+const SLOW = 6; // figures' rows of physical errors at most, beside one another
+
+export class Figures {
+  /** `app` has shown, results, now, before(), timeline and motion. */
+  constructor(campaign, app) {
+    Object.assign(this, { campaign, app, ladder: campaign.diagnosis.ladder.map((s) => ({ ...s, name: stepOf(campaign, s.step) })) });
+    this.all = {};
+    this.add("staircase", "The error falling, step by step", this.stairs());
+    this.add("forest", "Every effect's size, with its 95 % interval", this.sizes());
+    if (campaign.diagnosis.calibration && Object.keys(campaign.diagnosis.calibration).length) this.add("calibration", "Calibrated values beside what was given", this.calibrated());
+    else byId("calibration").remove();
+    const missing = campaign.diagnosis.missing;
+    byId("missing").hidden = !missing;
+    if (missing) this.add("missing", `What is missing: ${missing.words}`, this.lacking(missing));
+  }
+
+  add(id, title, says, own = false) {
+    const { campaign } = this;
+    this.all[id] = new Figure(byId(id), { title, subject: () => campaign.name, file: () => `${campaign.name}-${id}`, ...says }, own);
+    if (!own) this.all[id].redraw();
+    return this.all[id];
+  }
+
+  /** Those that need the model. */
+  alive() {
+    const { campaign, app } = this, subject = () => `${campaign.name}, ${runOf(campaign.runs[app.shown.run])}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
+    this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
+    this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
+    this.add("where", "Where the error is", this.places(), true);
+    this.add("regimes", "When the error is", this.moments(), true);
+    this.add("physical", "The same in the sensors' own units", this.units());
+    this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
+    this.heatRegimes = new Heat(this.all.regimes.drawing, "Error by quarters of all samples, noise = 1", ["least", "", "", "greatest"]);
+  }
+
+  stairs() {
+    const steps = () => (this.app.now && this.apart() ? [...this.ladder, { name: "as set now", ...this.app.now }] : this.ladder);
+    return {
+      draw: (width, look) => staircase(width, look, this.ladder, this.apart() ? this.app.now : null),
+      columns: () => ({ step: steps().map((s) => s.name), "held-out runs": steps().map((s) => s.heldout), "fitted runs": steps().map((s) => s.fit) }),
+      caption: () => `Root mean square error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
+    };
+  }
+
+  /** Is what is set now no step of the search? */
+  apart() {
+    const { now } = this.app;
+    return now && !this.ladder.some((s) => Math.abs(s.fit - now.fit) < 0.006 && Math.abs((s.heldout ?? 0) - (now.heldout || 0)) < 0.006);
+  }
+
+  sizes() {
+    const { diagnosis, effects } = this.campaign, records = new Map(effects.map((e) => [e.id, e]));
+    const rows = diagnosis.ranking.filter((r) => records.has(r.effect)).flatMap((r) => records.get(r.effect).parameters.map((p) => {
+      const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
+      if (!own || !p.delta) return null;
+      const [low, high] = own.interval ?? [own.estimate - 1.96 * (own.se ?? 0), own.estimate + 1.96 * (own.se ?? 0)];
+      return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${p.name.split(".").at(-1).replaceAll("_", " ")}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
+        note: withError(own.estimate, own.se, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
+    })).filter(Boolean);
+    const strong = rows.filter((r) => r.strong);
+    return {
+      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, in the smallest that would matter", "shaded: too small to matter"),
+      columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
+      caption: () => `Each effect's size as refitted, or as its slope foretells, in the smallest that would matter. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+    };
+  }
+
+  calibrated() {
+    const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
+    const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
+      const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
+      return { name: capital(record.meaning ?? name), value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), strong: Math.abs(off) > 2 || v.at_bound, parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, bound: v.at_bound ? "at its bound" : "" };
+    });
+    return {
+      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
+      columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "bound"].map((k) => [k, rows.map((r) => r[k])])),
+      caption: () => `What calibration made of the values that the campaign gives; zero is the value given and the band one standard deviation of it.${rows.some((r) => r.bound) ? ` At a bound: ${rows.filter((r) => r.bound).map((r) => r.name).join(", ")}.` : ""}`,
+    };
+  }
+
+  lacking(missing) {
+    const all = missing.panels.map((p) => ({ label: `${p.variable} [${unitText(p.unit) || "1"}]`, xs: p.knots, ys: p.estimate, ses: p.se }));
+    return {
+      draw: (width, look) => panels(width, look, all, unitText(missing.unit)),
+      columns: () => ({ variable: all.flatMap((p) => p.xs.map(() => p.label)), at: all.flatMap((p) => p.xs), [`missing [${missing.unit}]`]: all.flatMap((p) => p.ys), se: all.flatMap((p) => p.ses) }),
+      caption: () => `${capital(missing.words)} as the runs would have it, a free function of one variable after another, with its 95 % band; where nothing is drawn the runs say nothing. A line that leaves zero shows what it goes with.`,
+    };
+  }
+
+  above() {
+    const { app } = this;
+    return {
+      draw: (width, look) => path(width, look, app.motion),
+      columns: () => ({ "time [s]": app.motion.time, "x [m]": app.motion.model.x, "y [m]": app.motion.model.y, "psi [rad]": app.motion.model.psi,
+        ...(app.motion.measured ? { "x measured [m]": app.motion.measured.x, "y measured [m]": app.motion.measured.y } : {}) }),
+      caption: () => {
+        const { measured, model } = app.motion ?? {};
+        if (!model) return "";
+        const apart = measured ? Math.hypot(model.x.at(-1) - measured.x.at(-1), model.y.at(-1) - measured.y.at(-1)) : NaN;
+        return `Solid: where the sensors say the chair went; dashed: the model.${Number.isFinite(apart) ? ` At the end they are ${significant(apart, 2)} m apart.` : ""}`;
+      },
+    };
+  }
+
+  curves() {
+    const { app, campaign } = this, record = () => campaign.channels.find((c) => c.name === app.shown.channel);
+    return {
+      draw: (width, look) => {
+        const { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
+        const most = Math.max(4, ...Array.from(timeline.errors).filter(Number.isFinite).map(Math.abs));
+        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, height: 0.36 * width }, { label: "error [σ]", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
+      },
+      columns: () => {
+        const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor);
+        return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), "error [sd]": result.errors[c] };
+      },
+      caption: () => {
+        const result = app.results[app.shown.run];
+        return result ? `${capital(channelOf(app.shown.channel))}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie in the band of ±2 σ.` : "";
+      },
+    };
+  }
+
+  places() {
+    return {
+      draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
+      columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
+      caption: () => "Error of each run and channel in units of the noise. Colour begins where it is more than noise.",
+    };
+  }
+
+  placed() {
+    const { runs, channels } = this.campaign;
+    return runs.map((run, i) => {
+      const own = this.app.results[i] ? byChannel(this.app.results[i]) : {};
+      return { name: run.name, note: run.role === "holdout" ? "held out" : "", cells: channels.map((c) => ({ value: own[c.name], at: [i, c.name], label: `${run.name}, ${channelOf(c.name)}: show it` })) };
+    });
+  }
+
+  moments() {
+    return {
+      draw: (width, look) => heat(width, look, ["least", "", "", "greatest"], this.times ?? []),
+      columns: () => { const cells = this.rows ?? []; return { regime: cells.map((r) => r.name), from: cells.map((r) => r.from), to: cells.map((r) => r.to), "error, noise = 1": cells.map((r) => r.rms), "share of the excess": cells.map((r) => r.share) }; },
+      caption: () => "Error in each quarter of all samples, sorted by what was going on: a row whose colour grows to one side shows when the model fails.",
+    };
+  }
+
+  units() {
+    const rows = () => this.app.physical();
+    return {
+      draw: (width, look) => {
+        const all = rows(), shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
+        return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
+      },
+      columns: () => { const cells = rows().flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
+      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.`,
+    };
+  }
+
+  /** What follows a change at once. */
+  follow() {
+    this.heatWhere.show(this.placed(), ([run, channel]) => run === this.app.shown.run && channel === this.app.shown.channel);
+  }
+
+  /** The rest, once values rest. */
+  rested() {
+    const { campaign, app } = this, records = new Map(campaign.regimes.map((r) => [r.name, r]));
+    this.rows = excessBy(campaign.regimes, campaign.runs, app.results);
+    this.times = [...new Set(this.rows.map((r) => r.name))].map((name) => ({ name, cells: this.rows.filter((r) => r.name === name).map((r) => ({ value: r.rms, note: between(r.from, r.to, records.get(name)), at: null })) }));
+    this.heatRegimes.show(this.times);
+    for (const id of ["path", "overlay", "where", "regimes"]) this.all[id].said();
+    for (const id of ["staircase", "physical"]) this.all[id].redraw();
+  }
+
+  redraw() {
+    for (const f of Object.values(this.all)) if (!f.own) f.redraw();
+  }
+}
+

@@ -1,0 +1,63 @@
+// Tables of errors whose cells stay quiet where a model's error is the noise, and turn the colour of an error where it is not.
+
+import { h } from "page/dom";
+import { canvas, short, svg, text, wrapped } from "page/draw";
+import { rms, significant } from "page/numbers";
+
+const QUIET = 1.1, LOUD = 6; // whitened RMS without colour, and with all of it
+const STRONGEST = 55; // per cent of colour, on which text in ink still stands out
+
+/** How much colour an error has, in per cent. */
+export const loud = (v) => (Number.isFinite(v) ? Math.round(Math.min(1, Math.max(0, Math.log(v / QUIET) / Math.log(LOUD / QUIET))) * STRONGEST) : 0);
+
+const number = (v) => (Number.isFinite(v) ? (v < 100 ? rms(v) : significant(v, 3)) : "–");
+
+/** A table in the page. `rows` are [{name, note, cells: [{value, note, label, at}]}]; `choose(at)` makes cells buttons. */
+export class Heat {
+  constructor(place, caption, heads, choose) {
+    Object.assign(this, { choose });
+    this.body = h("tbody");
+    place.replaceChildren(h("div", { class: "wide plainly", tabindex: 0, role: "region", "aria-label": caption },
+      h("table", { class: "heat" }, h("caption", { class: "unseen" }, caption), h("thead", {}, h("tr", {}, h("td"), heads.map((t) => h("th", { scope: "col" }, t)))), this.body)));
+    this.cells = [];
+  }
+
+  show(rows, chosen = null) {
+    const shape = rows.map((r) => `${r.name} ${r.cells.length}`).join("|");
+    if (shape !== this.shape) this.build(rows, shape);
+    rows.forEach((row, i) => row.cells.forEach((cell, j) => {
+      const made = this.cells[i][j], value = number(cell.value), strong = `${loud(cell.value)}%`;
+      if (made.value !== value) made.figure.textContent = made.value = value;
+      if (made.note && made.note.textContent !== cell.note) made.note.textContent = cell.note;
+      if (made.strong !== strong) made.cell.style.setProperty("--loud", (made.strong = strong));
+      if (chosen) made.cell.toggleAttribute("data-chosen", chosen(cell.at));
+    }));
+  }
+
+  build(rows, shape) {
+    this.shape = shape;
+    this.cells = rows.map((row) => row.cells.map((cell) => {
+      const figure = h(this.choose ? "button" : "span", this.choose ? { type: "button", class: "plain", "aria-label": cell.label, onclick: () => this.choose(cell.at) } : {});
+      const note = cell.note === undefined ? null : h("small");
+      return { figure, note, cell: h("td", {}, figure, note) };
+    }));
+    this.body.replaceChildren(...rows.map((row, i) => h("tr", {}, h("th", { scope: "row" }, row.name, row.note ? h("small", {}, row.note) : null), this.cells[i].map((c) => c.cell))));
+  }
+}
+
+/** The same as a drawing. */
+export function heat(width, look, heads, rows) {
+  const left = Math.min(0.36 * width, 150), wide = (width - left) / heads.length, high = rows.some((r) => r.cells.some((c) => c.note)) ? 34 : 24, drawn = [];
+  const named = heads.map((t) => wrapped(t, Math.max(5, Math.floor(wide / 6.2))).slice(0, 4)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
+  named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": 11 }))));
+  rows.forEach((row, i) => {
+    const y = top + high * i;
+    drawn.push(text(left - 8, y + high / 2 + 4, short(row.name, Math.floor(left / 7.2)), look.ink, "end"));
+    row.cells.forEach((c, j) => {
+      const x = left + wide * j;
+      drawn.push(svg("rect", { x: x + 1, y: y + 1, width: wide - 2, height: high - 2, fill: look.error, "fill-opacity": loud(c.value) / 100, stroke: look.line }),
+        text(x + wide / 2, y + (c.note ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), c.note ? text(x + wide / 2, y + 28, short(c.note, Math.floor(wide / 5)), look.faint, "middle", { "font-size": 9.5 }) : null);
+    });
+  });
+  return canvas(width, top + 4 + high * rows.length, drawn);
+}

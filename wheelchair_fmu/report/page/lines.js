@@ -1,0 +1,55 @@
+// Curves over time as SVG, for files: what uPlot draws on the page.
+
+import { canvas, course, extent, line, svg, text, tick, ticks } from "page/draw";
+import { display, unitText } from "page/numbers";
+
+const LEFT = 54, RIGHT = 8;
+
+/** Panels above one another with one time: [{label, lines: [[name, values, colour, width, dash]], band, height}]. */
+export function lines(width, look, time, [from, to], panels) {
+  const across = (t) => LEFT + ((width - LEFT - RIGHT) * (t - from)) / (to - from), drawn = [];
+  const inside = [...time.keys()].filter((i) => time[i] >= from && time[i] <= to), step = Math.max(1, Math.floor(inside.length / 1500));
+  const shown = inside.filter((_, k) => k % step === 0), xs = shown.map((i) => across(time[i])), marks = ticks(from, to, width / 90);
+  let top = 20, at = LEFT;
+  for (const [name, , colour, , dash] of panels[0].lines) {
+    drawn.push(line(at, 8, at + 20, 8, look[colour], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
+    at += 44 + 6.4 * name.length;
+  }
+  for (const panel of panels) {
+    let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => shown.map((i) => v[i])));
+    if (low === high) [low, high] = [low - 1, high + 1];
+    const down = (v) => top + panel.height * (1 - (v - low) / (high - low));
+    if (panel.band) drawn.push(svg("rect", { x: LEFT, width: width - LEFT - RIGHT, y: down(panel.band), height: down(-panel.band) - down(panel.band), fill: look.band }));
+    for (const v of ticks(low, high, panel.height / 40)) drawn.push(line(LEFT, down(v), width - RIGHT, down(v), look.line), text(LEFT - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
+    for (const [, values, colour, thick, dash] of panel.lines)
+      drawn.push(course(xs, shown.map((i) => down(values[i])), look[colour], { "stroke-width": thick, "stroke-dasharray": dash?.join(" ") }));
+    drawn.push(text(0, 0, panel.label, look.ink, "middle", { transform: `translate(11 ${top + panel.height / 2}) rotate(-90)` }));
+    top += panel.height + 14;
+  }
+  for (const t of marks) drawn.push(text(across(t), top + 4, tick(t), look.faint, "middle", { "font-size": 11 }));
+  drawn.push(text((LEFT + width - RIGHT) / 2, top + 20, "time [s]", look.ink, "middle"));
+  return canvas(width, top + 26, drawn);
+}
+
+/** The path from above, forward up. */
+export function path(width, look, motion) {
+  const every = [["before", motion.before, [2, 3]], ["measured", motion.measured], ["model", motion.model, [7, 4]]].filter(([, p]) => p);
+  const [xs, ys] = ["x", "y"].map((c) => extent(...every.map(([, p]) => p[c]))), long = xs[1] - xs[0] > ys[1] - ys[0];
+  const [[left, right], [top, bottom]] = long ? [xs, ys] : [ys, [-xs[1], -xs[0]]], frame = 44, room = 0.3;
+  const scale = Math.min((width - 2 * frame) / (right - left + 2 * room), 420 / (bottom - top + 2 * room)), height = scale * (bottom - top + 2 * room) + 80;
+  const put = (u, v) => [width / 2 + scale * (u - (left + right) / 2), 24 + scale * (v - top + room)], drawn = [], end = height - 50;
+  for (const u of ticks(left, right, width / 110)) { const [x] = put(u, top); drawn.push(line(x, 22, x, end, look.line), text(x, end + 16, tick(u), look.faint, "middle", { "font-size": 11 })); }
+  for (const v of ticks(top, bottom, 4)) { const [, y] = put(left, v); drawn.push(line(frame, y, width - 10, y, look.line), text(frame - 6, y + 4, tick(long ? v : -v), look.faint, "end", { "font-size": 11 })); }
+  let at = frame;
+  for (const [name, p, dash] of every) {
+    const points = [...p.x.keys()].filter((i) => i % Math.max(1, Math.floor(p.x.length / 700)) === 0).map((i) => (long ? put(p.x[i], p.y[i]) : put(p.y[i], -p.x[i])));
+    drawn.push(course(points.map((q) => q[0]), points.map((q) => q[1]), look[name], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }));
+    drawn.push(line(at, 8, at + 20, 8, look[name], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
+    at += 44 + 6.4 * name.length;
+  }
+  drawn.push(text(width / 2, height - 14, long ? "forward [m]; downwards: to the right [m]" : "to the right [m]; upwards: forward [m]", look.ink, "middle"));
+  return canvas(width, height, drawn);
+}
+
+/** A channel's name with its unit. */
+export const labelled = (record) => `${record.name.replaceAll("_", " ")} [${unitText(display(record).unit) || "1"}]`;

@@ -1,0 +1,64 @@
+// Where the chair was and what pushed it: series of one run that the scene draws.
+
+const SMOOTH = 0.4; // s, over which differences of readings are taken
+
+/** Where the sensors say the chair went, {x, y, psi}: tracked, or reckoned from wheel speeds and yaw rate; null where neither
+ *  is there. */
+export function reckoned(run, results) {
+  const { x, y, yaw, wheel_speed_l: l, wheel_speed_r: r, yaw_rate: turn } = run.channels, { time } = run, n = time.length;
+  const speed = (i) => (l && r ? (l[i] + r[i]) / 2 : (l ?? r)?.[i]);
+  if (x && y) return { x, y, psi: yaw ?? results["chair.psi"], tracked: true };
+  if (!turn || !(l ?? r)) return null;
+  const out = { x: new Float64Array(n), y: new Float64Array(n), psi: new Float64Array(n), tracked: false };
+  let psi = results["chair.psi"][0];
+  [out.x[0], out.y[0], out.psi[0]] = [results["chair.x"][0], results["chair.y"][0], psi];
+  for (let i = 1; i < n; i++) {
+    const dt = time[i] - time[i - 1], w = turn[i - 1] || 0, v = speed(i - 1) || 0;
+    psi += (w * dt) / 2;
+    out.x[i] = out.x[i - 1] + v * Math.cos(psi) * dt;
+    out.y[i] = out.y[i - 1] + v * Math.sin(psi) * dt;
+    psi += (w * dt) / 2;
+    out.psi[i] = psi;
+  }
+  return out;
+}
+
+/** How far each rear wheel has rolled, {l, r} in m. */
+export function rolled(time, results, tread) {
+  const { "chair.u": u, "chair.psi_dot": turn } = results, out = { l: new Float64Array(time.length), r: new Float64Array(time.length) };
+  for (let i = 1; i < time.length; i++) {
+    const dt = time[i] - time[i - 1], ahead = u[i] * dt, around = (turn[i] * dt * tread) / 2;
+    out.l[i] = out.l[i - 1] + ahead + around; // clockwise from above: the left wheel goes further
+    out.r[i] = out.r[i - 1] + ahead - around;
+  }
+  return out;
+}
+
+/** The force (N) and moment (N m) that the model would need more, for its speed and yaw rate to change as was measured:
+ *  mass and moment of inertia times the rate at which model and readings part; null where that was not measured. */
+export function lacking(run, result, { mass, inertia }) {
+  const { time, channels } = run, { predicted } = result, sides = ["wheel_speed_l", "wheel_speed_r"].filter((c) => channels[c]);
+  const apart = (names) => time.map((_, i) => names.reduce((sum, c) => sum + channels[c][i] - predicted[c][i], 0) / names.length);
+  return {
+    force: sides.length === 2 ? rate(time, apart(sides)).map((a) => a * mass) : null,
+    moment: channels.yaw_rate ? rate(time, apart(["yaw_rate"])).map((a) => a * inertia) : null,
+  };
+}
+
+/** The slope of a noisy series: between its means over SMOOTH before and after. */
+function rate(time, values) {
+  const n = time.length, sum = new Float64Array(n + 1), count = new Float64Array(n + 1);
+  for (let i = 0; i < n; i++) {
+    const there = Number.isFinite(values[i]);
+    sum[i + 1] = sum[i] + (there ? values[i] : 0);
+    count[i + 1] = count[i] + (there ? 1 : 0);
+  }
+  const out = new Float64Array(n), mean = (a, b) => (sum[b] - sum[a]) / (count[b] - count[a]);
+  for (let i = 0, low = 0, high = 0; i < n; i++) {
+    while (time[low] < time[i] - SMOOTH) low++;
+    while (high < n - 1 && time[high + 1] <= time[i] + SMOOTH) high++;
+    const span = (time[high] - time[low]) / 2;
+    out[i] = span > 0 && i > low && high > i ? (mean(i, high + 1) - mean(low, i)) / span : NaN;
+  }
+  return out;
+}

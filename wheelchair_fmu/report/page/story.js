@@ -1,0 +1,92 @@
+// The five screens, one at a time: each with something to see or to do.
+
+import { byId, h } from "page/dom";
+import { look } from "page/draw";
+import { bars } from "page/forest";
+import { labelled, lines } from "page/lines";
+import { rms } from "page/numbers";
+import { channelOf, runOf } from "page/words";
+
+export class Story {
+  /** `app` has values, results and put; `turned(screen)` hears which is open. */
+  constructor(campaign, app, open, turned) {
+    Object.assign(this, { campaign, app, turned });
+    this.screens = [...document.querySelectorAll(".screen")];
+    this.last = campaign.diagnosis.models.at(-1);
+    this.tabs = this.screens.map((s, i) => h("button", { type: "button", class: "tab", onclick: () => this.go(i, true) }, h("b", {}, String(i + 1)), h("span", {}, s.querySelector("h3").lastChild.textContent.trim())));
+    byId("steps").replaceChildren(...this.tabs);
+    byId("steps").hidden = false;
+    byId("screens").classList.add("one");
+    this.screens.forEach((s, i) => s.append(h("p", { class: "turn" },
+      i ? h("button", { type: "button", class: "quiet", onclick: () => this.go(i - 1, true) }, "← back") : null,
+      i < this.screens.length - 1 ? h("button", { type: "button", class: "step", "aria-pressed": "true", onclick: () => this.go(i + 1, true) }, "next →") : null)));
+    this.stages = Object.fromEntries(this.screens.map((s) => [s.dataset.kind, s.querySelector(".stage")]));
+    this.guessing();
+    this.putting();
+    this.go(Math.min(Math.max(Math.round(open ?? 0), 0), this.screens.length - 1));
+  }
+
+  told(kind) {
+    return this.campaign.story.screens.find((s) => s.kind === kind);
+  }
+
+  go(at, byHand = false) {
+    this.at = at;
+    this.screens.forEach((s, i) => { s.hidden = i !== at; });
+    this.tabs.forEach((t, i) => t.setAttribute("aria-current", i === at ? "step" : "false"));
+    if (byHand) { this.screens[at].querySelector("h3").focus({ preventScroll: true }); this.turned(at); }
+    this.draw();
+  }
+
+  guessing() {
+    const answer = h("p", { class: "answer", role: "status" });
+    const choices = this.told("guess").choices.map((c) => h("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: ({ currentTarget }) => {
+      for (const b of choices) b.setAttribute("aria-pressed", b === currentTarget);
+      currentTarget.dataset.right = c.right;
+      answer.textContent = c.answer;
+    } }, c.title));
+    this.stages.guess.append(h("div", { class: "choices-list" }, choices), answer);
+  }
+
+  /** The button puts in the last step of the search, or the likeliest effect where nothing was found. */
+  putting() {
+    const begins = this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins), first = this.campaign.diagnosis.ranking.find((r) => this.campaign.effects.some((e) => e.id === r.effect));
+    const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
+    this.with = this.last === begins ? { ...begins.values, ...Object.fromEntries(sizes) } : this.last.values;
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
+    this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), " → ", this.after = h("b", {}, "–"), h("span", {}, " times the noise"));
+    this.curve = h("div", { class: "curve" });
+    this.stages.put.append(this.toggle, this.figures, this.curve);
+  }
+
+  isIn() {
+    return Object.entries(this.with).every(([n, v]) => (this.app.values[n] ?? 0) === v);
+  }
+
+  /** Only what is on the open screen. */
+  draw() {
+    const kind = this.screens[this.at].dataset.kind, stage = this.stages[kind];
+    if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
+    if (kind === "rivals") {
+      const rows = this.told("rivals").bars;
+      stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, "Error on runs held out"), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
+    }
+    if (kind === "put") {
+      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", start = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins);
+      this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
+      this.toggle.setAttribute("aria-pressed", this.isIn());
+      this.before.textContent = rms(start?.[key]);
+      this.after.textContent = rms(this.app.now?.[key]);
+      this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
+    }
+  }
+
+  curves(before, after) {
+    const { run: index, channel } = this.app.shown, run = this.campaign.runs[index], record = this.campaign.channels.find((c) => c.name === channel);
+    if (!before?.predicted?.[channel]) return [];
+    const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
+    const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? ["model now", scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
+    const width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
+    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, height: 190 }]), h("p", { class: "caption" }, `${channelOf(channel)} in ${runOf(run)}`)];
+  }
+}

@@ -1,0 +1,204 @@
+// One time for everything that is drawn against it: two charts by uPlot, the scene, and a row of readings for every channel.
+
+import { h } from "page/dom";
+import { look } from "page/draw";
+import { display, significant, unitText } from "page/numbers";
+import { channelOf } from "page/words";
+
+const AXIS = 62; // px left of every chart, so that their times stand above one another
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+const STILL = matchMedia("(prefers-reduced-motion: reduce)");
+
+export class Timeline {
+  /** Curves and player go into `place`, readings `beside`. `choose(channel)` is called from the readings, `moved()` when time, zoom or speed have been set by hand. */
+  constructor(place, beside, campaign, scene, choose, moved) {
+    Object.assign(this, { campaign, scene, choose, moved });
+    this.at = this.from = this.to = 0;
+    this.playing = false;
+    this.charts = [h("div", { class: "chart" }), h("div", { class: "chart" })];
+    place.append(h("div", { class: "curves" }, this.key = h("p", { class: "key" }), this.charts), this.player());
+    beside.append(this.readings = h("table", { class: "readings" }));
+    this.colours();
+    this.plots = [];
+  }
+
+  player() {
+    const button = (words, label, act) => h("button", { type: "button", class: "quiet", onclick: act, "aria-label": label }, words);
+    this.play = button("▶ play", "play", () => this.toggle());
+    this.scrub = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "time" });
+    this.scrub.addEventListener("input", () => { this.stop(); this.go(this.scrub.valueAsNumber); this.moved(); });
+    this.speed = h("select", { "aria-label": "speed of playing" }, SPEEDS.map((s) => h("option", { value: s, selected: s === 1 }, `${s}×`)));
+    this.loop = h("input", { type: "checkbox", id: "loop" });
+    this.clock = h("output", { class: "clock" });
+    this.whole = button("whole run", "show the whole run", () => { this.zoom(this.time[0], this.time.at(-1)); this.moved(); });
+    return h("div", { class: "player" }, this.play, this.scrub, this.clock, this.speed, h("label", { for: "loop" }, this.loop, " loop"), this.whole);
+  }
+
+  colours() {
+    this.look = look();
+  }
+
+  /** A run: time, zoom and place begin anew, unless `kept` {t, from, to} says otherwise. */
+  begin(run, kept) {
+    this.run = run;
+    this.time = run.time;
+    this.stop();
+    [this.from, this.to] = [kept?.from ?? this.time[0], kept?.to ?? this.time.at(-1)];
+    if (!(this.from < this.to)) [this.from, this.to] = [this.time[0], this.time.at(-1)];
+    this.at = Math.min(Math.max(kept?.t ?? this.time[0], this.time[0]), this.time.at(-1));
+    [this.scrub.min, this.scrub.max] = [this.time[0], this.time.at(-1)];
+    const names = Object.keys(run.channels);
+    this.cells = names.map((name) => ({ name, measured: h("td"), model: h("td"), error: h("td") }));
+    this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),
+      h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error [σ]"].map((t) => h("th", { scope: "col" }, t)))),
+      h("tbody", {}, this.cells.map((c) => h("tr", { "data-channel": c.name }, h("th", { scope: "row" },
+        h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
+  }
+
+  /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...]. */
+  show(channel, result, before, pinned = []) {
+    const record = this.campaign.channels.find((c) => c.name === channel), { unit, factor } = display(record);
+    const scaled = (series) => (factor === 1 ? series : series.map((v) => v * factor));
+    Object.assign(this, { result, channel });
+    this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
+      ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
+    this.errors = result.errors[channel];
+    this.unit = `${channel.replaceAll("_", " ")} [${unitText(unit) || "1"}]`;
+    this.drawCurves();
+    for (const row of this.readings.tBodies[0].rows) row.toggleAttribute("aria-current", row.dataset.channel === channel);
+    this.place();
+  }
+
+  drawCurves() {
+    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.lines.map(([, v]) => v)], [this.time, this.errors]];
+    if (shape !== this.shape || !this.plots.length) return this.build(shape, data);
+    this.plots.forEach((plot, i) => plot.batch(() => { plot.setData(data[i], false); plot.setScale("x", { min: this.from, max: this.to }); }));
+  }
+
+  build(shape, data) {
+    this.shape = shape;
+    for (const plot of this.plots) plot.destroy();
+    const colour = (name) => () => this.look[name];
+    const series = [this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false } })), [{ stroke: colour("error"), width: 1, points: { show: false } }]];
+    this.plots = [this.unit, "error [σ]"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
+    this.marks = this.plots.map((plot) => plot.over.appendChild(h("div", { class: "now-line" })));
+    this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)));
+  }
+
+  options(index, label, series) {
+    const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
+    return {
+      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
+      cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
+      scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
+      axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
+        { ...axis, size: AXIS - 18, space: index ? 24 : 36, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => vs.map((v) => String(v).replace("-", "−")) }],
+      hooks: {
+        setSelect: [(plot) => this.selected(plot)],
+        drawClear: index ? [(plot) => this.band(plot)] : [],
+        init: [(plot) => {
+          plot.over.addEventListener("dblclick", () => this.whole.click());
+          plot.over.addEventListener("mousemove", ({ clientX }) => { if (!this.playing) this.go(plot.posToVal(clientX - plot.over.getBoundingClientRect().left, "x")); });
+        }],
+      },
+    };
+  }
+
+  size(index) {
+    return { width: Math.max(240, this.charts[0].clientWidth), height: index ? 160 : innerWidth < 861 ? 210 : 250 };
+  }
+
+  /** Where 95 % of a perfect model's errors lie. */
+  band(plot) {
+    const [top, low] = [2, -2].map((v) => plot.valToPos(v, "y", true)), { left, width } = plot.bbox;
+    plot.ctx.fillStyle = this.look.band;
+    plot.ctx.fillRect(left, top, width, low - top);
+  }
+
+  /** What was drawn over with the pointer is shown whole. */
+  selected(plot) {
+    const { left, width } = plot.select;
+    if (width < 6) return;
+    const [from, to] = [left, left + width].map((p) => plot.posToVal(p, "x"));
+    plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.zoom(from, to);
+    this.moved();
+  }
+
+  zoom(from, to) {
+    [this.from, this.to] = [from, to];
+    for (const plot of this.plots) plot.setScale("x", { min: from, max: to });
+    this.place();
+  }
+
+  go(t) {
+    this.at = Math.min(Math.max(t, this.time[0]), this.time.at(-1));
+    this.place();
+  }
+
+  /** The sample at the cursor. */
+  get sample() {
+    let low = 0, high = this.time.length - 1;
+    while (low < high) { const middle = (low + high) >> 1; if (this.time[middle] < this.at) low = middle + 1; else high = middle; }
+    return low;
+  }
+
+  place() {
+    if (!this.result) return;
+    const i = this.sample;
+    this.plots.forEach((plot, k) => {
+      const inside = this.at >= this.from && this.at <= this.to;
+      this.marks[k].style.transform = inside ? `translateX(${plot.valToPos(this.at, "x")}px)` : "translateX(-9999px)";
+    });
+    for (const { name, measured, model, error } of this.cells) {
+      const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), suffix = unitText(unit);
+      measured.textContent = `${significant(this.run.channels[name][i] * factor, 3)} ${suffix}`;
+      model.textContent = `${significant(this.result.predicted[name][i] * factor, 3)} ${suffix}`;
+      error.textContent = significant(this.result.errors[name][i], 2);
+    }
+    const said = `${(this.at - this.time[0]).toFixed(2)} s`;
+    this.clock.textContent = said;
+    this.scrub.value = this.at;
+    this.scrub.setAttribute("aria-valuetext", said);
+    this.scene.draw(i);
+  }
+
+  toggle() {
+    if (this.playing) return this.stop(true);
+    this.playing = true;
+    this.play.textContent = "❚❚ pause";
+    this.play.setAttribute("aria-label", "pause");
+    if (this.at >= this.to - 1e-6 || this.at < this.from) this.at = this.from;
+    let before = performance.now();
+    const frame = (now) => {
+      if (!this.playing) return;
+      const step = ((now - before) / 1000) * Number(this.speed.value);
+      if (!STILL.matches || step > 0.25 * Number(this.speed.value)) { // reduced motion: four pictures a second
+        this.at += step;
+        before = now;
+        if (this.at >= this.to) { if (this.loop.checked) this.at = this.from; else return this.stop(true, (this.at = this.to)); }
+        this.place();
+      }
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  stop(told = false) {
+    this.playing = false;
+    this.play.textContent = "▶ play";
+    this.play.setAttribute("aria-label", "play");
+    if (this.result) this.place();
+    if (told) this.moved();
+  }
+
+  resize() {
+    this.plots.forEach((plot, i) => plot.setSize(this.size(i)));
+    this.place();
+  }
+
+  recolour() {
+    this.colours();
+    for (const plot of this.plots) plot.redraw(false, true);
+  }
+}

@@ -1,0 +1,19 @@
+// Names as a reader meets them: no code names outside of commands.
+
+const STEPS = { nominal: "as given", calibrated: "calibrated", "unrecorded forces": "with unrecorded forces" };
+
+/** What an effect is. */
+export const titleOf = (campaign, id) => campaign.effects.find((e) => e.id === id)?.title ?? id.replaceAll("_", " ");
+
+/** A step of the search. */
+export function stepOf(campaign, step) {
+  if (step in STEPS) return STEPS[step];
+  return step.startsWith("+") ? `with ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
+}
+
+export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
+export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replaceAll("_", " ");
+export const runOf = (run) => (run.role === "holdout" ? `${run.name} (held out)` : run.name);
+
+/** "a, b and c" */
+export const listed = (names, word = "and") => (names.length > 1 ? `${names.slice(0, -1).join(", ")} ${word} ${names.at(-1)}` : names.join(""));

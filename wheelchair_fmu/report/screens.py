@@ -1,0 +1,158 @@
+"""The five screens of the story: from the error to what to do next.
+
+Sentences are complete and plain; code names stand in commands alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .told import STILL, Told, actions, fall_words, near_rivals, rival_words, sized, why_not
+
+CHOICES = 3  # guesses that are offered beside what was found
+
+
+def screens(t: Told) -> list[dict[str, Any]]:
+    """Five screens: [{"kind", "title", "lines"}], and of `guess` the "choices", of `rivals` the "bars"."""
+    before, after = t.fall
+    return [
+        {"kind": "errs", **_errs(t, before)},
+        {"kind": "guess", **_guess(t)},
+        {"kind": "put", **_put(t, before, after)},
+        {"kind": "rivals", **_rivals(t)},
+        {"kind": "next", "title": "Do this next", "lines": actions(t)},
+    ]
+
+
+def _errs(t: Told, before: float) -> dict[str, Any]:
+    calm = before < 1.1 and t.verdict not in ("tie", "missing", "outside")
+    if before < 1.1 and not calm:
+        return {
+            "title": "Here the model errs, a little",
+            "lines": [
+                "Over all that was recorded, the calibrated model misses the sensors by hardly more than their noise.",
+                "In some runs and channels it misses more. Look at where the two curves part.",
+            ],
+        }
+    how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"
+    lines = [f"The calibrated model misses what the sensors read on {t.runs} by {how} what their noise alone would do."]
+    if calm:
+        return {
+            "title": "Here the model errs most, and it is next to nothing",
+            "lines": [*lines, "What remains looks like noise."],
+        }
+    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part."]}
+
+
+def _guess(t: Told) -> dict[str, Any]:
+    if t.verdict in ("adequate", "cannot_see"):
+        lines = ["Suppose one of these were missing. Which would these runs show?"]
+    elif t.verdict == "outside" and not t.found:
+        lines = ["Which of these explains it? Try each."]
+    else:
+        lines = ["Which of these would you say is behind it?"]
+    return {"title": "Guess what it is", "lines": lines, "choices": choices(t)}
+
+
+def choices(t: Told) -> list[dict[str, Any]]:
+    """Guesses, the right ones among them, in the order of their titles so that their place tells nothing."""
+    others = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] not in t.found and r["effect"] in t.titles]
+    offered = [*t.found[: CHOICES + 1], *others[:CHOICES]]
+    guesses = ({"effect": e, "title": t.title(e), "right": e in t.found, "answer": _answer(t, e)} for e in offered)
+    return sorted(guesses, key=lambda guess: str(guess["title"]))
+
+
+def _answer(t: Told, effect: str) -> str:
+    row = t.rows[effect]
+    later = t.found and t.rows[t.found[0]]["heldout_before"] != row["heldout_before"]
+    once = f" once {t.title(t.found[0])} is in" if later else ""
+    comes = t.error(effect)
+    error = "" if comes is None else f" The error comes to {comes:.2f}{once}."
+    if t.verdict in ("adequate", "cannot_see") or (t.verdict == "small" and effect in t.found):
+        if row["power"] >= 0.8:
+            return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
+        return f"These runs would show it at that size with a chance of {row['power']:.0%} only."
+    if effect in t.found:
+        tied = t.verdict == "tie" and any(effect in tie for tie in t.diagnosis["ties"])
+        return ("It may be: this or its rival." if tied else "Yes.") + error
+    if any(effect == r["effect"] for r in near_rivals(t)):
+        return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
+    return f"It helps, but not enough.{error}" if error else "No: it would hardly change what is seen in these runs."
+
+
+def _put(t: Told, before: float, after: float) -> dict[str, Any]:
+    whose = t.runs
+    if t.verdict in ("adequate", "cannot_see"):
+        return {
+            "title": "Put one in, and see that nothing is gained",
+            "lines": [f"The error on {whose} stays about where it is."],
+        }
+    if t.verdict == "outside":
+        what = "what helps most" if t.proposal or t.found else "what is known"
+        return {
+            "title": "Put in what helps most",
+            "lines": [f"With {what}, the error on {whose} goes from {before:.2f} to {after:.2f}."],
+        }
+    if t.verdict == "tie":
+        if abs(before - after) < 0.03:
+            return {
+                "title": "Put one in: these runs hardly change",
+                "lines": [
+                    "The effect shows in the runs it was fitted to, a little at a time, not yet in those that were kept back.",
+                    f"There the error is {after:.2f} times the noise with either.",
+                ],
+            }
+        return {
+            "title": "Put one in and watch the error fall",
+            "lines": [f"With either, the error on {whose} falls to {after:.2f}."],
+        }
+    return {
+        "title": "Put it in and watch the error fall",
+        "lines": [fall_words(t), "1.00 is what the noise of the sensors leaves."],
+    }
+
+
+def _rivals(t: Told) -> dict[str, Any]:
+    if t.verdict == "tie":
+        title, lines = (
+            "Why not one of them",
+            ["These runs favour neither. The sizes that each would need:", *(sized(t, e) for e in t.found)],
+        )
+    elif t.found and t.verdict != "outside":
+        title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]
+    elif t.verdict == "outside":
+        title, lines = (
+            "Why nothing in the catalogue",
+            ["Each effect was put in and its size fitted; this is the error that each leaves."],
+        )
+    else:
+        title, lines = (
+            "Why nothing else",
+            ["This is the error that each leaves when it is put in: none is better than the model without."],
+        )
+    return {"title": title, "lines": lines, "bars": bars(t)}
+
+
+def _unmoved(t: Told) -> list[str]:
+    """Where errors over all channels tell little, what the choice rests on."""
+    before, after = t.fall
+    return (
+        ["Over all channels the errors are alike; likelihood tells them apart, which weighs every moment."]
+        if before - after < STILL
+        else []
+    )
+
+
+def bars(t: Told) -> list[dict[str, Any]]:
+    """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]."""
+    tried = [r for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
+    with_each = [
+        {"title": t.title(r["effect"]), "error": t.error(r["effect"]), "found": r["effect"] in t.found} for r in tried[:6]
+    ]
+    before, after = t.fall
+    whole = (
+        [{"title": "all that was found together", "error": after, "found": True}]
+        if len(t.found) > 1 and t.verdict != "tie"
+        else []
+    )
+    return [{"title": "without any", "error": before, "found": False}, *with_each, *whole]

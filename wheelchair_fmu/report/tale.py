@@ -1,0 +1,60 @@
+"""All that the page tells in words, before any script runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..quantities import Quantity, Unit
+from .cards import cards
+from .screens import screens
+from .told import Told, capital
+from .words import value_text
+
+CHANNELS = {
+    "wheel_speed_l": "the left wheel's speed",
+    "wheel_speed_r": "the right wheel's speed",
+    "yaw_rate": "the yaw rate",
+    "a_x": "the forward acceleration",
+    "a_y": "the sideways acceleration",
+}
+
+
+@dataclass(frozen=True)
+class Story:
+    """What the page tells: cards, screens, and what is left in units that sensors read in."""
+
+    cards: Sequence[Mapping[str, Any]]
+    screens: Sequence[Mapping[str, Any]]
+    physical: Sequence[str] = ()
+
+
+def story_of(
+    diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity], units: Mapping[str, Unit]
+) -> Story:
+    """All of it; `records` are effects' parameters, and `units` those of channels, by name."""
+    t = Told(diagnosis, titles, records)
+    return Story(cards(t), screens(t), physical_words(t, units))
+
+
+def channel_words(channel: str) -> str:
+    """A channel in a sentence."""
+    return CHANNELS.get(channel, channel.replace("_", " "))
+
+
+def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
+    """What is left on runs held out in each channel's own unit, where the diagnosis says so."""
+    left = t.diagnosis.get("physical") or {}
+    said = []
+    for name, v in left.items():
+        unit = units.get(name)
+        if unit is not None and v.get("heldout_rms") is not None:
+            share = f", {v['share_of_sd']:.0%} of how much it varies" if v.get("share_of_sd") is not None else ""
+            said.append(f"{capital(channel_words(name))} is foretold to {value_text(v['heldout_rms'], None, unit)}{share}.")
+    return said
+
+
+def texts(items: Sequence[Mapping[str, Any]]) -> list[str]:
+    """All sentences of cards or screens, for reading them aloud."""
+    return [s for item in items for s in (item.get("lead", item.get("title", "")), *item["lines"])]

@@ -1,0 +1,220 @@
+"""A diagnosis in sentences that cards and screens share: sizes, chances, rivals, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import erf, sqrt
+from typing import Any
+
+from ..quantities import Quantity
+from .advice import inspect
+from .words import listed, title_of, value_text
+
+NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
+STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
+NAMED = 3  # rivals in a sentence
+
+
+@dataclass(frozen=True)
+class Told:
+    """A diagnosis with what it takes to put it in words: titles of effects and records of their parameters."""
+
+    diagnosis: Mapping[str, Any]
+    titles: Mapping[str, str]
+    records: Mapping[str, Quantity]
+    rows: Mapping[str, Mapping[str, Any]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rows", {row["effect"]: row for row in self.diagnosis["ranking"]})
+
+    @property
+    def verdict(self) -> str:
+        return str(self.diagnosis["verdict"])
+
+    @property
+    def found(self) -> list[str]:
+        return [e for e in self.diagnosis["effects"] if e in self.rows]
+
+    @property
+    def key(self) -> str:
+        """Which error is told: on runs held out, where there are any."""
+        return "heldout" if self.diagnosis["ladder"][-1].get("heldout") is not None else "fit"
+
+    @property
+    def runs(self) -> str:
+        return "runs that were kept back" if self.key == "heldout" else "the runs it was fitted to"
+
+    @property
+    def fall(self) -> tuple[float, float]:
+        """The error before the search and at its end."""
+        ladder = self.diagnosis["ladder"]
+        before = next((s for s in ladder if s["step"] == self.diagnosis.get("begins", "calibrated")), ladder[0])
+        return float(before[self.key]), float(ladder[-1][self.key])
+
+    def error(self, effect: str) -> float | None:
+        """The error on runs held out with an effect in; of what was found alone, that of the last step, as everywhere."""
+        return self.fall[1] if self.found == [effect] else self.rows[effect]["heldout_after"]
+
+    @property
+    def proposal(self) -> Mapping[str, Any] | None:
+        return (self.diagnosis.get("leftover") or {}).get("proposal")
+
+    def title(self, effect: str) -> str:
+        return title_of(effect, self.titles)
+
+    def sizes(self, effect: str) -> list[tuple[str, Mapping[str, Any], Quantity]]:
+        """(full name, what was estimated, its record) of each parameter."""
+        return [
+            (name, v, self.records[name])
+            for short, v in self.rows[effect]["parameters"].items()
+            if (name := f"effect.{effect}.{short}") in self.records
+        ]
+
+    def multiple(self, effect: str) -> float:
+        """The size found over the smallest that would interest anyone; of several parameters the largest."""
+        ratios = [abs(v["estimate"]) / v["smallest_interesting"] for _, v, _ in self.sizes(effect) if v["smallest_interesting"]]
+        return max(ratios, default=0.0)
+
+
+def exceeds(row: Mapping[str, Any]) -> float:
+    """The probability that an effect is larger than the smallest size of interest; where the diagnosis has none, that of a
+    normal error about the estimate. Of several parameters, that one of them is: the surest counts."""
+    if row.get("probability") is not None:
+        return float(row["probability"])
+
+    def beyond(v: Mapping[str, Any]) -> float:
+        if not v["se"]:
+            return float(abs(v["estimate"]) > v["smallest_interesting"])
+        above, below = (
+            (abs(v["estimate"]) - v["smallest_interesting"]) / v["se"],
+            (-abs(v["estimate"]) - v["smallest_interesting"]) / v["se"],
+        )
+        return _normal(above) + _normal(below)
+
+    return max((beyond(v) for v in row["parameters"].values()), default=0.0)
+
+
+def _normal(z: float) -> float:
+    return 0.5 * (1 + erf(z / sqrt(2)))
+
+
+def fall_words(t: Told) -> str:
+    """How far the error came down, in units of the noise."""
+    before, after = t.fall
+    if abs(before - after) < STILL:
+        where = (
+            ", before and after" if not t.found else ", as before: what was found shows at few moments, and there it is gone"
+        )
+        return f"Over all of {t.runs} the error is {after:.2f} times what noise alone gives{where}."
+    verb = "falls" if after < before else "rises"
+    return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
+
+
+def near_rivals(t: Told) -> list[Mapping[str, Any]]:
+    """Refitted effects that explain the runs nearly as well as what was found in their place, though they were not chosen."""
+    if t.verdict not in ("missing", "small"):
+        return []
+    named = {*t.found, *(e for tie in t.diagnosis["ties"] for e in tie)}
+    others = [r for r in t.diagnosis["ranking"] if r["effect"] not in named and r["values"] and r["effect"] in t.titles]
+    return [r for r in others if any(_beside(t.rows[e], r) and r["lr"] > NEAR * t.rows[e]["lr"] for e in t.found)]
+
+
+def _beside(row: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    """Were both put into the same model?"""
+    return bool(row["heldout_before"] == other["heldout_before"])
+
+
+def rival_words(t: Told) -> list[str]:
+    """What else would explain the runs."""
+    if not t.found:
+        return []
+    near = near_rivals(t)
+    if near:
+        names = listed([t.title(r["effect"]) for r in near[:NAMED]], "and")
+        would = "would each do" if len(near) > 1 else "would do"
+        return [f"{capital(names)} {would} nearly as well, {why_not(t, near)}."]
+    return ["No other effect in the catalogue explains these runs as well."]
+
+
+def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
+    """Why near rivals stand back."""
+    own = max(len(t.rows[e]["parameters"]) for e in t.found)
+    if all(len(r["parameters"]) > own for r in rivals):
+        most = number(max(len(r["parameters"]) for r in rivals)).lower()
+        return f"with {most} sizes to choose where this has {number(own).lower()}"
+    return "but explain the runs a little less" if len(rivals) > 1 else "but explains the runs a little less"
+
+
+def size_lines(t: Told, effect: str) -> list[str]:
+    lines = [f"{capital(r.meaning)}: {value_text(v['estimate'], v['se'], r.unit)}." for _, v, r in t.sizes(effect)]
+    return [*lines, f"That is {_times(t.multiple(effect))} the size that would matter{_interest(t, effect)}."]
+
+
+def sized(t: Told, effect: str) -> str:
+    sizes = " and ".join(value_text(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
+    return f"{capital(t.title(effect))}: {sizes}, {_times(t.multiple(effect))} the size that would matter."
+
+
+def _interest(t: Told, effect: str) -> str:
+    sizes = [value_text(v["smallest_interesting"], None, r.unit) for _, v, r in t.sizes(effect) if v["smallest_interesting"]]
+    return f", {sizes[0]}" if len(set(sizes)) == 1 else ""
+
+
+def _times(multiple: float) -> str:
+    if multiple < 0.95:
+        return f"{multiple:.2g} times"
+    return f"{multiple:.1f} times".replace(".0 ", " ") if multiple < 9.95 else f"{multiple:.0f} times"
+
+
+def number(n: int) -> str:
+    return ("No", "One", "Two", "Three", "Four", "Five", "Six")[n] if n < 7 else str(n)
+
+
+def capital(words: str) -> str:
+    return f"{words[:1].upper()}{words[1:]}"
+
+
+def _lower(words: str) -> str:
+    return f"{words[:1].lower()}{words[1:]}"
+
+
+def actions(t: Told) -> list[str]:
+    """What to do, the first thing first: inspect, measure, add."""
+    found, following = t.found, t.diagnosis.get("next_experiment")
+    measure = [_measure(following)] if following else []
+    if t.verdict == "tie":
+        return [*measure, *(inspect(e, t.title(e)) for e in found)] or ["Measure again where the causes differ."]
+    if t.verdict == "missing":
+        near = near_rivals(t)
+        look = [inspect(e, t.title(e)) for e in found]
+        also = (
+            [f"To rule out {t.title(near[0]['effect'])}: {_lower(inspect(near[0]['effect'], t.title(near[0]['effect'])))}"]
+            if near
+            else []
+        )
+        return [
+            *look,
+            *also,
+            *measure,
+            f"Put {'it' if len(found) == 1 else 'them'} into the model: wheelchair add {' '.join(found)}.",
+        ]
+    if t.verdict == "outside":
+        orders = [f"{o['words'][0].upper()}{o['words'][1:]}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
+        return [
+            "Compare the missing force below with what you know of the chair.",
+            *orders,
+            *measure,
+            "Write the effect that it suggests: a file of one expression is enough.",
+        ]
+    if t.verdict == "small":
+        return ["Use the model as it is.", *(inspect(e, t.title(e)) for e in found)]
+    if t.verdict == "adequate":
+        return ["Use the model as it is, for manoeuvres like these."]
+    return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
+
+
+def _measure(following: Mapping[str, Any]) -> str:
+    times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
+    more = "them apart" if len(following["separates"]) > 1 else "more"
+    return f"Measure {following['manoeuvre']}, {times}: it would tell {more}."
