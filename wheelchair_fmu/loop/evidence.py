@@ -303,7 +303,7 @@ class Bench:
         e = self._one(run, values, by)
         for _ in range(rounds):
             better, sd = self._better_start(e), uncertain(run)
-            if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in sd):
+            if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
             e = self._one(run, values, by)
