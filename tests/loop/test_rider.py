@@ -52,3 +52,11 @@ def test_how_much_of_the_body_was_seen_is_found_and_its_noise_is_allowed_for(swi
 def test_the_scale_is_calibrated_only_where_the_body_was_recorded(sample, swinging):
     assert SCALE in Workshop(swinging, Variant()).calibrated and SCALE not in Workshop(sample, Variant()).calibrated
     assert SCALE not in Workshop(swinging, Variant(), fixed=(SCALE,)).calibrated
+
+
+def test_pushes_that_are_late_take_no_body_along(swinging):
+    """Hands are recorded by wheels and bodies by cameras: a shift of the pushes is none of the body."""
+    bench, run = Bench(swinging, Variant().with_effects(["push_force_delay"]), columns=(SCALE,)), swinging.runs[1]
+    later = bench.on_time(run, {"effect.push_force_delay.tau": 0.1}, {})
+    np.testing.assert_array_equal(later.inputs["rider.momentum"], run.inputs["rider.momentum"])
+    assert np.ptp(later.inputs["push.F_rl"] - run.inputs["push.F_rl"]) > 0.5

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
-from ..campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
+from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -27,6 +27,7 @@ from .local import Marginal, felt, locals_of, rate_of, read, slope
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 POSE = START[:3]
+BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
@@ -370,7 +371,8 @@ class Bench:
         given = {**self.variant.values, **self.known(run), **values, **run.set}
         delay = sum(given.get(d, 0.0) for d in self._delays)
         inputs = felt(run, start)
-        inputs = {n: np.interp(run.time - delay, run.time, v) for n, v in inputs.items()} if delay else inputs
+        late = [n for n in inputs if n not in BODY] if delay else []
+        inputs = {**inputs, **{n: np.interp(run.time - delay, run.time, inputs[n]) for n in late}}
         return replace(run, inputs=inputs, set={n: v for n, v in run.set.items() if n not in self._delays})
 
     def inputs(self, run: Run) -> np.ndarray:
@@ -402,7 +404,8 @@ class Bench:
             if names[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
             elif names[j] in self._delays:  # every push changes by −F' per second of it
-                out[:, :, j] = whitener.response(-rate_of(run.time, pushed))
+                by_hands = np.where([n in BODY for n in pushes_of(run)], 0.0, rate_of(run.time, pushed))
+                out[:, :, j] = whitener.response(-by_hands)
 
     def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
         usual = float(np.median(np.diff(run.time)))
