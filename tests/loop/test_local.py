@@ -102,3 +102,14 @@ def test_a_baseline_of_a_push_is_nobody_elses(recorded):
     (e,) = found["right"].evidence.runs
     sizes = np.array([e.start[f"baseline.push.F_rl.{i}"] for i in range(3)])
     np.testing.assert_allclose(right.baselines[0].independent @ sizes, shapes @ [3.0, 2.0, -1.0], atol=1.0)
+
+
+def test_a_run_whose_start_is_known_may_have_an_uncertain_clock(recorded):
+    """Where nothing of the start is to be found, the clock is."""
+    (run,) = recorded.runs
+    bench = Bench(recorded, Variant())
+    known = {**run.set, **bench.starts[run.name]}
+    moved = {**run.channels, "yaw_rate": later(run.channels["yaw_rate"], run.time, 0.03)}
+    fixed = replace(run, set=known, channels=moved, clocks=(GYRO,))
+    (e,) = bench.evidence([fixed], {}, (), tune_start=3).runs
+    assert e.start["clock.gyro"] == pytest.approx(0.03, abs=0.002)

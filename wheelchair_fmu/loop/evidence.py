@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
-from ..campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
+from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -28,6 +28,7 @@ TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best 
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 CASTERS = ("start.caster_l", "start.caster_r")  # of a model whose casters swing: nobody films them as a rule
 POSE = START[:3]
+BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
@@ -320,7 +321,7 @@ class Bench:
         e = self._one(run, values, by)
         for _ in range(rounds):
             better, sd = self._better_start(e), e.uncertain
-            if all(abs(better[n] - e.start[n]) <= SETTLED * sd[n] for n in sd):
+            if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
             e = self._one(run, values, by)
@@ -394,7 +395,8 @@ class Bench:
         given = {**self.variant.values, **self.known(run), **values, **run.set}
         delay = sum(given.get(d, 0.0) for d in self._delays)
         inputs = felt(run, start)
-        inputs = {n: np.interp(run.time - delay, run.time, v) for n, v in inputs.items()} if delay else inputs
+        late = [n for n in inputs if n not in BODY] if delay else []
+        inputs = {**inputs, **{n: np.interp(run.time - delay, run.time, inputs[n]) for n in late}}
         return replace(run, inputs=inputs, set={n: v for n, v in run.set.items() if n not in self._delays})
 
     def inputs(self, run: Run) -> np.ndarray:
@@ -426,7 +428,8 @@ class Bench:
             if names[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
             elif names[j] in self._delays:  # every push changes by −F' per second of it
-                out[:, :, j] = whitener.response(-rate_of(run.time, pushed))
+                by_hands = np.where([n in BODY for n in pushes_of(run)], 0.0, rate_of(run.time, pushed))
+                out[:, :, j] = whitener.response(-by_hands)
 
     def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
         usual = float(np.median(np.diff(run.time)))

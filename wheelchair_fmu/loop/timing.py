@@ -18,7 +18,7 @@ from ..campaign.clocks import Signal, odd_ones_out
 from ..campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
-from .evidence import Bench, Evidence, RunEvidence
+from .evidence import BODY, Bench, Evidence, RunEvidence
 from .score import Projector
 from .statistics import correlation_time
 
@@ -170,8 +170,9 @@ def _left(bench: Bench, e: RunEvidence, values: Mapping[str, float], later: Iter
 
 
 def _moved(e: RunEvidence, seconds: float) -> RunEvidence:
-    t = e.run.time
-    return replace(e, run=replace(e.run, inputs={name: np.interp(t - seconds, t, push) for name, push in e.run.inputs.items()}))
+    t, inputs = e.run.time, e.run.inputs
+    late = {name: np.interp(t - seconds, t, push) for name, push in inputs.items() if name not in BODY}
+    return replace(e, run=replace(e.run, inputs={**inputs, **late}))
 
 
 def _alone(bench: Bench, m: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
