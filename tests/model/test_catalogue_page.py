@@ -7,7 +7,7 @@ from pathlib import Path
 
 from wheelchair_fmu.model.catalogue_page import page
 from wheelchair_fmu.model.effects import bundled
-from wheelchair_fmu.model.wheelchair import assemble
+from wheelchair_fmu.model.wheelchair import Choice, assemble
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -19,7 +19,8 @@ def test_the_page_is_as_the_records_are():
 def test_the_models_page_names_inputs_parameters_and_effects_that_there_are():
     text = (DOCS / "physics.md").read_text(encoding="utf-8")
     model = assemble()
-    known = {q.name for q in (*model.inputs, *model.parameters, *model.outputs)} | set(bundled())
+    casters = assemble(Choice(caster="slipping")).parameters
+    known = {q.name for q in (*model.inputs, *model.parameters, *model.outputs, *casters)} | set(bundled())
     named = set(re.findall(r"`([a-z]+(?:[._][a-zA-Z_]+)+)(?: = \w+)?`", text)) - {"wheelchair_fmu", "magic_formula"}
     assert len(named) > 12 and named <= known, named - known
     assert {i.name for i in model.inputs} <= set(re.findall(r"`([\w.]+)`", text))

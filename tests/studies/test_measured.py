@@ -9,7 +9,7 @@ import pytest
 
 from wheelchair_fmu.campaign import Run, read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.errors import SimulationError
+from wheelchair_fmu.errors import SimulationError, UsageError
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import run_campaign_run
 
@@ -59,6 +59,14 @@ def test_the_runs_own_values_go_first_and_starts_come_from_the_run(fmu):
     assert run_campaign_run(fmu, run_of(), {"start.u": 0.9})["u"][0] == 0.9
     tracked = run_of(channels={"x": np.r_[np.nan, np.full(100, 3.0)], "yaw": np.full(101, 0.2)})
     assert run_campaign_run(fmu, tracked, {})["x"][0] == 3.0 and run_campaign_run(fmu, tracked, {})["yaw"][0] == 0.2
+
+
+def test_casters_that_have_no_angle_of_their_own_start_nowhere(fmu):
+    """A run that was filmed may say where its casters stood; the ideal casters of this FMU trail at once."""
+    turned = run_campaign_run(fmu, run_of(set={"start.caster_l": 0.4}), {})
+    np.testing.assert_array_equal(turned["u"], run_campaign_run(fmu, run_of(), {})["u"])
+    with pytest.raises(UsageError, match=r"no parameter 'start\.castor_l'"):
+        run_campaign_run(fmu, run_of(set={"start.castor_l": 0.4}), {})
 
 
 def test_a_refusal_names_the_run(fmu):

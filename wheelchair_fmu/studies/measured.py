@@ -11,6 +11,8 @@ from .driving import Fmu, Values
 PREDICTS = {channel.name: channel.fmu for channel in CHANNELS}
 STARTS = {channel.starts: channel.name for channel in CHANNELS if channel.starts and channel.drifts}  # where tracking tells it
 
+CASTER_START = "start.caster_"
+
 
 def run_campaign_run(fmu: Fmu, run: Run, values: Values) -> dict[str, np.ndarray]:
     """Predictions (n,) of the run's channels, by channel name, SI units and SAE J670 axes.
@@ -21,7 +23,7 @@ def run_campaign_run(fmu: Fmu, run: Run, values: Values) -> dict[str, np.ndarray
     Raises UsageError for an unknown or impossible value and SimulationError, naming the run, where the FMU refuses.
     """
     try:
-        result = fmu.run(run.time, run.inputs, {**_starts(fmu, run), **values, **run.set})
+        result = fmu.run(run.time, run.inputs, {**_starts(fmu, run), **values, **_set(fmu, run)})
     except SimulationError as error:
         raise SimulationError(f"run {run.name}: {error}") from error
     return {name: result[PREDICTS[name]] for name in run.channels}
@@ -32,6 +34,11 @@ def _starts(fmu: Fmu, run: Run) -> dict[str, float]:
     if run.u0 is not None:
         found["start.u"] = run.u0
     return {name: value for name, value in found.items() if name in fmu.parameters}
+
+
+def _set(fmu: Fmu, run: Run) -> dict[str, float]:
+    """What the run sets, but for where its casters start in a chair whose casters have no angle of their own."""
+    return {name: v for name, v in run.set.items() if name in fmu.parameters or not name.startswith(CASTER_START)}
 
 
 def _first(series: np.ndarray) -> float:

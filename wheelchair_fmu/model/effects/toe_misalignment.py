@@ -1,7 +1,7 @@
 """Rear wheels that do not point straight ahead: each wheel's frame is turned clockwise by its toe angle τ.
 
 With the sum τ_r + τ_l the chair goes aside by half of it, as a crab; with the difference the tyres work against each other,
-which costs drag like its square, the same for toe-in and toe-out.
+which costs drag like its square, the same for toe-in and toe-out. With both the wheel that is turned more drags more.
 """
 
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import casadi as cs
 
 from ...quantities import RAD, Parameter
+from ..alike import SIDE_PULL
 from ..sides import difference_of, of_sum, sum_of
 from ..stage import Effect, adds
 
@@ -61,4 +62,5 @@ EFFECT = Effect(
         adds("F_yr", lambda F_w, F_s, tau_sum, tau_difference: force(F_w, F_s, tau_sum, tau_difference)[1]),
     ),
     even=True,
+    alike=(SIDE_PULL,),
 )
