@@ -106,6 +106,27 @@ def test_an_address_that_fits_nothing_is_passed_over(browser, report_file, end):
     opened.close()
 
 
+def test_the_way_past_the_text_keeps_the_state(reader):
+    page = reader.page
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    page.evaluate("window.same = true")
+    page.focus(".skip")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => location.hash === '#try'")
+    page.wait_for_timeout(300)
+    assert page.evaluate("window.same") and page.is_checked(f"#effect-{HIDDEN}")
+
+
+def test_without_scripts_the_story_is_there(browser, report_file):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(report_file.as_uri())
+    assert page.locator(".card:visible").count() == 3 and page.locator(".screen:visible").count() == 5
+    assert "needs JavaScript" in page.inner_text(".plea >> nth=0")
+    context.close()
+
+
 def test_one_time_for_chair_curves_and_readings(reader):
     page = reader.page
     over = page.locator("#overlay .u-over").first
