@@ -225,7 +225,7 @@ def test_names_of_any_length_and_character(browser, report_file, tmp_path):
 def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp_path: Path, verdict: str) -> None:
     """A diagnosis of the sample campaign that says something else, which is enough for the page."""
     told = json.loads(DIAGNOSIS.read_text())
-    pair = [HIDDEN, "camber_misalignment"]
+    pair = [HIDDEN, "floor_cross_slope"]
     told["verdict"] = verdict
     told["effects"] = {"tie": pair, "missing": pair, "small": [HIDDEN]}.get(verdict, [])
     told["ties"] = [pair] if verdict == "tie" else []
@@ -238,6 +238,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     assert reader.page.locator(".card").count() == 3
     assert reader.page.is_visible("#missing") == (verdict == "outside")
+    assert reader.page.locator("#pair svg").count() == (verdict == "tie")
     for i in range(5):
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()
