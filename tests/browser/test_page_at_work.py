@@ -106,6 +106,27 @@ def test_an_address_that_fits_nothing_is_passed_over(browser, report_file, end):
     opened.close()
 
 
+def test_the_way_past_the_text_keeps_the_state(reader):
+    page = reader.page
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    page.evaluate("window.same = true")
+    page.focus(".skip")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => location.hash === '#try'")
+    page.wait_for_timeout(300)
+    assert page.evaluate("window.same") and page.is_checked(f"#effect-{HIDDEN}")
+
+
+def test_without_scripts_the_story_is_there(browser, report_file):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(report_file.as_uri())
+    assert page.locator(".card:visible").count() == 3 and page.locator(".screen:visible").count() == 5
+    assert "needs JavaScript" in page.inner_text(".plea >> nth=0")
+    context.close()
+
+
 def test_one_time_for_chair_curves_and_readings(reader):
     page = reader.page
     over = page.locator("#overlay .u-over").first
@@ -204,7 +225,7 @@ def test_names_of_any_length_and_character(browser, report_file, tmp_path):
 def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp_path: Path, verdict: str) -> None:
     """A diagnosis of the sample campaign that says something else, which is enough for the page."""
     told = json.loads(DIAGNOSIS.read_text())
-    pair = [HIDDEN, "camber_misalignment"]
+    pair = [HIDDEN, "floor_cross_slope"]
     told["verdict"] = verdict
     told["effects"] = {"tie": pair, "missing": pair, "small": [HIDDEN]}.get(verdict, [])
     told["ties"] = [pair] if verdict == "tie" else []
@@ -217,6 +238,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     assert reader.page.locator(".card").count() == 3
     assert reader.page.is_visible("#missing") == (verdict == "outside")
+    assert reader.page.locator("#pair svg").count() == (verdict == "tie")
     for i in range(5):
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()

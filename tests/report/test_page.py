@@ -150,4 +150,9 @@ def test_the_page_carries_no_heavier_model_than_it_needs(given, found, expected)
 
 def test_every_module_is_in_the_import_map():
     imported = {m for name in MODULES for m in re.findall(r'from "page/(\w+)"', asset(f"{name}.js"))}
-    assert imported <= set(MODULES)
+    assert imported == set(MODULES) - {"app"}
+
+
+def test_the_plotting_library_comes_with_its_licence():
+    html = page({"name": "a"}, "", [], Story([], []))
+    assert "uPlot" in html and "Permission is hereby granted" in html

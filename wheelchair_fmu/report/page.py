@@ -63,7 +63,7 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "method": asset("method.html"),
         "worker": _in_script(asset("worker.js")),
         "importmap": json.dumps({"imports": {f"page/{m}": _data_url(asset(f"{m}.js")) for m in MODULES}}),
-        "plot": _in_script(asset(f"{PLOT}.iife.min.js")),
+        "plot": _in_script(f"/*\n{asset('vendor/uplot-LICENSE.txt')}*/\n{asset(f'{PLOT}.iife.min.js')}"),
         "content": packed({**content, "story": {"screens": story.screens, "physical": story.physical}}),
     }
     head, *rest = asset("page.html").split("{{")

@@ -107,7 +107,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"With either, the error on {whose} falls to {after:.2f}."],
         }
     return {
-        "title": "Put it in and watch the error fall",
+        "title": f"Put {'it' if len(t.found) == 1 else 'them'} in and watch the error fall",
         "lines": [fall_words(t), "1.00 is what the noise of the sensors leaves."],
     }
 

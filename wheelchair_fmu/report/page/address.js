@@ -4,6 +4,9 @@ const KEYS = ["values", "run", "channel", "t", "from", "to", "screen", "pins", "
 
 export const write = (state) => `#${encodeURIComponent(JSON.stringify(state))}`;
 
+/** Is this a view of the page, rather than an anchor in it? */
+export const isState = (hash) => hash.startsWith("#%7B");
+
 /** What the address says, as far as it fits this campaign; {} of none. */
 export function read(hash, campaign, known) {
   let found;

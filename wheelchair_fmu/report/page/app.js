@@ -445,7 +445,7 @@ addEventListener("resize", () => {
   clearTimeout(settling);
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
-addEventListener("hashchange", () => { if (location.hash !== app.hash) location.reload(); });
+addEventListener("hashchange", () => { if (address.isState(location.hash) && location.hash !== app.hash) location.reload(); });
 let theme;
 addEventListener("beforeprint", () => {
   theme = document.documentElement.dataset.theme;

@@ -75,4 +75,7 @@ export function wrapped(words, letters) {
 }
 
 /** So many letters of a name, the end given by dots. */
-export const short = (name, letters) => (name.length > letters ? `${name.slice(0, letters - 1)}…` : name);
+export function short(name, letters) {
+  const all = [...name];
+  return all.length > letters ? `${all.slice(0, Math.max(0, letters - 1)).join("")}…` : name;
+}

@@ -3,7 +3,7 @@
 import { byId } from "page/dom";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
-import { forest, panels } from "page/forest";
+import { forest, pair, panels } from "page/forest";
 import { Heat, heat } from "page/heat";
 import { labelled, lines, path } from "page/lines";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
@@ -22,6 +22,9 @@ export class Figures {
     this.add("forest", "Every effect's size, with its 95 % interval", this.sizes());
     if (campaign.diagnosis.calibration && Object.keys(campaign.diagnosis.calibration).length) this.add("calibration", "Calibrated values beside what was given", this.calibrated());
     else byId("calibration").remove();
+    const tied = this.tied();
+    if (tied) this.add("pair", "Why these cannot be told apart", tied);
+    else byId("pair").remove();
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
     if (missing) this.add("missing", `What is missing: ${missing.words}`, this.lacking(missing));
@@ -88,6 +91,22 @@ export class Figures {
       draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
       columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "bound"].map((k) => [k, rows.map((r) => r[k])])),
       caption: () => `What calibration made of the values that the campaign gives; zero is the value given and the band one standard deviation of it.${rows.some((r) => r.bound) ? ` At a bound: ${rows.filter((r) => r.bound).map((r) => r.name).join(", ")}.` : ""}`,
+    };
+  }
+
+  /** The first tie of two effects that have one size each. */
+  tied() {
+    const { diagnosis, effects } = this.campaign, group = diagnosis.ties.find((t) => t.length === 2);
+    const ends = (group ?? []).map((id) => {
+      const row = diagnosis.ranking.find((r) => r.effect === id), [p, ...more] = effects.find((e) => e.id === id)?.parameters ?? [], own = p && row?.parameters[p.name.split(".").at(-1)];
+      return own && !more.length && p.delta ? { name: capital(titleOf(this.campaign, id)), value: own.estimate / p.delta, se: (own.se ?? 0) / p.delta, note: withError(own.estimate, own.se, p), error: row.heldout_after } : null;
+    });
+    if (ends.length !== 2 || ends.includes(null)) return null;
+    const [a, b] = ends;
+    return {
+      draw: (width, look) => pair(width, look, a, b),
+      columns: () => ({ effect: ends.map((e) => e.name), "size, in the smallest that would matter": ends.map((e) => e.value), se: ends.map((e) => e.se), "error on runs held out": ends.map((e) => e.error) }),
+      caption: () => `${a.name}, ${a.note}, alone; or ${b.name.toLowerCase()}, ${b.note}, alone; or a share of both along the dashed line: these runs do not say. Both axes are in the smallest size that would matter; within the shading neither would.`,
     };
   }
 

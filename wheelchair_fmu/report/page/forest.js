@@ -30,6 +30,21 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
   return canvas(width, end + 40, drawn);
 }
 
+/** A tie: one size alone, the other alone, and the line of shares of both between them. `a` and `b` are {name, value, se}, in
+ *  sizes of interest. */
+export function pair(width, look, a, b) {
+  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), reach = (p) => [Math.min(0, 1.15 * (p.value - 2 * p.se)), Math.max(1.3, 1.15 * (p.value + 2 * p.se))];
+  const [xs, ys] = [reach(a), reach(b)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
+  drawn.push(svg("rect", { x: across(Math.max(-1, xs[0])), y: down(1), width: across(1) - across(Math.max(-1, xs[0])), height: down(Math.max(-1, ys[0])) - down(1), fill: look.band }));
+  for (const v of ticks(...xs, w / 70)) drawn.push(line(across(v), top, across(v), top + hh, look.line), text(across(v), top + hh + 16, tick(v), look.faint, "middle"));
+  for (const v of ticks(...ys, hh / 45)) drawn.push(line(left, down(v), left + w, down(v), look.line), text(left - 7, down(v) + 4, tick(v), look.faint, "end"));
+  drawn.push(line(across(a.value), down(0), across(0), down(b.value), look.accent, { "stroke-width": 2, "stroke-dasharray": "6 4" }));
+  drawn.push(line(across(a.value - 1.96 * a.se), down(0), across(a.value + 1.96 * a.se), down(0), look.accent, { "stroke-width": 4 }), line(across(0), down(b.value - 1.96 * b.se), across(0), down(b.value + 1.96 * b.se), look.accent, { "stroke-width": 4 }));
+  for (const [x, y] of [[a.value, 0], [0, b.value]]) drawn.push(svg("circle", { cx: across(x), cy: down(y), r: 6, fill: look.accent }));
+  drawn.push(text(left + w / 2, top + hh + 36, short(a.name, Math.floor(w / 6.8)), look.ink, "middle"), text(0, 0, short(b.name, Math.floor(hh / 6.8)), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
+  return canvas(width, top + hh + 46, drawn);
+}
+
 /** Bars of errors from the noise upwards: [{title, error, found}]. */
 export function bars(width, look, rows) {
   const high = 40, most = Math.max(1.3, ...rows.map((r) => r.error)) * 1.02, least = 0.997 * Math.min(1, ...rows.map((r) => r.error)), drawn = [];

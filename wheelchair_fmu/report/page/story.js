@@ -69,7 +69,7 @@ export class Story {
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
     if (kind === "rivals") {
       const rows = this.told("rivals").bars;
-      stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, "Error on runs held out"), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
+      stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
     if (kind === "put") {
       const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", start = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins);

@@ -105,7 +105,7 @@ export class Timeline {
   }
 
   size(index) {
-    return { width: Math.max(240, this.charts[0].clientWidth), height: index ? 160 : innerWidth < 861 ? 210 : 250 };
+    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 200 : 330 };
   }
 
   /** Where 95 % of a perfect model's errors lie. */

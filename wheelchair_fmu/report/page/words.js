@@ -8,7 +8,8 @@ export const titleOf = (campaign, id) => campaign.effects.find((e) => e.id === i
 /** A step of the search. */
 export function stepOf(campaign, step) {
   if (step in STEPS) return STEPS[step];
-  return step.startsWith("+") ? `with ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
+  const added = campaign.diagnosis.ladder.filter((s) => s.step.startsWith("+"));
+  return step.startsWith("+") ? `${added[0]?.step === step ? "with" : "and"} ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
 }
 
 export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
