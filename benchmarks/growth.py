@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 
 from wheelchair_fmu.campaign import Campaign, Run, read
 from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.fit import Fit, fit, start_value
-from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.sweep import prepare
@@ -92,9 +92,9 @@ def _samples(measured: Campaign) -> Line:
     """Runs put end to end, at their own sampling."""
     run = max(measured.runs, key=lambda r: len(r.time))
     longer = {len(run.time) * times: _repeated(run, times) for times in (1, 2, 4, 8)}
-    bench = Workshop(replace(measured, runs=(run,)), Variant()).wide()
-    by = [n for n in bench.sensitivities.columns if n.startswith("effect.")]
-    return _line("samples", {n: (lambda r=r: bench.evidence([r], {}, by)) for n, r in longer.items()})
+    likelihood = ModelFactory(replace(measured, runs=(run,)), Variant()).wide()
+    by = [n for n in likelihood.sensitivities.columns if n.startswith("effect.")]
+    return _line("samples", {n: (lambda r=r: likelihood.evidence([r], {}, by)) for n, r in longer.items()})
 
 
 def _repeated(run: Run, times: int) -> Run:
@@ -123,9 +123,9 @@ def _screening(measured: Campaign) -> Callable[[], object]:
 
 def _fitted(measured: Campaign) -> tuple[Search, Fit]:
     """A search that has compiled what it needs, and the calibrated fit."""
-    search = Search(Workshop(measured, Variant()))
-    bench, names = search.workshop.bench(), search.names(())
-    base = fit(bench, names, {n: start_value(bench, bench.records[n]) for n in names})
+    search = Search(ModelFactory(measured, Variant()))
+    likelihood, names = search.factory.likelihood(), search.names(())
+    base = fit(likelihood, names, {n: start_value(likelihood, likelihood.records[n]) for n in names})
     search.screen(base, ())
     return search, base
 

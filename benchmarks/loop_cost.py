@@ -23,9 +23,9 @@ from threadpoolctl import threadpool_limits
 
 from wheelchair_fmu.campaign import CHANNELS, Campaign, read
 from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.verdict import diagnose
-from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
@@ -88,9 +88,9 @@ class _Peer:
 
 def rows() -> Iterator[Row]:
     measured = read(SAMPLE)
-    search = Search(Workshop(measured, Variant()))
+    search = Search(ModelFactory(measured, Variant()))
     base = begin(search, lambda words: None)[0]
-    count, cores = len(search.workshop.catalogue), cpu_count() or 1
+    count, cores = len(search.factory.catalogue), cpu_count() or 1
     with threadpool_limits(limits=1):  # as in diagnose: cores are for runs
         screens = [ms / 1e3 for ms in timed(lambda: search.screen(base, ()), 5)]
     yield Row(f"screening {count} effects on {len(measured.runs)} runs", "s", screens, SCREEN, note="tangents and secants")

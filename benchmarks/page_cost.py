@@ -18,8 +18,8 @@ import numpy as np
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.engine.wasm import modules
-from wheelchair_fmu.loop.evidence import START
-from wheelchair_fmu.loop.workshop import Workshop
+from wheelchair_fmu.loop.factory import ModelFactory
+from wheelchair_fmu.loop.likelihood import START
 from wheelchair_fmu.model.variant import Variant
 
 from .loop_cost import SAMPLE
@@ -49,7 +49,7 @@ console.log(JSON.stringify({took: took.slice(5), last}));
 def rows() -> Iterator[Row]:
     if shutil.which("node") is None or find_spec("ziglang") is None:
         return
-    light = Workshop(read(SAMPLE), Variant()).light
+    light = ModelFactory(read(SAMPLE), Variant()).light
     for words, variant in (("without effects", Variant()), ("with the light effects", Variant().with_effects(light))):
         (wasm,) = modules([(variant.choice, variant.active())], START)
         took, off = _run(wasm, variant)

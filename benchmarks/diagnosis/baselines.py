@@ -20,9 +20,9 @@ ROUNDS = 10
 
 def baselines(search: Search) -> dict[str, str | None]:
     """The effect that each method names, by the method's name."""
-    fresh = Search(search.workshop)
+    fresh = Search(search.factory)
     base, _, _ = begin(fresh, lambda words: None)
-    w = fresh.workshop
+    w = fresh.factory
     names = [n for e in w.light for n in w.parameters(e)]
     evidence = w.wide().evidence(w.campaign.fit, base.values, names)
     delta = np.array([fresh.records[n].smallest_interesting for n in names])
@@ -36,13 +36,13 @@ def baselines(search: Search) -> dict[str, str | None]:
 
 def _refit(search: Search, base) -> str | None:
     """Fit every effect beside the calibrated values, and take the lowest BIC, as if residuals were independent."""
-    w, best, lowest = search.workshop, None, -BIC_MARGIN
+    w, best, lowest = search.factory, None, -BIC_MARGIN
     for effect in w.catalogue:
         own = w.parameters(effect)
         records = [search.records[n] for n in own]
         start = {**base.values, **{r.name: r.smallest_interesting for r in records}}
         try:
-            found = fit(w.bench([effect]), search.names([effect]), start)
+            found = fit(w.likelihood([effect]), search.names([effect]), start)
         except SimulationError:
             continue
         change = found.misfit - base.misfit + len(own) * np.log(len(found.evidence.r))

@@ -18,7 +18,7 @@ from tests.browser.conftest import DIAGNOSIS, SAMPLE, Reader, report_of
 from tests.kit import tracked, with_settings
 from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.loop.evidence import Bench, Colour
+from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
 from wheelchair_fmu.model.variant import Variant
 
 HIDDEN = "rolling_resistance_asymmetry"
@@ -61,10 +61,10 @@ def test_ticking_the_hidden_effect_brings_the_held_out_bar_to_the_floor(reader):
     ],
 )
 def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
-    """The same start, weights and errors as `Bench`, which `wheelchair compare` whitens with."""
+    """The same start, weights and errors as `Likelihood`, which `wheelchair compare` whitens with."""
     values = {**MODELS[step], **more}
     reader.set(values)
-    expected = Bench(campaign, variant_of(reader, model)).evidence(campaign.runs, values, tune_start=2).table()
+    expected = Likelihood(campaign, variant_of(reader, model)).evidence(campaign.runs, values, tune_start=2).table()
     found = reader.table()
     for run, row in expected.items():
         for channel, rms in row.items():
@@ -73,15 +73,15 @@ def test_whitened_errors_are_pythons(reader, campaign, step, model, more):
 
 def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
     """Starts and parameters of single runs, of which position was tracked too, with coloured noise of sensors and pushes:
-    the same starts and errors as `Bench`."""
+    the same starts and errors as `Likelihood`."""
     folder, colours = tracked(with_settings(SAMPLE, tmp_path / "campaign")), {"F_rl": 0.7, "a_y": 0.5}
     told = {**TOLD, "noise": {**TOLD["noise"], "ar": colours}}
     (tmp_path / "told.json").write_text(json.dumps(told))
     reader, measured = Reader(browser, report_of(folder, tmp_path / "report.html", tmp_path / "told.json")), read(folder)
-    colour = Colour(measured.noise, colours)
+    colour = NoiseModel(measured.noise, colours)
     for step in MODELS:
         reader.set(MODELS[step])
-        expected = Bench(measured, variant_of(reader, 0), colour).evidence(measured.runs, MODELS[step], tune_start=2)
+        expected = Likelihood(measured, variant_of(reader, 0), colour).evidence(measured.runs, MODELS[step], tune_start=2)
         found = reader.table()
         for i, e in enumerate(expected.runs):
             assert found[e.run.name] == pytest.approx(e.rms, rel=1e-7), e.run.name

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from tests.kit import with_settings
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")
@@ -38,7 +38,7 @@ def test_compare_says_where_the_error_is():
 def test_compare_weighs_what_the_fmu_simulates(tmp_path, values):
     """By whatever a run sets, the FMU goes as the model does by which its errors are weighed."""
     measured = read(with_settings(Path(SAMPLE), tmp_path / "campaign"))
-    expected = Bench(measured, Variant()).evidence(measured.runs, values, tune_start=2).table()
+    expected = Likelihood(measured, Variant()).evidence(measured.runs, values, tune_start=2).table()
     settings = [word for n, v in values.items() for word in ("--set", f"{n}={v}")]
     for told in json.loads(run("compare", str(measured.path), "--json", *settings).stdout)["runs"]:
         assert told["rms"] == pytest.approx(expected[told["run"]], rel=2e-3), told["run"]

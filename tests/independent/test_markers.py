@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.independent.campaigns import ROOM_CHANNELS, make
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.variant import Variant
 
@@ -30,7 +30,7 @@ def test_a_point_that_is_given_is_where_the_marker_is_read(folder, tmp_path):
     with_point, without = read(there), read(folder)
     assert with_point.known["effect.marker_offset.x"] == -0.2 and with_point.known["effect.marker_offset.y"] == 0.05
     assert "marker_offset" in with_point.effects
-    told, at_cm = (Bench(c, Variant()).evidence(c.fit, {}, tune_start=2) for c in (with_point, without))
+    told, at_cm = (Likelihood(c, Variant()).evidence(c.fit, {}, tune_start=2) for c in (with_point, without))
     for channel in ("x", "y", "v"):
         before, after = (max(e.rms[channel] for e in evidence.runs) for evidence in (at_cm, told))
         assert after < 1.1 < 1.5 < before

@@ -12,9 +12,9 @@ from benchmarks.independent.chair import Chair, Start, simulate
 from benchmarks.independent.manoeuvres import Run, strokes
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.loop.evidence import CASTERS, Bench
+from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.loop.likelihood import CASTERS, Likelihood
 from wheelchair_fmu.loop.models import Models
-from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 
@@ -75,14 +75,14 @@ def test_casters_left_turned_round_are_found_where_nobody_filmed_them(tmp_path, 
     campaign = read(make(tmp_path / "turned", {}, manoeuvres=[SETTING_OFF], seed=3, turned=turned, chair=AT_PATCHES))
     values = {f"resistance.{f}": getattr(true, f) for f in ("f_r", "f_f")}
     values |= {"tyre.C_lambda": true.C_lambda, "chair.I_z": true.I_z}
-    bench = Bench(campaign, CHAIR, columns=CALIBRATED)
-    (straight,) = bench.evidence(campaign.runs, values).runs
-    (found,) = bench.evidence(campaign.runs, values, (), tune_start=6).runs
+    likelihood = Likelihood(campaign, CHAIR, columns=CALIBRATED)
+    (straight,) = likelihood.evidence(campaign.runs, values).runs
+    (found,) = likelihood.evidence(campaign.runs, values, (), tune_start=6).runs
     assert sum(straight.started[name] for name in CASTERS) == 0
     assert sum(found.started[name] for name in CASTERS) == pytest.approx(sum(turned), abs=0.1)
     assert np.nansum(found.r**2) < np.nansum(straight.r**2) - 20
     filmed = replace(campaign.runs[0], set=dict(zip(CASTERS, turned, strict=True)))
-    (known,) = bench.evidence([filmed], values, (), tune_start=6).runs
+    (known,) = likelihood.evidence([filmed], values, (), tune_start=6).runs
     assert {name: known.started[name] for name in CASTERS} == filmed.set
     assert not any(known.uncertain[name] for name in CASTERS)
 
@@ -92,7 +92,7 @@ def test_casters_left_turned_round_are_found_where_nobody_filmed_them(tmp_path, 
 def test_slow_manoeuvres_come_down_to_the_floor(tmp_path, seed):
     """From 0.2 to 0.6 m/s, starts and stops, spins, backing up: ideal casters leave three times the noise, these hardly any."""
     campaign = read(make(tmp_path / "slow", {}, manoeuvres="slow", seed=seed, chair=AT_PATCHES))
-    found, held, *_ = Models(Workshop(campaign, CHAIR)).calibrate()
+    found, held, *_ = Models(ModelFactory(campaign, CHAIR)).calibrate()
     assert found.evidence.rms < 1.12 and held.rms < 1.12
-    ideal, ideal_held, *_ = Models(Workshop(campaign, Variant())).calibrate()
+    ideal, ideal_held, *_ = Models(ModelFactory(campaign, Variant())).calibrate()
     assert ideal.evidence.rms > 2 and ideal_held.rms > 2

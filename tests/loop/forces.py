@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from wheelchair_fmu.campaign import Campaign, Run
-from wheelchair_fmu.loop.evidence import FORGOTTEN, Bench
+from wheelchair_fmu.loop.likelihood import FORGOTTEN, Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 T_R = 0.55
@@ -27,14 +27,14 @@ def wandering(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarr
 
 def ridden(campaign: Campaign, rng: np.random.Generator, forces: Forces) -> Campaign:
     """The campaign's runs, simulated with its own pushes and these forces, and read with its noise."""
-    bench, runs = Bench(campaign, Variant()), []
-    names = bench.sensitivities.results
+    likelihood, runs = Likelihood(campaign, Variant()), []
+    names = likelihood.sensitivities.results
     for run in campaign.runs:
-        start = bench.starts[run.name]
-        without = dict(zip(names, bench._simulated(run, {}, start)[0].T, strict=True))
+        start = likelihood.starts[run.name]
+        without = dict(zip(names, likelihood._simulated(run, {}, start)[0].T, strict=True))
         F, M = forces(run, without)
         felt = {"push.F_rl": run.inputs["push.F_rl"] + F / 2 + M / T_R, "push.F_rr": run.inputs["push.F_rr"] + F / 2 - M / T_R}
-        channels, _, true = bench.readings(replace(run, inputs={**run.inputs, **felt}), {}, start)
+        channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), {}, start)
         read = {c: v + rng.normal(0, campaign.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
         record = {n: w + rng.normal(0, 0.4, len(w)) for n, w in run.inputs.items()}
         runs.append(replace(run, inputs=record, channels=read))

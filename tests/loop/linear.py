@@ -9,8 +9,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from wheelchair_fmu.campaign import Run
-from wheelchair_fmu.loop.evidence import Evidence, RunEvidence, Weighed
 from wheelchair_fmu.loop.fit import Fit
+from wheelchair_fmu.loop.likelihood import Evidence, RunEvidence, Weighed
 
 STEP = 0.01  # s
 CHANNELS = ("yaw_rate", "a_y", "a_x")

@@ -9,17 +9,17 @@ import pytest
 from benchmarks.independent.campaigns import make, truth
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.loop.calibration import calibration, doubts
+from wheelchair_fmu.loop.factory import MEASURED, ModelFactory
 from wheelchair_fmu.loop.models import Models
 from wheelchair_fmu.loop.story import story
 from wheelchair_fmu.loop.verdict import diagnose
-from wheelchair_fmu.loop.workshop import MEASURED, Workshop
 from wheelchair_fmu.model.variant import Variant
 
 
 def fitted(campaign):
-    shop = Workshop(campaign, Variant())
+    shop = ModelFactory(campaign, Variant())
     found, *_ = Models(shop).calibrate()
-    return {c.record.name: c for c in calibration(shop.bench(), found)}
+    return {c.record.name: c for c in calibration(shop.likelihood(), found)}
 
 
 def test_values_as_given_raise_no_doubts(sample):

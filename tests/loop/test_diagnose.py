@@ -16,13 +16,13 @@ from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.diagnose import Round, Search
+from wheelchair_fmu.loop.factory import MEASURED, ModelFactory
 from wheelchair_fmu.loop.interval import half_width
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.staircase import Step
 from wheelchair_fmu.loop.statistics import sandwich, size_seen
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
-from wheelchair_fmu.loop.workshop import MEASURED, Workshop
 from wheelchair_fmu.model.generic import library, terms
 from wheelchair_fmu.model.variant import Variant
 
@@ -64,8 +64,8 @@ def test_the_ranking_tells_the_last_model(sampled):
 
 def test_lasting_structure_is_no_noise(sampled):
     """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
-    before = Workshop(sampled.search.workshop.campaign, Variant()).bench()
-    calibrated = before.evidence(sampled.search.workshop.campaign.fit, sampled.rounds[0].fit.values)
+    before = ModelFactory(sampled.search.factory.campaign, Variant()).likelihood()
+    calibrated = before.evidence(sampled.search.factory.campaign.fit, sampled.rounds[0].fit.values)
     assert _structured(calibrated) and not _structured(sampled.final.evidence)
 
 
@@ -216,10 +216,10 @@ def test_resamples_name_the_hidden_effect_or_its_double(sampled):
 
 def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
     """Calibrated values as the campaign has them are only tried; effects with states are scored without them, too."""
-    search = Search(Workshop(sample, Variant()))
+    search = Search(ModelFactory(sample, Variant()))
     base = begin(search, lambda words: None)[0]
-    monkeypatch.setattr(Search, "straightened", lambda *given: [dict.fromkeys(base.values, float("nan"))])
-    monkeypatch.setattr(Search, "_unbent", lambda *given: [])
+    monkeypatch.setattr(Search, "at_prior_mean", lambda *given: [dict.fromkeys(base.values, float("nan"))])
+    monkeypatch.setattr(Search, "_slopes_at_prior_mean", lambda *given: [])
     assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.disturbance import strength
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, ridden, wandering
@@ -16,9 +16,9 @@ from .forces import T_R, ridden, wandering
 def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     rng = np.random.default_rng(5)
     campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, run.time, moment)))
-    found = strength(Bench(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
     assert found.force == pytest.approx(force, rel=0.15, abs=0.15)
     assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
-    noise = found.put_into(Bench(campaign, Variant()).colour)
-    whole = Bench(campaign, Variant(), noise).evidence(campaign.runs, {}, ())
+    noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
+    whole = Likelihood(campaign, Variant(), noise).evidence(campaign.runs, {}, ())
     assert float(np.mean(whole.r**2)) == pytest.approx(1, abs=0.03)

@@ -16,10 +16,10 @@ from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
 from wheelchair_fmu.handling.experiments import experiments
+from wheelchair_fmu.loop.factory import MEASURED
 from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.statistics import standard_errors
 from wheelchair_fmu.loop.verdict import diagnose
-from wheelchair_fmu.loop.workshop import MEASURED
 from wheelchair_fmu.model.variant import Variant, read_variant
 
 FAST = Run("fast-coast", "coast-down", "fit", 2.5, 14.0, coast(0.0, 1.0))
@@ -57,7 +57,7 @@ def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
 def test_who_watches_is_told_the_whole_staircase(sample):
     """Every time: steps before the last change when the noise is estimated anew."""
     seen = []
-    found = diagnose(sample, climbed=seen.append)
+    found = diagnose(sample, stepped=seen.append)
     assert [len(ladder) for ladder in seen] == [2, 3] and seen[-1] == found.ladder
 
 

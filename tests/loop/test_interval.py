@@ -19,7 +19,7 @@ def interval_of(monkeypatch):
     monkeypatch.setattr(interval, "half_width", lambda found, at: interval.NORMAL * SE)
 
     def call(higher, lower=-10.0, upper=10.0):
-        monkeypatch.setattr(interval, "_profile", lambda bench, found, at: lambda value: higher(value - 1.0))
+        monkeypatch.setattr(interval, "_profile", lambda likelihood, found, at: lambda value: higher(value - 1.0))
         found = Some(names=("k",), values={"k": 1.0}, covariance=np.array([[SE**2]]), misfit=0.0)
         return profile_interval(Some(records={"k": Some(lower=lower, upper=upper)}), found, "k")
 

@@ -9,7 +9,7 @@ import pytest
 
 from wheelchair_fmu.campaign import pieces, windows
 from wheelchair_fmu.loop.compare import Comparison, errors_of, together
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import REGIMES
@@ -26,17 +26,17 @@ def test_a_diagnosis_by_windows_finds_the_same_and_says_so(sample):
 
 def test_a_heading_that_a_run_states_is_where_it_starts(sample):
     run = replace(sample.runs[0], set={"start.psi": 0.7})
-    bench = Bench(replace(sample, runs=(run,)), Variant())
-    assert bench.starts[run.name]["start.psi"] == 0.7
+    likelihood = Likelihood(replace(sample, runs=(run,)), Variant())
+    assert likelihood.starts[run.name]["start.psi"] == 0.7
 
 
 def test_pieces_compared_are_the_run_compared(sample):
     """Each piece starts anew, so its errors are its own; put together they are those of all pieces."""
     run = next(r for r in sample.runs if r.name == "slalom-slow")
     parts = pieces(run, 4.0)
-    bench = Bench(replace(sample, runs=tuple(parts)), Variant())
-    results = [o.name for o in bench.variant.model().outputs]
-    errors = [errors_of(e, None, REGIMES, results) for e in bench.evidence(parts, {}, tune_start=1).runs]
+    likelihood = Likelihood(replace(sample, runs=tuple(parts)), Variant())
+    results = [o.name for o in likelihood.variant.model().outputs]
+    errors = [errors_of(e, None, REGIMES, results) for e in likelihood.evidence(parts, {}, tune_start=1).runs]
     whole = together(run.name, errors)
     assert len(parts) == 3 and whole.name == run.name and whole.e.shape == (len(run.time), len(run.channels))
     squares = sum(float(np.nansum(e.e**2)) for e in errors)

@@ -9,8 +9,8 @@ import pytest
 
 from wheelchair_fmu.campaign import Baseline, Clock
 from wheelchair_fmu.engine.innovations import Noise, Whitener
-from wheelchair_fmu.loop.evidence import Bench
 from wheelchair_fmu.loop.fit import fit
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.local import Marginal
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import PREDICTS
@@ -48,9 +48,9 @@ def test_constants_are_taken_out_by_their_covariance():
 def recorded(sample):
     """A run of the sample campaign as the model itself would have it, with noise, and its campaign."""
     run = sample.fit[5]
-    bench = Bench(replace(sample, runs=(run,)), Variant())
-    results = bench.evidence([run], {}).runs[0].results
-    names, rng = [o.name for o in bench.variant.model().outputs], np.random.default_rng(1)
+    likelihood = Likelihood(replace(sample, runs=(run,)), Variant())
+    results = likelihood.evidence([run], {}).runs[0].results
+    names, rng = [o.name for o in likelihood.variant.model().outputs], np.random.default_rng(1)
     read = {c: results[:, names.index(PREDICTS[c])] + rng.normal(0, sample.noise[c], len(run.time)) for c in run.channels}
     return replace(sample, runs=(replace(run, channels=read),))
 
@@ -65,11 +65,11 @@ def test_a_gyro_with_a_clock_of_its_own(recorded, seconds):
     (run,) = recorded.runs
     moved = {**run.channels, "yaw_rate": later(run.channels["yaw_rate"], run.time, seconds)}
     run = replace(run, channels=moved, clocks=(GYRO,))
-    bench = Bench(replace(recorded, runs=(run,)), Variant())
-    (e,) = bench.evidence([run], {}, (), tune_start=3).runs
+    likelihood = Likelihood(replace(recorded, runs=(run,)), Variant())
+    (e,) = likelihood.evidence([run], {}, (), tune_start=3).runs
     assert e.start["clock.gyro"] == pytest.approx(seconds, abs=0.002)
     assert e.rms["yaw_rate"] == pytest.approx(1.0, abs=0.05)
-    (without,) = bench.evidence([replace(run, clocks=())], {}, (), tune_start=3).runs
+    (without,) = likelihood.evidence([replace(run, clocks=())], {}, (), tune_start=3).runs
     assert without.rms["yaw_rate"] > 1.2, "the shift can be seen"
 
 
@@ -77,8 +77,8 @@ def test_a_gyro_with_a_clock_of_its_own(recorded, seconds):
 def test_pushes_with_a_clock_of_their_own(recorded, seconds):
     (run,) = recorded.runs
     run = replace(run, inputs={n: later(v, run.time, seconds) for n, v in run.inputs.items()}, clocks=(HANDS,))
-    bench = Bench(replace(recorded, runs=(run,)), Variant())
-    (e,) = bench.evidence([run], {}, (), tune_start=3).runs
+    likelihood = Likelihood(replace(recorded, runs=(run,)), Variant())
+    (e,) = likelihood.evidence([run], {}, (), tune_start=3).runs
     assert e.start["clock.hands"] == pytest.approx(seconds, abs=0.003)
     assert max(e.rms.values()) < 1.1
 
@@ -93,9 +93,9 @@ def test_a_baseline_of_a_push_is_nobody_elses(recorded):
     right = replace(wrong, baselines=(Baseline("push.F_rl", shapes, np.diag([2.0, 2.0, 2.0]) ** 2),))
     found = {}
     for name, one in (("wrong", wrong), ("right", right)):
-        bench = Bench(replace(recorded, runs=(one,)), Variant())
-        start = {n: bench.records[n].default for n in NAMES}
-        found[name] = fit(bench, NAMES, start, bench.evidence([one], start, NAMES, tune_start=3))
+        likelihood = Likelihood(replace(recorded, runs=(one,)), Variant())
+        start = {n: likelihood.records[n].default for n in NAMES}
+        found[name] = fit(likelihood, NAMES, start, likelihood.evidence([one], start, NAMES, tune_start=3))
     true = Variant().vector()[[p.name for p in Variant().parameters()].index(NAMES[0])]
     errors = {k: abs(f.values[NAMES[0]] - true) / np.sqrt(f.covariance[0, 0]) for k, f in found.items()}
     assert errors["right"] < 3 < errors["wrong"]
@@ -107,9 +107,9 @@ def test_a_baseline_of_a_push_is_nobody_elses(recorded):
 def test_a_run_whose_start_is_known_may_have_an_uncertain_clock(recorded):
     """Where nothing of the start is to be found, the clock is."""
     (run,) = recorded.runs
-    bench = Bench(recorded, Variant())
-    known = {**run.set, **bench.starts[run.name]}
+    likelihood = Likelihood(recorded, Variant())
+    known = {**run.set, **likelihood.starts[run.name]}
     moved = {**run.channels, "yaw_rate": later(run.channels["yaw_rate"], run.time, 0.03)}
     fixed = replace(run, set=known, channels=moved, clocks=(GYRO,))
-    (e,) = bench.evidence([fixed], {}, (), tune_start=3).runs
+    (e,) = likelihood.evidence([fixed], {}, (), tune_start=3).runs
     assert e.start["clock.gyro"] == pytest.approx(0.03, abs=0.002)

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.evidence import Colour
-from wheelchair_fmu.loop.noise import colour_of
+from wheelchair_fmu.loop.likelihood import NoiseModel
+from wheelchair_fmu.loop.noise import noise_model_of
 
 
 def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
@@ -21,7 +21,7 @@ def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
 
 
 def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000, times: float = 1.0, hertz: float = 0.3):
-    """`colour_of` one run whose only channel has AR(1) noise on a smooth error so many times as large as the noise, by a filter
+    """`noise_model_of` one run whose only channel has AR(1) noise on a smooth error so many `times` as large, by a filter
     for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)
     smooth = times * sigma * np.sin(2 * np.pi * hertz * np.arange(n) * 0.01)
@@ -29,39 +29,39 @@ def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 40
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=predicted, r=r, e=r)])
-    return colour_of(evidence, {"yaw_rate": stated}, Colour({"yaw_rate": stated}))
+    return noise_model_of(evidence, {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
 
 
 def test_white_noise_as_stated_is_left_alone():
-    colour, notes = coloured(0.006, 0.0, 0.006)
-    assert colour.sd == {"yaw_rate": 0.006} and not colour.ar and not notes
+    noise_model, notes = coloured(0.006, 0.0, 0.006)
+    assert noise_model.sd == {"yaw_rate": 0.006} and not noise_model.ar and not notes
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_colour_is_seen(seed):
-    colour, notes = coloured(0.006, 0.9, 0.006, seed)
-    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.01)
+    noise_model, notes = coloured(0.006, 0.9, 0.006, seed)
+    assert noise_model.ar["yaw_rate"] == pytest.approx(0.9, abs=0.01)
     assert not notes, "its size is as stated"
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_what_a_missing_effect_leaves_is_no_slow_noise(seed):
     """An error of strokes looks within fifteen samples as very slow noise, five times as large, does."""
-    colour, notes = coloured(0.006, 0.9, 0.006, seed, times=10.0, hertz=1.0)
-    assert colour.sd["yaw_rate"] == 0.006 and not notes
-    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.03)
+    noise_model, notes = coloured(0.006, 0.9, 0.006, seed, times=10.0, hertz=1.0)
+    assert noise_model.sd["yaw_rate"] == 0.006 and not notes
+    assert noise_model.ar["yaw_rate"] == pytest.approx(0.9, abs=0.03)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_coloured_noise_that_is_larger_than_stated_is_seen(seed):
-    colour, notes = coloured(0.012, 0.9, 0.006, seed)
-    assert colour.sd["yaw_rate"] == pytest.approx(0.012, rel=0.2) and notes
-    assert colour.ar["yaw_rate"] == pytest.approx(0.9, abs=0.02)
+    noise_model, notes = coloured(0.012, 0.9, 0.006, seed)
+    assert noise_model.sd["yaw_rate"] == pytest.approx(0.012, rel=0.2) and notes
+    assert noise_model.ar["yaw_rate"] == pytest.approx(0.9, abs=0.02)
 
 
 def test_a_wrong_size_is_said():
-    colour, notes = coloured(0.006, 0.0, 0.6)
-    assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
+    noise_model, notes = coloured(0.006, 0.0, 0.6)
+    assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
     assert notes == ["yaw_rate: its noise is about 0.006 (SI), not the 0.6 stated; the data's own is used"]
 
 
@@ -72,9 +72,9 @@ def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
     strokes = 40 * np.maximum(0, np.sin(2 * np.pi * t))
     run = SimpleNamespace(channels={}, inputs={"push.F_rl": strokes + ar1(0.4, phi, 1, len(t)), "push.F_rr": 0 * t})
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=())])
-    colour, notes = colour_of(evidence, {"F_rl": stated, "F_rr": 0.0}, Colour({"F_rl": stated, "F_rr": 0.0}))
-    assert not notes and set(colour.ar) == ({"F_rl"} if expected else set())
-    assert colour.ar.get("F_rl") == (expected and pytest.approx(expected, abs=0.02))
+    noise_model, notes = noise_model_of(evidence, {"F_rl": stated, "F_rr": 0.0}, NoiseModel({"F_rl": stated, "F_rr": 0.0}))
+    assert not notes and set(noise_model.ar) == ({"F_rl"} if expected else set())
+    assert noise_model.ar.get("F_rl") == (expected and pytest.approx(expected, abs=0.02))
 
 
 @pytest.mark.parametrize("every", [(2,), (3, 3, 4)], ids=["every second row", "30 Hz on a grid of 100 Hz"])
@@ -89,8 +89,8 @@ def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
     time = 0.01 * np.arange(len(noise))
     run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={})
     one = SimpleNamespace(run=run, channels=("yaw_rate",), predicted=np.zeros(r.shape), r=r, e=r)
-    colour, notes = colour_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, Colour({"yaw_rate": stated}))
-    assert colour.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
+    noise_model, notes = noise_model_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
+    assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
     step = float(np.median(np.diff(time[places])))
-    assert colour.ar.get("yaw_rate", 0.0) == pytest.approx(phi ** (step / 0.01), abs=0.03)
+    assert noise_model.ar.get("yaw_rate", 0.0) == pytest.approx(phi ** (step / 0.01), abs=0.03)
     assert bool(notes) == (stated != 0.006)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop import ties
-from wheelchair_fmu.loop.climb import Climb
-from wheelchair_fmu.loop.evidence import Evidence
 from wheelchair_fmu.loop.fit import Fit
+from wheelchair_fmu.loop.likelihood import Evidence
+from wheelchair_fmu.loop.selection import StepwiseSelection
 from wheelchair_fmu.loop.ties import beside, overtaker, tied
 
 MARGIN = 9.2
@@ -49,7 +49,7 @@ class Known:
 
     def __init__(self, misfits):
         self.misfits, self.asked = misfits, []
-        self.workshop = Some(parameters=lambda effect: [f"effect.{effect}.size"], bench=lambda effects: self)
+        self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"], likelihood=lambda effects: self)
 
     def restarted(self, evidence, values):
         return evidence
@@ -61,7 +61,7 @@ class Known:
         assert effects == ("later",)
         return fit(WITHOUT)
 
-    def heldout(self, bench, values):
+    def heldout(self, likelihood, values):
         return Evidence((), ())
 
     def rival_of(self, effect, effects, base, held):
@@ -142,13 +142,13 @@ def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, be
 @pytest.mark.parametrize(("rms", "stays"), [(1.0, True), (1.2, True), (1.3, False)])
 def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(monkeypatch, rms, stays):
     def settled(effects, fit):
-        workshop.starts["spin"] = {"start.u": 1.0}
+        factory.starts["spin"] = {"start.u": 1.0}
         return Some(evidence=Some(rms=rms)), "held with it"
 
-    workshop = Some(starts={"spin": {"start.u": 0.0}})
-    climb = object.__new__(Climb)
-    climb.__dict__ |= {
-        "search": Some(workshop=workshop, settled=settled),
+    factory = Some(starts={"spin": {"start.u": 0.0}})
+    selection = object.__new__(StepwiseSelection)
+    selection.__dict__ |= {
+        "search": Some(factory=factory, settled=settled),
         "effects": ("drag",),
         "base": Some(evidence=Some(rms=1.15)),
         "rounds": [Some(effects=("drag",))],
@@ -156,11 +156,11 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
         "helping": {"toe"},
         "ladder": ["nominal", "calibrated", "+drag"],
     }
-    monkeypatch.setattr(Climb, "_step", lambda self: self.ladder.append("+toe"))
-    monkeypatch.setattr(Climb, "_prune", lambda self: None)
-    assert climb._put_in(Some(effect="toe", fit=None)) == stays
-    assert climb.effects == (("drag", "toe") if stays else ("drag",))
-    assert climb.ladder == ["nominal", "calibrated", "+drag", *(["+toe"] if stays else [])]
-    assert climb.held == ("held with it" if stays else "held")
-    assert workshop.starts["spin"]["start.u"] == (1.0 if stays else 0.0)
-    assert climb.helping == ({"toe"} if stays else set())
+    monkeypatch.setattr(StepwiseSelection, "_step", lambda self: self.ladder.append("+toe"))
+    monkeypatch.setattr(StepwiseSelection, "_prune", lambda self: None)
+    assert selection._put_in(Some(effect="toe", fit=None)) == stays
+    assert selection.effects == (("drag", "toe") if stays else ("drag",))
+    assert selection.ladder == ["nominal", "calibrated", "+drag", *(["+toe"] if stays else [])]
+    assert selection.held == ("held with it" if stays else "held")
+    assert factory.starts["spin"]["start.u"] == (1.0 if stays else 0.0)
+    assert selection.helping == ({"toe"} if stays else set())

@@ -6,7 +6,7 @@ from math import nan, pi, sqrt
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.physical import ChannelError, as_json, channel_errors, pooled
 from wheelchair_fmu.loop.staircase import Step
 from wheelchair_fmu.model.variant import Variant
@@ -58,11 +58,11 @@ def test_held_out_runs_come_first_and_every_run_is_told():
 def test_the_sample_is_off_by_what_its_channels_say(sample):
     """Of simulation and readings, by hand, through the evidence that a staircase's step is made from."""
     run = replace(sample.fit[0], role="holdout")
-    bench = Bench(sample, Variant())
-    evidence = bench.evidence([run], {})
-    _, measured, predicted = bench.readings(run, {}, bench.starts[run.name])
+    likelihood = Likelihood(sample, Variant())
+    evidence = likelihood.evidence([run], {})
+    _, measured, predicted = likelihood.readings(run, {}, likelihood.starts[run.name])
     at = evidence.runs[0].channels.index("yaw_rate")
     by_hand = np.degrees(np.sqrt(np.nanmean((measured - predicted)[:, at] ** 2)))
-    step = Step.of("nominal", bench.evidence([], {}), evidence)
+    step = Step.of("nominal", likelihood.evidence([], {}), evidence)
     assert step.as_json()["physical"]["yaw_rate"] == pytest.approx(by_hand)
     assert channel_errors(evidence)[run.name]["yaw_rate"].rms == pytest.approx(by_hand)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.evidence import SWING, Bench
+from wheelchair_fmu.loop.factory import SCALE, ModelFactory
 from wheelchair_fmu.loop.fit import fit
-from wheelchair_fmu.loop.workshop import SCALE, Workshop
+from wheelchair_fmu.loop.likelihood import SWING, Likelihood
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import PREDICTS
 
@@ -29,9 +29,9 @@ def swinging(sample):
         for i in range(len(missed)):
             missed[i] = (phi * missed[i - 1] if i else 0.0) + rng.normal(0, NOISE * (np.sqrt(1 - phi**2) if i else 1.0))
         ridden = replace(run, inputs={**run.inputs, "rider.momentum": swing + missed})
-        bench = Bench(replace(sample, runs=(ridden,)), Variant(), columns=(SCALE,))
-        results = bench.evidence([ridden], {SCALE: TRUE}).runs[0].results
-        names = [o.name for o in bench.sensitivities.model.outputs]
+        likelihood = Likelihood(replace(sample, runs=(ridden,)), Variant(), columns=(SCALE,))
+        results = likelihood.evidence([ridden], {SCALE: TRUE}).runs[0].results
+        names = [o.name for o in likelihood.sensitivities.model.outputs]
         channels = {
             c: results[:, names.index(PREDICTS[c])] + rng.normal(0, sample.noise[c], len(run.time)) for c in run.channels
         }
@@ -40,23 +40,25 @@ def swinging(sample):
 
 
 def test_how_much_of_the_body_was_seen_is_found_and_its_noise_is_allowed_for(swinging):
-    bench = Bench(swinging, Variant(), columns=(SCALE,))
-    found = fit(bench, (SCALE,), {SCALE: 1.0})
+    likelihood = Likelihood(swinging, Variant(), columns=(SCALE,))
+    found = fit(likelihood, (SCALE,), {SCALE: 1.0})
     se = float(np.sqrt(found.covariance[0, 0]))
     assert found.values[SCALE] == pytest.approx(TRUE, abs=3 * se) and se < 0.05
     assert np.mean(found.evidence.r**2) == pytest.approx(1.0, abs=0.08)
-    exact = bench.with_colour(replace(bench.colour, sd={**bench.colour.sd, "rider.momentum": 0.0}))
+    exact = likelihood.with_noise_model(
+        replace(likelihood.noise_model, sd={**likelihood.noise_model.sd, "rider.momentum": 0.0})
+    )
     assert np.mean(exact.evidence(swinging.fit, found.values).r ** 2) > 1.5
 
 
 def test_the_scale_is_calibrated_only_where_the_body_was_recorded(sample, swinging):
-    assert SCALE in Workshop(swinging, Variant()).calibrated and SCALE not in Workshop(sample, Variant()).calibrated
-    assert SCALE not in Workshop(swinging, Variant(), fixed=(SCALE,)).calibrated
+    assert SCALE in ModelFactory(swinging, Variant()).calibrated and SCALE not in ModelFactory(sample, Variant()).calibrated
+    assert SCALE not in ModelFactory(swinging, Variant(), fixed=(SCALE,)).calibrated
 
 
 def test_pushes_that_are_late_take_no_body_along(swinging):
     """Hands are recorded by wheels and bodies by cameras: a shift of the pushes is none of the body."""
-    bench, run = Bench(swinging, Variant().with_effects(["push_force_delay"]), columns=(SCALE,)), swinging.runs[1]
-    later = bench.on_time(run, {"effect.push_force_delay.tau": 0.1}, {})
+    likelihood, run = Likelihood(swinging, Variant().with_effects(["push_force_delay"]), columns=(SCALE,)), swinging.runs[1]
+    later = likelihood.on_time(run, {"effect.push_force_delay.tau": 0.1}, {})
     np.testing.assert_array_equal(later.inputs["rider.momentum"], run.inputs["rider.momentum"])
     assert np.ptp(later.inputs["push.F_rl"] - run.inputs["push.F_rl"]) > 0.5

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 from wheelchair_fmu.campaign import Campaign, read
-from wheelchair_fmu.loop.evidence import Bench, Colour
-from wheelchair_fmu.loop.noise import colour_of
+from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
+from wheelchair_fmu.loop.noise import noise_model_of
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.variant import Variant
 
@@ -57,13 +57,13 @@ def test_its_noise_is_found(tmp_path, how):
 def test_its_error_is_at_the_floor(tmp_path, how):
     """By a model with what was hidden; noise that was taken for a hundredth is found to be as large as it is."""
     campaign = read(slower(tmp_path / "campaign", how))
-    bench = Bench(campaign, Variant().with_effects(["rolling_resistance_asymmetry"]).with_values(FITTED))
-    evidence = bench.evidence(campaign.holdout, FITTED, tune_start=2)
+    likelihood = Likelihood(campaign, Variant().with_effects(["rolling_resistance_asymmetry"]).with_values(FITTED))
+    evidence = likelihood.evidence(campaign.holdout, FITTED, tune_start=2)
     assert evidence.rms == pytest.approx(1, abs=0.05)
     assert all(e.rms["yaw_rate"] == pytest.approx(1, abs=0.12) for e in evidence.runs)
-    taken = Colour({**campaign.noise, "yaw_rate": NOISE / 100})
-    colour, notes = colour_of(bench.with_colour(taken).evidence(campaign.holdout, FITTED), taken.sd, taken)
-    assert colour.sd["yaw_rate"] == pytest.approx(NOISE, rel=0.15) and len(notes) == 1
+    taken = NoiseModel({**campaign.noise, "yaw_rate": NOISE / 100})
+    noise_model, notes = noise_model_of(likelihood.with_noise_model(taken).evidence(campaign.holdout, FITTED), taken.sd, taken)
+    assert noise_model.sd["yaw_rate"] == pytest.approx(NOISE, rel=0.15) and len(notes) == 1
 
 
 @pytest.mark.nightly

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop import starts
+from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.loop.fit import Problem, fit
 from wheelchair_fmu.loop.starts import most_promising, outlook, visible_fall
 from wheelchair_fmu.loop.statistics import standard_errors
-from wheelchair_fmu.loop.workshop import CALIBRATED, Workshop
 from wheelchair_fmu.model.variant import Variant
 
 DRAG = "effect.rolling_resistance_asymmetry.D"
@@ -20,54 +20,58 @@ TOE = ("effect.toe_misalignment.sum", "effect.toe_misalignment.difference")
 
 @pytest.fixture(scope="module")
 def shop(sample):
-    return Workshop(sample, Variant())
+    return ModelFactory(sample, Variant())
 
 
 @pytest.fixture(scope="module")
 def calibrated(shop):
-    return fit(shop.bench(), CALIBRATED, {n: shop.campaign.known.get(n, shop.bench().records[n].default) for n in CALIBRATED})
+    return fit(
+        shop.likelihood(), CALIBRATED, {n: shop.campaign.known.get(n, shop.likelihood().records[n].default) for n in CALIBRATED}
+    )
 
 
 def linearised(shop, calibrated, names):
-    return shop.bench().evidence(shop.campaign.fit, calibrated.values, names)
+    return shop.likelihood().evidence(shop.campaign.fit, calibrated.values, names)
 
 
 def test_a_step_leads_where_a_fit_of_a_linear_effect_ends(shop, calibrated):
     """From where another fit of it left the rest, as at the end of a search: there one step is all that is left to go."""
-    bench, names = shop.bench(), (*CALIBRATED, DRAG)
-    bench.evidence(shop.campaign.fit, fit(bench, names, calibrated.values).values, tune_start=2)  # every run where it starts
-    whole = fit(bench, names, calibrated.values)
+    likelihood, names = shop.likelihood(), (*CALIBRATED, DRAG)
+    likelihood.evidence(
+        shop.campaign.fit, fit(likelihood, names, calibrated.values).values, tune_start=2
+    )  # every run where it starts
+    whole = fit(likelihood, names, calibrated.values)
     nearly = {**whole.values, DRAG: 0.9 * whole.values[DRAG]}
-    known = bench.evidence(shop.campaign.fit, nearly, names)
-    to = outlook(bench, known, names, [nearly[n] for n in names])
+    known = likelihood.evidence(shop.campaign.fit, nearly, names)
+    to = outlook(likelihood, known, names, [nearly[n] for n in names])
 
     assert to.reached[-1] == pytest.approx(whole.values[DRAG], abs=0.2 * standard_errors(whole)[DRAG])
-    assert to.misfit == pytest.approx(Problem(bench, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
+    assert to.misfit == pytest.approx(Problem(likelihood, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
     after = whole.evidence.table()
     fall = max(rms - after[run][c] for run, row in known.table().items() for c, rms in row.items())
-    assert visible_fall(bench, known, names, to) == pytest.approx(fall, abs=2e-3) and fall > 0.02
+    assert visible_fall(likelihood, known, names, to) == pytest.approx(fall, abs=2e-3) and fall > 0.02
 
 
 def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkeypatch):
-    bench, names = shop.bench(), (*CALIBRATED, *TOE)
+    likelihood, names = shop.likelihood(), (*CALIBRATED, *TOE)
     known = linearised(shop, calibrated, CALIBRATED)
     sizes = (-0.02, -0.01, 0.0, 0.01, 0.02)
     tries = [[*(calibrated.values[n] for n in CALIBRATED), r, left] for r, left in product(sizes, sizes)]
     calls = []
-    again = bench.again
-    monkeypatch.setattr(bench, "again", lambda e, values: calls.append(len(e.runs)) or again(e, values))
-    quick = most_promising(bench, known, names, tries, 2, known.r)
+    again = likelihood.again
+    monkeypatch.setattr(likelihood, "again", lambda e, values: calls.append(len(e.runs)) or again(e, values))
+    quick = most_promising(likelihood, known, names, tries, 2, known.r)
     glances, calls[:] = sum(calls), []
     monkeypatch.setattr(starts, "GLANCED", len(known.runs))
-    thorough = most_promising(bench, known, names, tries, 2, known.r)
+    thorough = most_promising(likelihood, known, names, tries, 2, known.r)
 
     assert [o.theta for o in quick] == [o.theta for o in thorough]
-    assert quick[0].misfit <= quick[1].misfit < outlook(bench, known, names, [*tries[0][:-2], 0.0, 0.0]).misfit
+    assert quick[0].misfit <= quick[1].misfit < outlook(likelihood, known, names, [*tries[0][:-2], 0.0, 0.0]).misfit
     assert glances < 0.7 * sum(calls)
 
 
 def test_where_the_model_cannot_run_nothing_is_promised_and_nothing_ruled_out(shop, calibrated):
-    bench, sigma = shop.bench(["relaxation_length"]), "effect.relaxation_length.sigma"
+    likelihood, sigma = shop.likelihood(["relaxation_length"]), "effect.relaxation_length.sigma"
     known = linearised(shop, calibrated, CALIBRATED)
-    to = outlook(bench, known, (*CALIBRATED, sigma), [*(calibrated.values[n] for n in CALIBRATED), -0.05])
-    assert to.misfit == visible_fall(bench, known, (*CALIBRATED, sigma), to) == float("inf")
+    to = outlook(likelihood, known, (*CALIBRATED, sigma), [*(calibrated.values[n] for n in CALIBRATED), -0.05])
+    assert to.misfit == visible_fall(likelihood, known, (*CALIBRATED, sigma), to) == float("inf")

@@ -17,8 +17,9 @@ from tests.loop.linear import STEP, evidence, least_squares, noise, signals, val
 from wheelchair_fmu.loop.bootstrap import _estimates
 from wheelchair_fmu.loop.chance import student
 from wheelchair_fmu.loop.diagnose import Search
-from wheelchair_fmu.loop.evidence import START_SD, Bench, Evidence, uncertain
+from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.interval import NORMAL, half_width
+from wheelchair_fmu.loop.likelihood import START_SD, Evidence, Likelihood, uncertain
 from wheelchair_fmu.loop.score import Projector, robust_variance, score
 from wheelchair_fmu.loop.statistics import (
     TIED,
@@ -31,7 +32,6 @@ from wheelchair_fmu.loop.statistics import (
     sandwich,
     standard_errors,
 )
-from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 
 NAMES = ("a", "b", "c")
@@ -45,7 +45,7 @@ EFFECTS = {  # of the catalogue, by what kind of test they ask for
 
 @pytest.fixture(scope="module")
 def search(sample) -> Search:
-    return Search(Workshop(sample, Variant()))
+    return Search(ModelFactory(sample, Variant()))
 
 
 def white(shape, seed=0, rho=0.0) -> np.ndarray:
@@ -356,12 +356,12 @@ def test_a_gain_is_told_from_its_own_blocks_and_as_long_as_they_are():
 def test_a_start_goes_where_readings_want_it_but_no_further_than_three_standard_deviations(sample):
     """A file that says a run began 1 σ faster than it did is corrected; one that is 15 σ off is not simply believed to be."""
     run, sd = sample.fit[0], START_SD["start.u"]
-    bench = Bench(sample, Variant())
-    (true,) = bench.evidence([run], {}, tune_start=3).runs
+    likelihood = Likelihood(sample, Variant())
+    (true,) = likelihood.evidence([run], {}, tune_start=3).runs
     for off, expected in ((1.0, 0.0), (-1.0, 0.0), (15.0, 12.0), (-15.0, -12.0)):
         said = replace(run, u0=true.start["start.u"] + off * sd)
         campaign = replace(sample, runs=(said,))
-        (e,) = Bench(campaign, Variant()).evidence([said], {}, tune_start=1).runs
+        (e,) = Likelihood(campaign, Variant()).evidence([said], {}, tune_start=1).runs
         assert (e.start["start.u"] - true.start["start.u"]) / sd == pytest.approx(expected, abs=0.2)
 
 

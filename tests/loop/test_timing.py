@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.preflight import begin, retime_by_slopes, settle_clocks
 from wheelchair_fmu.loop.timing import by_model, by_signals
 from wheelchair_fmu.loop.verdict import diagnose
-from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -29,7 +29,7 @@ def with_shift(sample, name, seconds):
     ("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1), ("holdout-random", 0.3)]
 )
 def test_a_shifted_run_is_read_in_time(sample, name, seconds):
-    search = Search(Workshop(with_shift(sample, name, seconds), Variant()))
+    search = Search(ModelFactory(with_shift(sample, name, seconds), Variant()))
     base, held, _ = begin(search, lambda words: None)
     settle_clocks(search, base.evidence, held)
     assert set(search.clocks) == {name}
@@ -37,19 +37,19 @@ def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     assert late.seconds == pytest.approx(seconds, abs=0.01)
     side = "early" if seconds > 0 else "late"
     assert [n for n in search.notes if n.startswith(f"{name}: ") and f"too {side}" in n]
-    assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in sample.runs]
+    assert [r.name for r in search.factory.campaign.runs] == [r.name for r in sample.runs]
 
 
 def test_a_missing_effect_is_not_taken_for_a_shift(sample):
-    bench = Workshop(sample, Variant()).bench()
-    evidence = bench.evidence(sample.runs, {}, ())
+    likelihood = ModelFactory(sample, Variant()).likelihood()
+    evidence = likelihood.evidence(sample.runs, {}, ())
     assert max(e.rms["yaw_rate"] for e in evidence.runs) > 3  # there is something to explain
-    assert by_model(bench, evidence, {}) == {} and by_signals(sample) == {}
+    assert by_model(likelihood, evidence, {}) == {} and by_signals(sample) == {}
 
 
 def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):
     """`--fix effect.push_force_delay.tau`."""
-    search = Search(Workshop(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
+    search = Search(ModelFactory(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
     base, *_ = search.calibrate()
     assert not retime_by_slopes(search, (), base) and search.retimed == {}
 

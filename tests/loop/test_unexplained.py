@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.disturbance import strength
-from wheelchair_fmu.loop.evidence import Bench
 from wheelchair_fmu.loop.fit import Fit
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.strokes import begun, phase
 from wheelchair_fmu.loop.unexplained import unexplained
 from wheelchair_fmu.model.variant import Variant
@@ -17,10 +17,10 @@ from .forces import T_R, ridden, wandering
 
 def left_of(campaign):
     """What the chair of the sample lacks on a campaign, as it is given."""
-    bench = Bench(campaign, Variant())
-    evidence = bench.evidence(campaign.fit, {}, ())
+    likelihood = Likelihood(campaign, Variant())
+    evidence = likelihood.evidence(campaign.fit, {}, ())
     needed = strength(evidence, T_R)
-    return unexplained(bench, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed)
+    return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed)
 
 
 def spring(run, without):

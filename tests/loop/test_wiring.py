@@ -9,10 +9,10 @@ import pytest
 
 from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.loop.diagnose import Search
+from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.wiring import SIDES, Wiring, wiring
-from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -30,12 +30,12 @@ def exchanged(campaign: Campaign, table: str, one: str, other: str) -> Campaign:
 
 
 def found(campaign: Campaign) -> Wiring:
-    return wiring(Workshop(campaign, Variant()).bench(), {})
+    return wiring(ModelFactory(campaign, Variant()).likelihood(), {})
 
 
 @pytest.mark.parametrize("channel", ["yaw_rate", "a_y"])
 def test_a_channel_with_the_other_sign_is_left_out(sample, channel):
-    search = Search(Workshop(wired(sample, **{channel: -1.0}), Variant()))
+    search = Search(ModelFactory(wired(sample, **{channel: -1.0}), Variant()))
     base, _, _ = begin(search, lambda words: None)
     assert search.notes[0] == f"{channel} has the other sign than the model's, and is left out; turn its column round"
     assert all(channel not in e.channels for e in base.evidence.runs)
@@ -83,11 +83,13 @@ def test_nothing_is_left_out_where_nothing_would_be_left(sample):
 def test_a_run_in_which_nothing_else_was_measured_is_left_out(sample):
     first, *others = wired(sample, yaw_rate=-1.0).runs
     search = Search(
-        Workshop(replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)), Variant())
+        ModelFactory(
+            replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)), Variant()
+        )
     )
     begin(search, lambda words: None)
     assert search.notes[0].startswith("yaw_rate has the other sign")
-    assert [r.name for r in search.workshop.campaign.runs] == [r.name for r in others]
+    assert [r.name for r in search.factory.campaign.runs] == [r.name for r in others]
 
 
 def test_a_missing_effect_and_a_poor_guess_are_no_wrong_column(sample):

@@ -144,8 +144,8 @@ def test_nothing_in_the_data_becomes_markup():
     ],
 )
 def test_the_page_carries_no_heavier_model_than_it_needs(given, found, expected):
-    workshop = SimpleNamespace(light="ab", heavy="c", demanding="d")
-    assert layers(workshop, given, found) == [tuple(ids) for ids in expected]
+    factory = SimpleNamespace(light="ab", heavy="c", demanding="d")
+    assert layers(factory, given, found) == [tuple(ids) for ids in expected]
 
 
 def test_every_module_is_in_the_import_map():

@@ -12,8 +12,8 @@ from typing import TypeVar
 from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
 from ..loop.compare import Comparison, RunErrors, errors_of, together
-from ..loop.evidence import Bench
 from ..loop.fit import fit, start_value
+from ..loop.likelihood import Likelihood
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..studies import Fmu, fmu_of
@@ -35,22 +35,26 @@ def compared(
     """
     chair = chair.with_effects(measured.effects)  # for the FMU to have
     values = {**chair.values, **_calibrated(measured, chair, calibrate)}
-    return Comparison(tuple(r.brief() if brief else r for r in _through_fmu(measured, chair, values, say))), values
+    return Comparison(tuple(r.summary() if brief else r for r in _through_fmu(measured, chair, values, say))), values
 
 
 def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> dict[str, float]:
     """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large."""
     if not names and not measured.nuisance:
         return {}
-    bench = Bench(windows(measured), chair)
-    records = {p.name: p for p in bench.variant.parameters()}
+    likelihood = Likelihood(windows(measured), chair)
+    records = {p.name: p for p in likelihood.variant.parameters()}
     for name in names:
         if name not in records:
             raise unknown("parameter", name, records)
-        if name not in bench.sensitivities.columns:
-            raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(bench.sensitivities.columns)}")
-    wanted = [*names, *bench.offsets]  # sensors' offsets, where the campaign names them, are nobody's error
-    return dict(fit(bench, wanted, {n: start_value(bench, bench.records[n]) for n in wanted}).values) if wanted else {}
+        if name not in likelihood.sensitivities.columns:
+            raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(likelihood.sensitivities.columns)}")
+    wanted = [*names, *likelihood.offsets]  # sensors' offsets, where the campaign names them, are nobody's error
+    return (
+        dict(fit(likelihood, wanted, {n: start_value(likelihood, likelihood.records[n]) for n in wanted}).values)
+        if wanted
+        else {}
+    )
 
 
 def _through_fmu(
@@ -58,10 +62,10 @@ def _through_fmu(
 ) -> Iterator[RunErrors]:
     """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
     cut = {run.name: pieces(run, PIECE) for run in measured.runs}
-    bench = Bench(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
+    likelihood = Likelihood(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
     results = [o.name for o in chair.model().outputs]
     batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
-    batch_by_batch = _ahead(bench.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
+    batch_by_batch = _ahead(likelihood.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
     evidence = chain.from_iterable(batch_by_batch)
     with Fmu(fmu_of(chair)) as fmu:
         for name, parts in cut.items():
@@ -70,7 +74,7 @@ def _through_fmu(
             for e in islice(evidence, len(parts)):
                 given = {**measured.known, **values, **e.started}
                 given = {n: v for n, v in given.items() if n in fmu.parameters}
-                predicted = run_campaign_run(fmu, bench.on_time(e.run, values, e.start), given)
+                predicted = run_campaign_run(fmu, likelihood.on_time(e.run, values, e.start), given)
                 found.append(errors_of(e, predicted, REGIMES, results))
             yield together(name, found)
 

@@ -18,9 +18,9 @@ from .. import campaign as measured
 from ..campaign import BY_NAME
 from ..errors import UsageError
 from ..fmu.build import build, with_chosen_effects
-from ..loop.evidence import START, Bench, prior_start, start_sd
+from ..loop.factory import CALIBRATED
 from ..loop.fit import Problem
-from ..loop.workshop import CALIBRATED
+from ..loop.likelihood import START, Likelihood, prior_start, start_sd
 from ..model.variant import Variant
 from ..writing import written
 from .frames import framed, save
@@ -39,9 +39,9 @@ def export(campaign: measured.Campaign, chair: Variant, effects: Sequence[str], 
             f"the offset of {campaign.nuisance[0]} is open, which no FMU has; leave [nuisance] out of campaign.toml"
         )
     chair = with_chosen_effects(chair.with_effects(campaign.effects), effects)
-    bench = Bench(campaign, chair, derives=False)
+    likelihood = Likelihood(campaign, chair, derives=False)
     tables = {
-        "parameters": _parameters(bench, effects),
+        "parameters": _parameters(likelihood, effects),
         "conditions": _conditions(campaign),
         "experiments": pd.DataFrame(
             [(_id(r.name), r.time[0], _id(r.name)) for r in campaign.runs], columns=["experimentId", "time", "conditionId"]
@@ -49,9 +49,9 @@ def export(campaign: measured.Campaign, chair: Variant, effects: Sequence[str], 
         "measurements": _measurements(campaign.fit),
         "holdout": _measurements([r for r in campaign.runs if r.role == "holdout"]),
         "observables": _observables(campaign),
-        "mapping": _mapping(bench),
+        "mapping": _mapping(likelihood),
     }
-    files = [build(chair.with_values(_plain(bench)), folder / MODEL, effects="none")]
+    files = [build(chair.with_values(_plain(likelihood)), folder / MODEL, effects="none")]
     for name, table in tables.items():
         files.append(folder / f"{name}.tsv")
         with written(files[-1]) as beside:
@@ -70,24 +70,24 @@ def _id(name: str) -> str:
     return f"_{plain}" if plain[:1].isdigit() else plain
 
 
-def _plain(bench: Bench) -> dict[str, float]:
+def _plain(likelihood: Likelihood) -> dict[str, float]:
     """What the campaign knows of the chair, as start values of the FMU."""
-    return {n: v for n, v in bench.campaign.known.items() if n in bench.records}
+    return {n: v for n, v in likelihood.campaign.known.items() if n in likelihood.records}
 
 
-def _parameters(bench: Bench, effects: Iterable[str]) -> pd.DataFrame:
-    catalogue = bench.variant.catalogue
+def _parameters(likelihood: Likelihood, effects: Iterable[str]) -> pd.DataFrame:
+    catalogue = likelihood.variant.catalogue
     names = [*CALIBRATED, *(p.name for e in effects for p in catalogue[e].owned if p.estimated)]
-    problem = Problem(bench, names)
+    problem = Problem(likelihood, names)
     rows = [
         (_id(n), low, high, mean, mean, sd)
         for n, low, high, mean, sd in zip(
             names, problem.lower, problem.upper, problem.prior.mean, problem.prior.sd, strict=True
         )
     ]
-    for run in bench.campaign.runs:
-        mean, sd = prior_start(run, bench.known(run)), start_sd(run)
-        records = bench.records
+    for run in likelihood.campaign.runs:
+        mean, sd = prior_start(run, likelihood.known(run)), start_sd(run)
+        records = likelihood.records
         rows += [(_own(n, run), records[n].lower, records[n].upper, mean[n], mean[n], sd[n]) for n in START if sd[n]]
     return pd.DataFrame([_parameter(*row) for row in rows])
 
@@ -131,9 +131,9 @@ def _observables(campaign: measured.Campaign) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["observableId", "observableFormula", "noiseFormula", "noiseDistribution"])
 
 
-def _mapping(bench: Bench) -> pd.DataFrame:
+def _mapping(likelihood: Likelihood) -> pd.DataFrame:
     """Identifiers of PEtab and the names of the FMU."""
-    names = [*bench.records, *(o.name for o in bench.variant.model().outputs)]
+    names = [*likelihood.records, *(o.name for o in likelihood.variant.model().outputs)]
     return pd.DataFrame([(_id(n), n) for n in names], columns=["petabEntityId", "modelEntityId"])
 
 

@@ -60,7 +60,7 @@ def improve(
     for attempt in range(MOST_PROPOSALS + 1):
         with _watched() as watch:
             found = diagnose(
-                measured, chair, library(), progress=watch.says, experiments=experiments(), fixed=fixed, climbed=watch.climbs
+                measured, chair, library(), progress=watch.says, experiments=experiments(), fixed=fixed, stepped=watch.stepped
             )
         if found.proposal is None or attempt == MOST_PROPOSALS:
             break
@@ -87,7 +87,7 @@ class _Watch:
     def says(self, words: str) -> None:
         self.bar.update(self.bar.task_ids[0], description=words, advance=1)
 
-    def climbs(self, ladder: Sequence[Step]) -> None:
+    def stepped(self, ladder: Sequence[Step]) -> None:
         self.live.update(Stacked(staircase_table(ladder), self.bar))
 
 

@@ -16,7 +16,7 @@ from ..api.comparing import TUNING
 from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
-from ..loop.evidence import Bench
+from ..loop.likelihood import Likelihood
 from ..loop.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
 from ..studies.sweep.indices import indices
@@ -97,11 +97,11 @@ def _job(plan: Plan, engine: str) -> Job:
     with console(stderr=True).status("reading the campaign"):
         for chair in plan.chairs:
             variant = chair.variant()
-            bench = Bench(measured, variant)
-            found = bench.evidence(measured.runs, variant.values, (), tune_start=TUNING)
+            likelihood = Likelihood(measured, variant)
+            found = likelihood.evidence(measured.runs, variant.values, (), tune_start=TUNING)
             yardsticks[chair.label] = tuple(
                 Yardstick(
-                    bench.on_time(e.run, variant.values, e.start),
+                    likelihood.on_time(e.run, variant.values, e.start),
                     e.channels,
                     e.ruler().errors,
                     measured.known,

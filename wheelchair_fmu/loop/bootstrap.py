@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .diagnose import Round
-from .evidence import Evidence, block_length
 from .fit import Fit
+from .likelihood import Evidence, block_length
 from .statistics import decisive, difference_blocks
 from .verdict import Diagnosis
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..quantities import Parameter
-from .evidence import Bench
 from .fit import REACH, Fit, Problem
+from .likelihood import Likelihood
 from .statistics import standard_errors
 
 DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
@@ -72,16 +72,16 @@ class Calibrated:
         }
 
 
-def calibration(bench: Bench, found: Fit) -> list[Calibrated]:
+def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
     """Every calibrated value of a fit, in the fit's order; effects and offsets of sensors are not among them."""
     names = [n for n in found.names if not n.startswith(("effect.", "offset."))]
-    problem, errors = Problem(bench, names), standard_errors(found)
+    problem, errors = Problem(likelihood, names), standard_errors(found)
     out = []
     for i, name in enumerate(names):
         value, sd = found.values[name], float(problem.prior.sd[i])
         near = CLOSE * (sd if np.isfinite(sd) else problem.scale[i])
         at_bound = not problem.lower[i] + near < value < problem.upper[i] - near
-        out.append(Calibrated(bench.records[name], value, errors[name], float(problem.prior.mean[i]), sd, at_bound))
+        out.append(Calibrated(likelihood.records[name], value, errors[name], float(problem.prior.mean[i]), sd, at_bound))
     return out
 
 

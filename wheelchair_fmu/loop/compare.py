@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from .evidence import RunEvidence
+from .likelihood import RunEvidence
 from .physical import ChannelError, pooled, run_errors
 
 BINS = 4
@@ -27,7 +27,7 @@ class RunErrors:
     regime: Mapping[str, np.ndarray]  # by name, (n,)
     physical: Mapping[str, ChannelError]
 
-    def brief(self) -> RunErrors:
+    def summary(self) -> RunErrors:
         """The same without predictions, which only figures ask for."""
         return replace(self, predicted=np.empty((0, len(self.channels))))
 

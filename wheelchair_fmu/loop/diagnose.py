@@ -11,9 +11,9 @@ import numpy as np
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
-from .cores import each
-from .evidence import Bench, Evidence
 from .fit import Fit
+from .likelihood import Evidence, Likelihood
+from .parallel import parallel_map
 from .score import RUNS, Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
 from .starts import Outlook, most_promising, outlook, visible_fall
@@ -127,11 +127,11 @@ class Search(Screen):
     ) -> Candidate | None:
         """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
         `least`, and some channel's RMS in some run by `visible`; `rival` is the best misfit yet."""
-        w, effect = self.workshop, s.score.effect
-        bench = w.bench((*effects, effect))
+        w, effect = self.factory, s.score.effect
+        likelihood = w.likelihood((*effects, effect))
         base, base_held = self.rival_of(effect, effects, base, base_held)
         rival = min(rival, base.misfit)  # which it has as a special case
-        starts = self._starts(bench, base, s, least, visible)
+        starts = self._starts(likelihood, base, s, least, visible)
         if starts:
             self.say(f"refitting {effect}")
 
@@ -141,7 +141,7 @@ class Search(Screen):
             except SimulationError:
                 return None
 
-        begun = [f for f in each(one_step, starts) if f]
+        begun = [f for f in parallel_map(one_step, starts) if f]
         if not begun:
             return None
         own, ended = w.parameters(effect), []
@@ -151,35 +151,39 @@ class Search(Screen):
                 ended.append(self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival))
                 rival = min(rival, ended[-1].misfit)
         found = min(ended, key=lambda f: f.misfit)
-        found = replace(found, evidence=bench.restarted(found.evidence, found.values))
-        held = bench.restarted(bench.evidence(w.campaign.holdout, found.values), found.values) if w.campaign.holdout else None
+        found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
+        held = (
+            likelihood.restarted(likelihood.evidence(w.campaign.holdout, found.values), found.values)
+            if w.campaign.holdout
+            else None
+        )
         return self.judge(base, base_held, found, held, effect, own, tests)
 
     def _starts(
-        self, bench: Bench, base: Fit, s: Screened, least: float, visible: float
+        self, likelihood: Likelihood, base: Fit, s: Screened, least: float, visible: float
     ) -> list[tuple[dict[str, float], Evidence | None]]:
         """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
         in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
         change, both signs of δ, and larger ones."""
         if s.score.drop < (least if s.linear else least / BEYOND):
             return []
-        names = [*base.names, *self.workshop.parameters(s.score.effect)]
-        straightened = self.straightened(bench, base, SLIGHTLY if s.straight else BENT)
-        calibrations = [[values[n] for n in base.names] for values in (base.values, *straightened)]
+        names = [*base.names, *self.factory.parameters(s.score.effect)]
+        at_prior_mean = self.at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
+        calibrations = [[values[n] for n in base.names] for values in (base.values, *at_prior_mean)]
         if s.linear and len(calibrations) == 1:
             off = [base.values.get(n, 0.0) for n in names]
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
-            if known and not s.anyway(visible):
-                step = outlook(bench, known, names, off)
-                if not self._shows(bench, known, names, s, step, visible):
+            if known and not s.forced(visible):
+                step = outlook(likelihood, known, names, off)
+                if not self._shows(likelihood, known, names, s, step, visible):
                     return []
             return [(dict(zip(names, off, strict=True)), known)]
-        thetas = self._sizes(bench, base, names, calibrations, s, least, visible)
+        thetas = self._sizes(likelihood, base, names, calibrations, s, least, visible)
         return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
 
     def _sizes(
         self,
-        bench: Bench,
+        likelihood: Likelihood,
         base: Fit,
         names: Sequence[str],
         calibrations: Sequence[Sequence[float]],
@@ -188,33 +192,33 @@ class Search(Screen):
         visible: float,
     ) -> list[tuple[float, ...]]:
         """The most promising calibrations and sizes of an effect together, by `names`."""
-        records = [self.records[n] for n in self.workshop.parameters(s.score.effect)]
-        record, known, calibrated = self.workshop.catalogue[s.score.effect], s.evidence.only(base.names), len(base.names)
+        records = [self.records[n] for n in self.factory.parameters(s.score.effect)]
+        record, known, calibrated = self.factory.catalogue[s.score.effect], s.evidence.only(base.names), len(base.names)
         tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
         many = len(records) > 1 and not s.linear
         wanted = 1 if s.linear else DIRECTIONS if many else STARTS
-        best = most_promising(bench, known, names, tries, wanted, s.score.signature, _signs if many else None)
+        best = most_promising(likelihood, known, names, tries, wanted, s.score.signature, _signs if many else None)
         off = [base.values.get(n, 0.0) for n in names]
-        without, most = outlook(bench, known, names, off).misfit, np.inf
+        without, most = outlook(likelihood, known, names, off).misfit, np.inf
         if s.linear:
             hopeful = (o for o in best if o.misfit <= without - HALFWAY * least)
-            return [o.theta for o in hopeful if self._shows(bench, known, names, s, o, visible)]
+            return [o.theta for o in hopeful if self._shows(likelihood, known, names, s, o, visible)]
         if not (record.needs or record.rows):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:
             most = min(most, without - HALFWAY * (without - best[0].misfit))
-        found = [o.theta for o in best if o.misfit <= most and self._shows(bench, known, names, s, o, visible)]
+        found = [o.theta for o in best if o.misfit <= most and self._shows(likelihood, known, names, s, o, visible)]
         as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
         negligible = s.negligible and as_expected
-        if record.rows and s.surprising and (visible == 0 if negligible else found and not as_expected):
+        if record.rows and s.nonlinear_candidate and (visible == 0 if negligible else found and not as_expected):
             # the error may fall only close to the truth
             return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
         return [] if negligible else found
 
     @staticmethod
-    def _shows(bench: Bench, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
+    def _shows(likelihood: Likelihood, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
         """Does an effect lower some channel's RMS in some run by about so much, by a step that was simulated?"""
-        return s.anyway(visible) or visible_fall(bench, known, names, to) > NEARLY_ENOUGH * visible
+        return s.forced(visible) or visible_fall(likelihood, known, names, to) > NEARLY_ENOUGH * visible
 
     def judge(
         self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str, names: Sequence[str], tests: int
@@ -233,7 +237,7 @@ class Search(Screen):
             p /= 2
         return Candidate(
             effect=effect,
-            fit=replace(found, evidence=found.evidence.brief()),
+            fit=replace(found, evidence=found.evidence.summary()),
             drop=drop,
             estimate=estimate,
             covariance=covariance,
@@ -245,7 +249,7 @@ class Search(Screen):
             falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
             visible=base.evidence.fall_to(found.evidence),
             gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
-            heldout=held.brief() if held is not None else None,
+            heldout=held.summary() if held is not None else None,
             small=small,
             large=not small and size_seen(*in_deltas) >= (AS_LARGE if at_the_floor(base.evidence, base_held) else SURELY),
             lawful=not bool(np.all((estimate <= near) & one_sided)),
@@ -254,7 +258,7 @@ class Search(Screen):
 
     def small(self, found: Fit, effect: str) -> bool:
         """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
-        names = self.workshop.parameters(effect)
+        names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         return _small(*seen_directions(estimate / delta, covariance / np.outer(delta, delta)))
 

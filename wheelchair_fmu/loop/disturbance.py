@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ..engine.innovations import Whitener
-from .cores import each
-from .evidence import Colour, Evidence, RunEvidence, disturbance
+from .likelihood import Evidence, NoiseModel, RunEvidence, disturbance
+from .parallel import parallel_map
 
 USUAL_FORCE, USUAL_MOMENT = 5.0, 1.0  # N and N m: a strength's prior falls by e over this
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
@@ -31,8 +31,8 @@ class Strength:
     moment: float
     fall: float
 
-    def put_into(self, colour: Colour) -> Colour:
-        return replace(colour, force=self.force, moment=self.moment)
+    def put_into(self, noise_model: NoiseModel) -> NoiseModel:
+        return replace(noise_model, force=self.force, moment=self.moment)
 
 
 def strength(evidence: Evidence, t_r: float) -> Strength:
@@ -44,9 +44,9 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
     def misfit(log_ratio: np.ndarray) -> float:
         ratios = np.exp(log_ratio)
         force, moment = ratios * (USUAL_FORCE, USUAL_MOMENT)
-        return _misfit(evidence, Colour({}, force=force, moment=moment), t_r) + 2 * float(ratios.sum())
+        return _misfit(evidence, NoiseModel({}, force=force, moment=moment), t_r) + 2 * float(ratios.sum())
 
-    without = _misfit(evidence, Colour({}), t_r)
+    without = _misfit(evidence, NoiseModel({}), t_r)
     least, begun = min(((misfit(at), at) for at in np.log(START)), key=lambda tried: tried[0])
     if least > without:
         return Strength(0.0, 0.0, 0.0)
@@ -64,20 +64,20 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
     return Strength(force, moment, without - float(found.fun))
 
 
-def disturbed(e: RunEvidence, colour: Colour, t_r: float) -> tuple[Whitener, np.ndarray]:
-    """The filter of a run with forces as strong as `colour` has them, and where (nx,) it expects the true start, less the
+def disturbed(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> tuple[Whitener, np.ndarray]:
+    """The filter of a run with forces as strong as `noise_model` has them, and where (nx,) it expects the true start, less the
     simulated one."""
     filter_ = e.whitener.whitener
-    filter_ = filter_.disturbed(disturbance(colour, len(filter_.noise.pushes), t_r))
+    filter_ = filter_.disturbed(disturbance(noise_model, len(filter_.noise.pushes), t_r))
     return filter_, e.offset[: filter_.size[0]]
 
 
-def _misfit(evidence: Evidence, colour: Colour, t_r: float) -> float:
-    """−2 log likelihood with forces as strong as `colour` has them, but for a constant."""
+def _misfit(evidence: Evidence, noise_model: NoiseModel, t_r: float) -> float:
+    """−2 log likelihood with forces as strong as `noise_model` has them, but for a constant."""
 
     def one(e: RunEvidence) -> float:
-        filter_, start = disturbed(e, colour, t_r)
+        filter_, start = disturbed(e, noise_model, t_r)
         r = filter_((e.measured - e.predicted)[:, :, None], start)
         return float(np.nansum(r**2)) + filter_.logdet
 
-    return float(sum(each(one, evidence.runs)))
+    return float(sum(parallel_map(one, evidence.runs)))

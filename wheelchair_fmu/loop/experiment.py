@@ -12,8 +12,8 @@ import numpy as np
 from ..campaign import CHANNELS, Run
 from ..errors import SimulationError
 from .diagnose import Search
-from .evidence import Bench, Colour
 from .fit import Fit, prior_of
+from .likelihood import Likelihood, NoiseModel
 from .statistics import TIED, decisive
 
 MOST_REPEATS = 20
@@ -41,13 +41,13 @@ def separate(
     The first model says what would be read; what the second cannot imitate, within what the campaign already says of
     its parameters, is −2 log of the odds that one run gives.
     """
-    bench = search.workshop.bench([e for e in (*beside, *effects) if e in search.workshop.catalogue])
+    likelihood = search.factory.likelihood([e for e in (*beside, *effects) if e in search.factory.catalogue])
     needed = decisive(one.evidence)  # as the verdict on a tie has it
     odds = []
     for experiment in among:
         try:
-            run = _imagined(bench, experiment, one)
-            evidence = _with_sensors(bench, experiment).evidence([run], other.values, other.names)
+            run = _imagined(likelihood, experiment, one)
+            evidence = _with_sensors(likelihood, experiment).evidence([run], other.values, other.names)
         except SimulationError:
             continue
         r, S = evidence.r, evidence.S
@@ -70,17 +70,17 @@ def separate(
 
 def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
     """The experiment that would show most of the effects that this campaign could not have shown."""
-    bench = search.workshop.wide()
-    effects = [e for e in hidden if e in search.workshop.light]
-    names = [n for e in effects for n in search.workshop.parameters(e)]
+    likelihood = search.factory.wide()
+    effects = [e for e in hidden if e in search.factory.light]
+    names = [n for e in effects for n in search.factory.parameters(e)]
     best: tuple[int, Any, list[str], float] | None = None
     for experiment in among:
         try:
-            run = _imagined(bench, experiment, base)
-            e = _with_sensors(bench, experiment).evidence([run], base.values, [*base.names, *names])
+            run = _imagined(likelihood, experiment, base)
+            e = _with_sensors(likelihood, experiment).evidence([run], base.values, [*base.names, *names])
         except SimulationError:
             continue
-        shown, weakest = _shown(search, e.S, base, prior_of(bench, base.names).slopes, effects, names)
+        shown, weakest = _shown(search, e.S, base, prior_of(likelihood, base.names).slopes, effects, names)
         if shown and (best is None or len(shown) > best[0]):
             best = (len(shown), experiment, shown, weakest)
     if best is None:
@@ -103,7 +103,7 @@ def _shown(
     inverse = np.linalg.pinv(Z.T @ Z + known, hermitian=True)
     shown, weakest = [], np.inf
     for effect in effects:
-        own = search.workshop.parameters(effect)
+        own = search.factory.parameters(effect)
         X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
         information = X.T @ X - X.T @ Z @ inverse @ Z.T @ X
         size = float(np.linalg.eigvalsh(information)[-1])
@@ -113,11 +113,11 @@ def _shown(
     return shown, weakest
 
 
-def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
+def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> Run:
     """The run as a fitted model would have it read, without noise."""
-    known = {**bench.variant.values, **bench.campaign.known}
+    known = {**likelihood.variant.values, **likelihood.campaign.known}
     given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
-    measured = {c for r in bench.campaign.runs for c in r.channels} | set(experiment.sensors)
+    measured = {c for r in likelihood.campaign.runs for c in r.channels} | set(experiment.sensors)
     blank = Run(
         experiment.words,
         Path(experiment.words),
@@ -129,7 +129,7 @@ def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
         dict(experiment.inputs),
         {},
     )
-    bench.starts[blank.name] = {
+    likelihood.starts[blank.name] = {
         "start.x": 0.0,
         "start.y": 0.0,
         "start.psi": experiment.heading,
@@ -137,13 +137,13 @@ def _imagined(bench: Bench, experiment: Experiment, model: Fit) -> Run:
         "start.v": 0.0,
         "start.psi_dot": 0.0,
     }
-    w = bench.inputs(blank)
-    p = bench.variant.vector({**known, **model.values, **given, **bench.starts[blank.name]})
-    simulated = bench.sensitivities.run(experiment.time, w, p)
-    places = {c.name: bench.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
+    w = likelihood.inputs(blank)
+    p = likelihood.variant.vector({**known, **model.values, **given, **likelihood.starts[blank.name]})
+    simulated = likelihood.sensitivities.run(experiment.time, w, p)
+    places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
     return replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
 
 
-def _with_sensors(bench: Bench, experiment: Experiment) -> Bench:
-    sd = {**experiment.sensors, **bench.colour.sd}
-    return bench.with_colour(Colour(sd, bench.colour.ar))
+def _with_sensors(likelihood: Likelihood, experiment: Experiment) -> Likelihood:
+    sd = {**experiment.sensors, **likelihood.noise_model.sd}
+    return likelihood.with_noise_model(NoiseModel(sd, likelihood.noise_model.ar))

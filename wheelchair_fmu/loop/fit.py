@@ -18,7 +18,7 @@ from scipy.optimize import least_squares
 
 from ..errors import SimulationError
 from ..quantities import Parameter
-from .evidence import Bench, Evidence
+from .likelihood import Evidence, Likelihood
 
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
@@ -59,47 +59,47 @@ class Prior:
         return np.diag(1 / self.sd)
 
 
-def prior_of(bench: Bench, names: Sequence[str]) -> Prior:
+def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
     """Calibrated values have the campaign's word; effects have none, but that of several parameters which the data
     cannot tell apart each is taken to be no larger than it must be."""
-    mean = np.array([start_value(bench, bench.records[n]) for n in names])
+    mean = np.array([start_value(likelihood, likelihood.records[n]) for n in names])
     groups = Counter(n.rpartition(".")[0] for n in names)
 
     def sd(name: str, mean: float) -> float:
-        if name in bench.campaign.priors:
-            return bench.campaign.priors[name]
+        if name in likelihood.campaign.priors:
+            return likelihood.campaign.priors[name]
         if name.startswith("effect."):
-            return GROUPED * bench.records[name].smallest_interesting if groups[name.rpartition(".")[0]] > 1 else np.inf
-        if name in bench.offsets:
-            return bench.campaign.nuisance_sd.get(bench.offsets[name], np.inf)
-        return bench.records[name].prior_sd(mean)
+            return GROUPED * likelihood.records[name].smallest_interesting if groups[name.rpartition(".")[0]] > 1 else np.inf
+        if name in likelihood.offsets:
+            return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
+        return likelihood.records[name].prior_sd(mean)
 
     return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
 
 
-def start_value(bench: Bench, record: Parameter) -> float:
-    return bench.campaign.known.get(record.name, bench.variant.values.get(record.name, record.default))
+def start_value(likelihood: Likelihood, record: Parameter) -> float:
+    return likelihood.campaign.known.get(record.name, likelihood.variant.values.get(record.name, record.default))
 
 
 class Problem:
-    """Parameters to fit on a bench: their bounds, scale and prior."""
+    """Parameters to fit on a likelihood: their bounds, scale and prior."""
 
-    def __init__(self, bench: Bench, names: Sequence[str]):
-        records = bench.records
-        self.bench, self.names, self.prior = bench, tuple(names), prior_of(bench, names)
+    def __init__(self, likelihood: Likelihood, names: Sequence[str]):
+        records = likelihood.records
+        self.likelihood, self.names, self.prior = likelihood, tuple(names), prior_of(likelihood, names)
         reach = np.where([n.startswith("effect.") for n in names], np.inf, REACH * self.prior.sd)
         self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - reach)
         self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + reach)
         self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
 
     def inside(self, start: Mapping[str, float]) -> np.ndarray:
-        return np.clip([start.get(n, self.bench.records[n].default) for n in self.names], self.lower, self.upper)
+        return np.clip([start.get(n, self.likelihood.records[n].default) for n in self.names], self.lower, self.upper)
 
     def values(self, theta: np.ndarray) -> dict[str, float]:
         return dict(zip(self.names, map(float, theta), strict=True))
 
     def linearised(self, theta: np.ndarray) -> Evidence:
-        return self.bench.evidence(self.bench.campaign.fit, self.values(theta), self.names)
+        return self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta), self.names)
 
     def squares(self, here: Evidence, theta: np.ndarray) -> float:
         """What a descent makes small: squared innovations, and the prior's."""
@@ -124,7 +124,7 @@ class Problem:
         for j, curvature in enumerate(np.diag(self.information(here))):
             by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
             trial = theta + by * (np.arange(len(theta)) == j)
-            there = self.bench.evidence(self.bench.campaign.fit, self.values(trial))
+            there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
             found[j] = (curvature * by - (self.misfit(there, trial) - before) / by) / 2
         return found
 
@@ -147,7 +147,7 @@ class Problem:
             """As long as all innovations and as steep, in few numbers: their part along the slopes, and the rest's size."""
             if q.tobytes() not in latest:
                 try:
-                    latest[q.tobytes()] = self.bench.again(here, self.values(q))
+                    latest[q.tobytes()] = self.likelihood.resimulated(here, self.values(q))
                 except SimulationError:
                     return np.full(len(q) + 1, wall)  # the search turns back where the model cannot run
             r = np.concatenate([latest[q.tobytes()].r, self.prior.rows(q)])
@@ -169,7 +169,7 @@ class Problem:
 
 
 def fit(
-    bench: Bench,
+    likelihood: Likelihood,
     names: Sequence[str],
     start: Mapping[str, float],
     here: Evidence | None = None,
@@ -182,7 +182,7 @@ def fit(
     how often all is linearised anew.
     Raises SimulationError where the model cannot be simulated at the start.
     """
-    problem = Problem(bench, names)
+    problem = Problem(likelihood, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
     for _ in range(most if names else 0):

@@ -10,13 +10,13 @@ from ..errors import Failure
 from ..model.variant import Variant
 from ..quantities import Parameter
 from .diagnose import Search
-from .evidence import Evidence
+from .factory import ModelFactory
 from .fit import Fit
+from .likelihood import Evidence
 from .preflight import begin, settle_clocks
 from .staircase import Step
 from .statistics import standard_errors
 from .verdict import Diagnosis
-from .workshop import Workshop
 
 
 @dataclass(frozen=True)
@@ -38,17 +38,17 @@ def add(
 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
     """
-    search = Search(Workshop(windows(campaign), chair, fixed), progress=say)
+    search = Search(ModelFactory(windows(campaign), chair, fixed), progress=say)
     base, held, ladder = begin(search, say)
     on: tuple[str, ...] = ()
-    for one in (*(e for e in chair.effects if e != effect and search.workshop.parameters(e)), effect):
+    for one in (*(e for e in chair.effects if e != effect and search.factory.parameters(e)), effect):
         say(f"refitting with {one}")
         base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
         on = (*on, one)
         ladder.append(Step.of(f"+{one}", base.evidence, held))
     settle_clocks(search, base.evidence, held)
     notes = (*search.notes, *search.noise_notes)
-    return Improved(improved(chair, on, base, campaign), base, search.workshop.bench(on).records, tuple(ladder), notes)
+    return Improved(improved(chair, on, base, campaign), base, search.factory.likelihood(on).records, tuple(ladder), notes)
 
 
 def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect: str) -> tuple[Fit, Evidence]:

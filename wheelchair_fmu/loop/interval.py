@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 
 from ..errors import SimulationError
 from .chance import student, value_beyond
-from .cores import each
-from .evidence import Bench
 from .fit import Fit, Problem
+from .likelihood import Likelihood
+from .parallel import parallel_map
 from .score import RUNS
 from .statistics import between_runs, degrees_between_runs, sandwich
 
@@ -29,7 +29,7 @@ JUMP = 0.5  # of a standard error, within which no smooth likelihood falls so fa
 CORRECTIONS = 2  # steps of the other parameters towards their best
 
 
-def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]:
+def profile_interval(likelihood: Likelihood, found: Fit, name: str) -> tuple[float, float]:
     """The interval (SI) of one fitted parameter at LEVEL; an end is its bound, or FARTHEST off, where the data set none.
 
     Where the likelihood jumps close by, as with casters that swing round or do not, that says nothing of how sure an estimate
@@ -38,7 +38,7 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
     at = found.names.index(name)
     half = half_width(found, at)
     threshold, se = half**2 / found.covariance[at, at], half / NORMAL
-    record, best, misfit = bench.records[name], found.values[name], _profile(bench, found, at)
+    record, best, misfit = likelihood.records[name], found.values[name], _profile(likelihood, found, at)
 
     @cache
     def beyond(off: float) -> float:
@@ -58,7 +58,7 @@ def profile_interval(bench: Bench, found: Fit, name: str) -> tuple[float, float]
 
     if not se > 0:
         return best, best
-    lower, upper = each(end, (-1.0, 1.0))
+    lower, upper = parallel_map(end, (-1.0, 1.0))
     return lower, upper
 
 
@@ -70,9 +70,9 @@ def half_width(found: Fit, at: int) -> float:
     return max(lasting, student(LEVEL, degrees_between_runs(found, at)) * float(np.sqrt(between_runs(found)[at, at])))
 
 
-def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:
+def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], float]:
     """The misfit by one parameter, the others where that lets them be."""
-    problem, S = Problem(bench, found.names), found.evidence.S
+    problem, S = Problem(likelihood, found.names), found.evidence.S
     others = np.arange(len(found.names)) != at
     A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
     inverse = np.linalg.pinv(A[np.ix_(others, others)], hermitian=True)
@@ -84,7 +84,7 @@ def _profile(bench: Bench, found: Fit, at: int) -> Callable[[float], float]:
         for _ in range(CORRECTIONS):
             theta[others] = np.clip(theta, problem.lower, problem.upper)[others]
             try:
-                there = bench.again(found.evidence, problem.values(theta))
+                there = likelihood.resimulated(found.evidence, problem.values(theta))
             except SimulationError:
                 break
             lowest = min(lowest, problem.misfit(there, theta))

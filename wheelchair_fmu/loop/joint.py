@@ -56,7 +56,7 @@ def explains(base: Fit, found: Fit) -> bool:
 
 def kin(search: Search) -> list[tuple[str, ...]]:
     """Effects with parameters to estimate, by the laws that they ask for."""
-    w = search.workshop
+    w = search.factory
     groups: dict[tuple[tuple[str, str], ...], list[str]] = {}
     for e in w.demanding:
         if w.parameters(e):
@@ -67,8 +67,8 @@ def kin(search: Search) -> list[tuple[str, ...]]:
 def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], group: Sequence[str], base: Fit) -> Fit | None:
     """The most likely model with all of a group that starts from several sizes of each lead to."""
     every = (*effects, *new)
-    bench, names = search.workshop.bench(every), search.names(every)
-    own = [n for e in group for n in search.workshop.parameters(e)]
+    likelihood, names = search.factory.likelihood(every), search.names(every)
+    own = [n for e in group for n in search.factory.parameters(e)]
     sizes = [[f * search.records[n].smallest_interesting for f in SIZES] for n in own]
     tries = list(product(*sizes))
     if len(tries) > TRIES:
@@ -76,7 +76,7 @@ def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], grou
     starts = [{**dict.fromkeys(names, 0.0), **base.values, **dict(zip(own, one, strict=True))} for one in tries]
     thetas = [[start[n] for n in names] for start in starts]
     begun = []
-    for start in most_promising(bench, base.evidence, names, thetas, BEGUN, base.evidence.r):
+    for start in most_promising(likelihood, base.evidence, names, thetas, BEGUN, base.evidence.r):
         try:
             begun.append(search.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
         except SimulationError:
@@ -104,11 +104,11 @@ def _refitted(search: Search, effects: tuple[str, ...], found: Fit) -> Fit:
 
 
 def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], scores: Sequence[Score]) -> list[Round]:
-    w, rounds = search.workshop, []
+    w, rounds = search.factory, []
     for s in stages:
         more = (*effects, s.effect)
-        before, after = (search.heldout(w.bench(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
-        found = replace(s.fit, evidence=w.bench(more).restarted(s.fit.evidence, s.fit.values))
+        before, after = (search.heldout(w.likelihood(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
+        found = replace(s.fit, evidence=w.likelihood(more).restarted(s.fit.evidence, s.fit.values))
         judged = search.judge(s.without, before, found, after, s.effect, w.parameters(s.effect), len(scores))
         small = search.small(stages[-1].fit, s.effect)
         judged = replace(judged, small=small, large=not small)

@@ -7,23 +7,23 @@ from typing import Any
 
 import numpy as np
 
-from .evidence import Bench, Evidence, offsets_of
+from .factory import ModelFactory
 from .fit import Fit, Problem, fit, start_value
-from .noise import QUIETER, colour_of
+from .likelihood import Evidence, Likelihood, offsets_of
+from .noise import QUIETER, noise_model_of
 from .statistics import TIED, estimates, margin
 from .timing import Late
-from .workshop import Workshop
 
 PLAINLY = 100.0  # times what would be decisive
 
 
 class Models:
-    """A workshop's models, with any of its effects."""
+    """A factory's models, with any of its effects."""
 
-    def __init__(self, workshop: Workshop, progress: Callable[[str], None] = lambda words: None):
-        self.workshop, self.say = workshop, progress
-        self.records = {p.name: p for e in workshop.catalogue.values() for p in e.owned}
-        self.twins: dict[str, frozenset[str]] = {}
+    def __init__(self, factory: ModelFactory, progress: Callable[[str], None] = lambda words: None):
+        self.factory, self.say = factory, progress
+        self.records = {p.name: p for e in factory.catalogue.values() for p in e.owned}
+        self.confounded: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
         self.notes: list[str] = []  # on columns and clocks
         self.clocks: dict[str, dict[str, Late]] = {}  # by run and device, where they are uncertain
@@ -33,50 +33,52 @@ class Models:
     @property
     def offsets(self) -> tuple[str, ...]:
         """Sensor offsets that every fit estimates."""
-        return tuple(offsets_of(self.workshop.campaign))
+        return tuple(offsets_of(self.factory.campaign))
 
     def calibrate(self) -> tuple[Fit, Evidence, Evidence, Evidence]:
         """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
-        w = self.workshop
-        bench = w.bench()
+        w = self.factory
+        likelihood = w.likelihood()
         names = self.names(())
-        start = {n: start_value(bench, bench.records[n]) for n in names}
-        nominal = bench.evidence(w.campaign.fit, start, names, tune_start=1)
-        nominal_held = bench.evidence(w.campaign.holdout, start, (), tune_start=1)
-        found = fit(bench, names, start, nominal)
-        found = self._restarted(bench, names, found.values, 1)
-        held = self.heldout(bench, found.values)
-        w.remember(bench)
+        start = {n: start_value(likelihood, likelihood.records[n]) for n in names}
+        nominal = likelihood.evidence(w.campaign.fit, start, names, tune_start=1)
+        nominal_held = likelihood.evidence(w.campaign.holdout, start, (), tune_start=1)
+        found = fit(likelihood, names, start, nominal)
+        found = self._restarted(likelihood, names, found.values, 1)
+        held = self.heldout(likelihood, found.values)
+        w.remember(likelihood)
         return found, held, nominal, nominal_held
 
     def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
-        return fit(self.workshop.bench(effects), self.names(effects), start, here, **how)
+        return fit(self.factory.likelihood(effects), self.names(effects), start, here, **how)
 
     def names(self, effects: Sequence[str]) -> list[str]:
         """What a model with these effects has to be fitted by."""
-        twins = frozenset().union(*(self.twins.get(e, ()) for e in effects))
-        offsets = (n for n in self.offsets if n not in twins)
-        return [*self.workshop.calibrated, *offsets, *(n for e in effects for n in self.workshop.parameters(e))]
+        confounded = frozenset().union(*(self.confounded.get(e, ()) for e in effects))
+        offsets = (n for n in self.offsets if n not in confounded)
+        return [*self.factory.calibrated, *offsets, *(n for e in effects for n in self.factory.parameters(e))]
 
     def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
         """The model with these effects, which the variant has already, estimated anew."""
-        return self.settled(effects, self.refit(effects, {**self.workshop.given, **base.values}))
+        return self.settled(effects, self.refit(effects, {**self.factory.given, **base.values}))
 
     def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
         """A fit again from its own result, with every run started where this model wants it, and held out."""
-        bench = self.workshop.bench(effects)
+        likelihood = self.factory.likelihood(effects)
         self._without.clear()  # these started elsewhere
-        again = self._restarted(bench, self.names(effects), found.values, 2)
-        held = self.heldout(bench, again.values, tune_start=2)
-        self.workshop.remember(bench)
+        again = self._restarted(likelihood, self.names(effects), found.values, 2)
+        held = self.heldout(likelihood, again.values, tune_start=2)
+        self.factory.remember(likelihood)
         return again, held
 
-    def _restarted(self, bench: Bench, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
+    def _restarted(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
         """A fit from `start`, with every run started where the readings want it there, in so many steps."""
-        problem = Problem(bench, names)
+        problem = Problem(likelihood, names)
         values = problem.values(problem.inside(start))
-        return fit(bench, names, values, bench.evidence(self.workshop.campaign.fit, values, names, tune_start=tune_start))
+        return fit(
+            likelihood, names, values, likelihood.evidence(self.factory.campaign.fit, values, names, tune_start=tune_start)
+        )
 
     def pruned(self, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
         """Backward: leave out every effect but the last, and those to `keep`, that the others have made needless."""
@@ -91,39 +93,39 @@ class Models:
 
     def _plainly_needed(self, found: Fit, effect: str) -> bool:
         """Is an effect's estimate, by its standard errors, so far from zero that nobody needs to try without?"""
-        value, covariance = estimates(found, self.workshop.parameters(effect))
+        value, covariance = estimates(found, self.factory.parameters(effect))
         return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value) > PLAINLY * TIED
 
-    def heldout(self, bench: Bench, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
+    def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
-        return bench.evidence(self.workshop.campaign.holdout, values, (), tune_start=tune_start)
+        return likelihood.evidence(self.factory.campaign.holdout, values, (), tune_start=tune_start)
 
-    def recolour(self, evidence: Evidence, *, again: bool = False) -> bool:
+    def reestimate_noise(self, evidence: Evidence, *, again: bool = False) -> bool:
         """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect
         is in that was missing when the noise was estimated."""
-        before = self.workshop.colour
+        before = self.factory.noise_model
         lowest = QUIETER if again else 0.0
-        self.workshop.colour, self.noise_notes = colour_of(evidence, self.workshop.campaign.noise, before, lowest)
-        if self.workshop.colour.differs(before):
+        self.factory.noise_model, self.noise_notes = noise_model_of(evidence, self.factory.campaign.noise, before, lowest)
+        if self.factory.noise_model.differs(before):
             self._without.clear()
             return True
         return False
 
     def rival_of(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
         """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
-        if not self.twins.get(effect):
+        if not self.confounded.get(effect):
             return base, held
         key = (effect, *effects)
         if key not in self._without:
-            names = [n for n in self.names(effects) if n not in self.twins[effect]]
-            bench = self.workshop.bench(effects)
-            fewer = fit(bench, names, base.values)
-            self._without[key] = fewer, self.heldout(bench, fewer.values)
+            names = [n for n in self.names(effects) if n not in self.confounded[effect]]
+            likelihood = self.factory.likelihood(effects)
+            fewer = fit(likelihood, names, base.values)
+            self._without[key] = fewer, self.heldout(likelihood, fewer.values)
         return self._without[key]
 
     def linear(self, effect: str) -> bool:
         """Does the slope at zero tell what the effect does at the size it has?"""
-        record = self.workshop.catalogue[effect]
+        record = self.factory.catalogue[effect]
         return not (record.even or record.rows or record.needs)
 
     def deltas(self, names: Sequence[str]) -> np.ndarray:

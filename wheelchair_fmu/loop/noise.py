@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq, least_squares
 
 from ..campaign.series import estimate
-from .evidence import FORCES, Colour, Evidence
+from .likelihood import FORCES, Evidence, NoiseModel
 
 LAGS = 15
 WHITE = 0.2  # an AR(1) coefficient below this is not worth a state
@@ -24,7 +24,9 @@ EVEN = 0.25  # share of the usual time over so many readings by which one may di
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 
 
-def colour_of(evidence: Evidence, stated: Mapping[str, float], taken: Colour, lowest: float = 0.0) -> tuple[Colour, list[str]]:
+def noise_model_of(
+    evidence: Evidence, stated: Mapping[str, float], taken: NoiseModel, lowest: float = 0.0
+) -> tuple[NoiseModel, list[str]]:
     """Noise by channel, and a sentence for each channel where the data contradict the campaign file.
 
     The innovations of `evidence` are by the noise `taken` so far; where they change as white noise does, and errors

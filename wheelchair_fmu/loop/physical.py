@@ -11,7 +11,7 @@ import numpy as np
 
 from ..campaign import BY_NAME
 from ..quantities import DisplayUnit
-from .evidence import Evidence
+from .likelihood import Evidence
 from .statistics import finite
 
 READ_IN = {"rad": "deg", "rad/s": "deg/s"}  # units that people do not read, and those that they do

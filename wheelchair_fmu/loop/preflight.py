@@ -8,8 +8,8 @@ import numpy as np
 
 from ..campaign.recorded import PUSHES_CLOCK
 from .diagnose import Search
-from .evidence import Evidence
 from .fit import Fit, Problem
+from .likelihood import Evidence
 from .staircase import Step
 from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring
@@ -22,20 +22,20 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
     are read at that time.
     """
     say("calibrating")
-    w = search.workshop
+    w = search.factory
     found = dict(by_signals(w.campaign))
     w.retime(found)
-    columns = wiring(w.bench(), w.given)
+    columns = wiring(w.likelihood(), w.given)
     if columns.wrong:
         w.leave_out(channels=columns.wrong)
     base, held, ladder = first_steps(search)
     if columns.trusted:
-        more = by_model(w.bench(), base.evidence, base.values) | by_model(w.bench(), held, base.values)
+        more = by_model(w.likelihood(), base.evidence, base.values) | by_model(w.likelihood(), held, base.values)
         if more:
             w.retime(more)
             found |= more
             base, held, ladder = first_steps(search)
-    if search.recolour(base.evidence):
+    if search.reestimate_noise(base.evidence):
         base, held, ladder = first_steps(search)
     search.retimed |= found
     search.notes = list(columns.notes)
@@ -45,13 +45,13 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
 def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
     """Read the pushes in time of the runs that the model with these effects shows to be a little early or late; are there any?
     Not while a delay of all pushes is in it, or nobody is to estimate one."""
-    w = search.workshop
+    w = search.factory
     delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
     if not name or delay in effects:
         return False
-    bench, theta = w.bench((*effects, delay)), np.array([base.values[n] for n in base.names])
-    prior = Problem(bench, base.names).prior
-    evidence = bench.evidence(w.campaign.runs, base.values, (*base.names, name))
+    likelihood, theta = w.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
+    prior = Problem(likelihood, base.names).prior
+    evidence = likelihood.evidence(w.campaign.runs, base.values, (*base.names, name))
     found = by_slopes(evidence, prior.rows(theta), prior.slopes)
     w.retime(found)
     search.retimed |= found

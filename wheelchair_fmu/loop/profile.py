@@ -30,17 +30,17 @@ def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[
     Each is estimated alone, from the innovations and with the calibrated directions taken off; the spread of size 10 δ about
     zero keeps knots that the data hardly reach from running away.
     """
-    workshop = search.workshop.widened(free)
-    bench = workshop.wide(effects)
-    names = [n for effect in free for n in workshop.parameters(effect)]
-    evidence = bench.evidence(workshop.campaign.fit, base.values, [*base.names, *names])
-    k, off = len(base.names), search.off(bench, base, evidence)
+    factory = search.factory.widened(free)
+    likelihood = factory.wide(effects)
+    names = [n for effect in free for n in factory.parameters(effect)]
+    evidence = likelihood.evidence(factory.campaign.fit, base.values, [*base.names, *names])
+    k, off = len(base.names), search.off(likelihood, base, evidence)
     found = []
     for effect in free:
-        own = workshop.parameters(effect)
+        own = factory.parameters(effect)
         columns = evidence.S[:, [k + names.index(n) for n in own]]
         s, strained = off(columns), off.strained(columns)
-        prior = prior_of(bench, own).sd
+        prior = prior_of(likelihood, own).sd
         known = strained.T @ strained + np.diag(prior**-2.0)
         inverse = np.linalg.inv(s.T @ s + known)
         covariance = inverse @ (robust_variance(evidence, s, evidence.r) + known) @ inverse

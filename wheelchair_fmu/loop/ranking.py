@@ -33,7 +33,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
             for run, of in d.search.clocks.items()
         },
         "baseline": {
-            run: {push: dict(found) for push, found in of.items()} for run, of in d.search.workshop.campaign.rims.items()
+            run: {push: dict(found) for push, found in of.items()} for run, of in d.search.factory.campaign.rims.items()
         },
         "physical": d.ladder[-1].physical,
         "disturbance": d.unexplained.as_json() if d.unexplained else None,

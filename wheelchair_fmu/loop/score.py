@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .chance import chance_beyond, power
-from .evidence import Evidence
+from .likelihood import Evidence
 
 LASTING = 0.97  # AR(1) coefficient, at most, by which a variance is recoloured
 LAG = 0.5  # s over which residuals may be correlated

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SimulationError
-from .cores import each
-from .evidence import Bench, Evidence
 from .fit import Fit, prior_of
+from .likelihood import Evidence, Likelihood
 from .models import Models
+from .parallel import parallel_map
 from .score import Projector, Score, score
 from .statistics import cosines
 
@@ -51,11 +51,11 @@ class Screened:
         return float(np.mean(self.evidence.r**2)) > FAR and self.score.drop > LITTLE
 
     @property
-    def surprising(self) -> bool:
+    def nonlinear_candidate(self) -> bool:
         """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
         return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
 
-    def anyway(self, visible: float) -> bool:
+    def forced(self, visible: float) -> bool:
         """Is it refitted whatever one simulated step shows?"""
         return visible == 0 or self.score.drop > LITTLE
 
@@ -70,7 +70,7 @@ class Screen(Models):
     def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
         """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or
         may mislead."""
-        w = self.workshop
+        w = self.factory
         free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
         found, here = self._by_slopes(effects, base, [e for e in free if e in w.light])
         for group in (w.heavy, w.demanding):
@@ -81,49 +81,52 @@ class Screen(Models):
 
     def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
         """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
-        w = self.workshop
-        bench, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
-        here = bench.evidence(w.campaign.fit, base.values, [*base.names, *names])
-        off, unbent = self.off(bench, base, here), self._unbent(bench, base, names)
+        w = self.factory
+        likelihood, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
+        here = likelihood.evidence(w.campaign.fit, base.values, [*base.names, *names])
+        off, unbent = self.off(likelihood, base, here), self._slopes_at_prior_mean(likelihood, base, names)
 
         def screened(effect: str) -> Screened:
             own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
             tangent = self._score(here, off, effect, here.S[:, own])
-            bent = [] if self.linear(effect) else self._secants(bench, here, base.values, effect)
+            bent = [] if self.linear(effect) else self._secants(likelihood, here, base.values, effect)
             secants = [self._score(here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
             return self._screened([tangent, *secants], here)
 
-        twins = [e for e in light if self._is_an_offset(e, here)]
-        found = each(screened, [e for e in light if e not in twins])
-        for effect in twins:
+        confounded = [e for e in light if self._is_an_offset(e, here)]
+        found = parallel_map(screened, [e for e in light if e not in confounded])
+        for effect in confounded:
             found += self._by_slopes(effects, self.rival_of(effect, effects, base, None)[0], [effect])[0]
         return found, here
 
-    def _by_secants(self, bench: Bench, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
+    def _by_secants(self, likelihood: Likelihood, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
         """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
         and the filters of the model without them serve: at zero they change nothing."""
         at = []
-        for values in (base.values, *self.straightened(bench, base, SLIGHTLY)):
+        for values in (base.values, *self.at_prior_mean(likelihood, base, SLIGHTLY)):
             try:
-                at.append((values, bench.again(here, values)))
+                at.append((values, likelihood.resimulated(here, values)))
             except SimulationError:
                 if not at:
                     return []
-        off = self.off(bench, base, here)
+        off = self.off(likelihood, base, here)
 
         def screened(effect: str) -> Screened | None:
-            by = [[self._score(at[0][1], off, effect, S) for S in self._secants(bench, e, values, effect)] for values, e in at]
+            by = [
+                [self._score(at[0][1], off, effect, S) for S in self._secants(likelihood, e, values, effect)]
+                for values, e in at
+            ]
             scores = [score for group in by for score in group]
             if not scores:
                 return None
             best = self._screened(scores, here)
             return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
 
-        return [s for s in each(screened, effects) if s]
+        return [s for s in parallel_map(screened, effects) if s]
 
-    def off(self, bench: Bench, base: Fit, here: Evidence) -> Projector:
+    def off(self, likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
         """Takes what calibration can imitate off any columns."""
-        prior = prior_of(bench, base.names)
+        prior = prior_of(likelihood, base.names)
         rows = prior.rows(np.array([base.values[n] for n in base.names]))
         return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
 
@@ -132,22 +135,22 @@ class Screen(Models):
         best = max(scores, key=lambda s: s.drop)
         return Screened(replace(best, p=scores[0].p), here, self.deltas(best.names), self.linear(best.effect))
 
-    def _unbent(self, bench: Bench, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
+    def _slopes_at_prior_mean(self, likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
         """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
         them: what it bent to imitate an effect may be what the effect works through."""
-        straightened = self.straightened(bench, base, BENT) if names else []
+        at_prior_mean = self.at_prior_mean(likelihood, base, BENT) if names else []
         try:
-            return [bench.evidence(self.workshop.campaign.fit, values, names).S for values in straightened]
+            return [likelihood.evidence(self.factory.campaign.fit, values, names).S for values in at_prior_mean]
         except SimulationError:
             return []
 
     @staticmethod
-    def straightened(bench: Bench, base: Fit, least: float) -> list[dict[str, float]]:
+    def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
         """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
         deviations."""
         if base.evidence.rms < AT_THE_FLOOR:
             return []
-        prior, values = prior_of(bench, base.names), np.array([base.values[n] for n in base.names])
+        prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
         off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
         straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
         return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
@@ -157,28 +160,28 @@ class Screen(Models):
         offsets = [n for n in self.offsets if n in evidence.by]
         if not offsets:
             return False
-        own = evidence.S[:, [evidence.by.index(n) for n in self.workshop.parameters(effect)]]
+        own = evidence.S[:, [evidence.by.index(n) for n in self.factory.parameters(effect)]]
         columns = evidence.S[:, [evidence.by.index(n) for n in offsets]]
         rest = columns - own @ np.linalg.lstsq(own, columns, rcond=None)[0]
         same = np.linalg.norm(rest, axis=0) < 1e-6 * np.linalg.norm(columns, axis=0)
         if same.any():
-            self.twins[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
+            self.confounded[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
         return bool(same.any())
 
     def _score(self, evidence: Evidence, off: Projector, effect: str, S: np.ndarray) -> Score:
-        records = [self.records[n] for n in self.workshop.parameters(effect)]
+        records = [self.records[n] for n in self.factory.parameters(effect)]
         delta = np.array([r.smallest_interesting for r in records])
         return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))
 
-    def _secants(self, bench: Bench, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
+    def _secants(self, likelihood: Likelihood, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
         """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
         (N, k) per unit, each. `known` is the evidence at `values`, where it is off."""
-        records = [self.records[n] for n in self.workshop.parameters(effect)]
+        records = [self.records[n] for n in self.factory.parameters(effect)]
         found = []
         for sign in (1.0,) if self.linear(effect) else (1.0, -1.0):
             sizes = {r.name: sign * r.smallest_interesting for r in records if r.lower <= sign * r.smallest_interesting}
             try:
-                columns = [(known.r - bench.again(known, {**values, n: size}).r) / size for n, size in sizes.items()]
+                columns = [(known.r - likelihood.resimulated(known, {**values, n: size}).r) / size for n, size in sizes.items()]
             except SimulationError:
                 continue
             if len(columns) == len(records):
@@ -189,8 +192,8 @@ class Screen(Models):
 def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
     """The best by expected drop, some more of those whose slopes say little, and whatever looks like the leader; not what is
     surely far too small to matter."""
-    promising = [s for s in screened if s.score.drop > PROMISING and (s.surprising or not s.negligible)]
-    curved = [s for s in promising[most:] if s.surprising][:CURVED]
+    promising = [s for s in screened if s.score.drop > PROMISING and (s.nonlinear_candidate or not s.negligible)]
+    curved = [s for s in promising[most:] if s.nonlinear_candidate][:CURVED]
     first = [*promising[:most], *curved]
     taken = {s.score.effect for s in first}
     rest = [s for s in promising if s.score.effect not in taken]

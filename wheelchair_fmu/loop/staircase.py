@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .evidence import Evidence
+from .likelihood import Evidence
 from .physical import Errors, as_json, channel_errors
 from .statistics import finite
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SimulationError
-from .cores import each
-from .evidence import Bench, Evidence
 from .fit import prior_of
+from .likelihood import Evidence, Likelihood
+from .parallel import parallel_map
 
 GLANCED = 2  # runs on which all are tried, and of them
 LOOKED_AT = 2  # times as many as are wanted on every run
@@ -26,15 +26,15 @@ class Outlook:
     reached: tuple[float, ...]
 
 
-def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable[float]) -> Outlook:
+def outlook(likelihood: Likelihood, known: Evidence, names: Sequence[str], theta: Iterable[float]) -> Outlook:
     """The step goes by those of `names`, the first, that `known` has slopes by; the misfit is infinite where the model cannot
     run."""
     at = tuple(map(float, theta))
     try:
-        r = bench.again(known, dict(zip(names, at, strict=True))).r
+        r = likelihood.resimulated(known, dict(zip(names, at, strict=True))).r
     except SimulationError:
         return Outlook(float("inf"), at, at)
-    prior = prior_of(bench, names)
+    prior = prior_of(likelihood, names)
     rows = prior.rows(np.array(at))
     Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
     g = Z.T @ r + (prior.slopes @ rows)[:k]
@@ -43,7 +43,7 @@ def outlook(bench: Bench, known: Evidence, names: Sequence[str], theta: Iterable
 
 
 def most_promising(
-    bench: Bench,
+    likelihood: Likelihood,
     known: Evidence,
     names: Sequence[str],
     tries: Iterable[Sequence[float]],
@@ -59,13 +59,13 @@ def most_promising(
     if len(thetas) > LOOKED_AT * wanted and len(shares) > GLANCED:
         telling = sorted(np.argsort(shares, kind="stable")[-GLANCED:])
         few = Evidence(tuple(known.runs[i] for i in telling), known.by)
-        glanced = _ranked(bench, few, names, thetas)
+        glanced = _ranked(likelihood, few, names, thetas)
         of_each = _of_each(glanced, lambda o: kind(o.theta[len(known.by) :]), LOOKED_AT) if kind else glanced
         thetas = [o.theta for o in of_each[: LOOKED_AT * wanted]]
-    near = _ranked(bench, known, names, thetas)[: LOOKED_AT * wanted]
+    near = _ranked(likelihood, known, names, thetas)[: LOOKED_AT * wanted]
     if kind is None:
         return near[:wanted]
-    further = _ranked(bench, known, names, (o.reached for o in near if np.isfinite(o.misfit)))
+    further = _ranked(likelihood, known, names, (o.reached for o in near if np.isfinite(o.misfit)))
     return _of_each(sorted([*near, *further], key=_misfit), lambda o: kind(o.theta[len(known.by) :]), 1)[:wanted]
 
 
@@ -80,17 +80,17 @@ def _of_each(ranked: Iterable[Outlook], kind: Callable[[Outlook], object], most:
     return found
 
 
-def visible_fall(bench: Bench, known: Evidence, names: Sequence[str], to: Outlook) -> float:
+def visible_fall(likelihood: Likelihood, known: Evidence, names: Sequence[str], to: Outlook) -> float:
     """Of a channel's whitened RMS in the run where it falls most, by that step; infinite where nobody can say."""
     values = dict(zip(names, to.reached, strict=True))
     try:
-        return known.fall_to(bench.restarted(bench.again(known, values), values))
+        return known.fall_to(likelihood.restarted(likelihood.resimulated(known, values), values))
     except SimulationError:
         return float("inf")
 
 
-def _ranked(bench: Bench, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
-    return sorted(each(lambda theta: outlook(bench, known, names, theta), thetas), key=_misfit)
+def _ranked(likelihood: Likelihood, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
+    return sorted(parallel_map(lambda theta: outlook(likelihood, known, names, theta), thetas), key=_misfit)
 
 
 def _misfit(o: Outlook) -> tuple[float, tuple[float, ...]]:

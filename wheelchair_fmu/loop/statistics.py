@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from .chance import student
-from .evidence import Evidence, block_length
 from .fit import Fit
+from .likelihood import Evidence, block_length
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400

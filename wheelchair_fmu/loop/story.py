@@ -18,12 +18,12 @@ def story(d: Diagnosis) -> dict[str, Any]:
     for row in content["ranking"]:
         values = models.get(f"+{row['effect']}", refitted.get(row["effect"]))
         row["values"] = None if values is None else dict(values)
-    colour = d.search.workshop.colour
+    noise_model = d.search.factory.noise_model
     return {
         **content,
         "calibrated": list(d.search.names(())),
         "begins": _beginning(d),
-        "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
+        "noise": {"sd": dict(noise_model.sd), "ar": dict(noise_model.ar)},
         "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],
     }
 

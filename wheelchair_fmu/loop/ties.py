@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from ..errors import SimulationError
 from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search
-from .evidence import Evidence
 from .fit import Fit
+from .likelihood import Evidence
 from .screen import shortlist
 from .statistics import difference_blocks, margin, resampled_totals
 
@@ -43,13 +43,13 @@ def beside(
 ) -> Round | None:
     """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it,
     if that knew the same noise. None where it stands without that, or where the model cannot run without it."""
-    w, others = search.workshop, tuple(e for e in effects if e != effect)
+    w, others = search.factory, tuple(e for e in effects if e != effect)
     try:
         base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
-        base_held = search.heldout(w.bench(others), base.values)
+        base_held = search.heldout(w.likelihood(others), base.values)
     except SimulationError:
         return None
-    base = replace(base, evidence=w.bench(others).restarted(base.evidence, base.values))
+    base = replace(base, evidence=w.likelihood(others).restarted(base.evidence, base.values))
     without, without_held = search.rival_of(effect, others, base, base_held)
     fall = without.misfit - final.misfit
     if before and _stands(effect, effects, fall, before):
@@ -59,8 +59,8 @@ def beside(
     promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
     tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
     candidates = sorted([own, *(c for c in tried if c)], key=lambda c: -c.drop)
-    base = replace(base, evidence=base.evidence.brief())
-    return Round(others, base, base_held.brief(), tuple(s.score for s in screened), tuple(candidates), again=True)
+    base = replace(base, evidence=base.evidence.summary())
+    return Round(others, base, base_held.summary(), tuple(s.score for s in screened), tuple(candidates), again=True)
 
 
 def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:

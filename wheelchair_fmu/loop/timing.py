@@ -18,7 +18,7 @@ from ..campaign.clocks import Signal, odd_ones_out
 from ..campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ..campaign.recorded import PUSHES_CLOCK
 from ..errors import SimulationError
-from .evidence import BODY, Bench, Evidence, RunEvidence
+from .likelihood import BODY, Evidence, Likelihood, RunEvidence
 from .score import Projector
 from .statistics import correlation_time
 
@@ -49,17 +49,17 @@ def by_signals(campaign: Campaign) -> dict[str, Late]:
     return {name: Late(shift.seconds, max(shift.se, LEAST_SD), shift.unique) for name, shift in found.items()}
 
 
-def by_model(bench: Bench, evidence: Evidence, values: Mapping[str, float]) -> dict[str, Late]:
+def by_model(likelihood: Likelihood, evidence: Evidence, values: Mapping[str, float]) -> dict[str, Late]:
     """Runs where reading the pushes at another time, and at no third one, explains most of a large error."""
     found = {}
     for e in (e for e in evidence.runs if _one_clock(e.run)):
         if float(np.nanmean(e.r**2)) < SUSPECT**2 or not any(np.ptp(push) > 0 for push in _pushes(e.run).values()):
             continue
-        left = _left(bench, e, values, [*-SHIFTS, *SHIFTS])
+        left = _left(likelihood, e, values, [*-SHIFTS, *SHIFTS])
         best = min(left, key=lambda t: left[t])
         if left[best] < HOPEFUL:
             finer = (best + side for side in (-FINER, FINER) if abs(best + side) > SHIFTS[0])
-            left |= _left(bench, e, values, finer)
+            left |= _left(likelihood, e, values, finer)
             best = min(left, key=lambda t: left[t])
         others = min((share for t, share in left.items() if abs(t - best) > APART), default=np.inf)
         if left[best] < EXPLAINED and abs(best) > SHIFTS[0] and others > UNIQUE * left[best]:
@@ -158,14 +158,14 @@ def _signals(run: Run) -> Iterator[Signal]:
         yield Signal("", BY_FMU_NAME[name].name, run.time, push)
 
 
-def _left(bench: Bench, e: RunEvidence, values: Mapping[str, float], later: Iterable[float]) -> dict[float, float]:
+def _left(likelihood: Likelihood, e: RunEvidence, values: Mapping[str, float], later: Iterable[float]) -> dict[float, float]:
     """By how many seconds `later` than recorded the pushes are read, the share of the squared innovations that is left."""
     shifts = [float(t) for t in later]
     moved = [_moved(e, seconds) for seconds in shifts]
     try:
-        again = bench.again(Evidence(tuple(moved), ()), values).runs  # all at once, on all cores
+        again = likelihood.resimulated(Evidence(tuple(moved), ()), values).runs  # all at once, on all cores
     except SimulationError:
-        again = tuple(_alone(bench, m, values) for m in moved)
+        again = tuple(_alone(likelihood, m, values) for m in moved)
     return {t: _share(e, a, t) if a else float("inf") for t, a in zip(shifts, again, strict=True)}
 
 
@@ -175,9 +175,9 @@ def _moved(e: RunEvidence, seconds: float) -> RunEvidence:
     return replace(e, run=replace(e.run, inputs={**inputs, **late}))
 
 
-def _alone(bench: Bench, m: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
+def _alone(likelihood: Likelihood, m: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
     try:
-        return bench.again(Evidence((m,), ()), values).runs[0]
+        return likelihood.resimulated(Evidence((m,), ()), values).runs[0]
     except SimulationError:
         return None
 

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from ..engine.smoothing import smoothed
-from .cores import each
 from .disturbance import Strength, disturbed
-from .evidence import Bench, Colour, Evidence, RunEvidence, pushes_of
 from .fit import Fit
+from .likelihood import Evidence, Likelihood, NoiseModel, RunEvidence, pushes_of
+from .parallel import parallel_map
 from .strokes import phase
 
 BINS = 8  # of a variable, alike in how much was recorded in each
@@ -97,20 +97,20 @@ def _size(s: Strength) -> str:
     return f"{s.force:.2g} N and {s.moment:.2g} N m" if s.fall else "no force and no moment"
 
 
-def geometry(bench: Bench, found: Fit) -> dict[str, float]:
+def geometry(likelihood: Likelihood, found: Fit) -> dict[str, float]:
     """Values (SI) of the chair, as a fit has them or the campaign says."""
-    given = {p.name: p.default for p in bench.variant.parameters()}
-    return {**given, **bench.variant.values, **bench.campaign.known, **found.values}
+    given = {p.name: p.default for p in likelihood.variant.parameters()}
+    return {**given, **likelihood.variant.values, **likelihood.campaign.known, **found.values}
 
 
-def unexplained(bench: Bench, found: Fit, before: Strength, after: Strength) -> Unexplained:
+def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength) -> Unexplained:
     """What a fitted model lacks, and what orders it."""
-    chair = geometry(bench, found)
+    chair = geometry(likelihood, found)
     weight, arm = chair["chair.m"] * chair["g"], chair["chair.b"]
     if not after.fall:
         return Unexplained(before, after, (), (), weight, arm)
     forces = missing(found.evidence, after, chair["chair.t_r"])
-    by = orders(found.evidence, forces, after, bench.sensitivities.results, chair["wheel.R"])
+    by = orders(found.evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
     return Unexplained(before, after, tuple(by), tuple(forces), weight, arm)
 
 
@@ -118,12 +118,12 @@ def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]
     """The force and moment of each run, by evidence of one model with its filters; `t_r` is the distance (m) between wheels."""
 
     def one(e: RunEvidence) -> Missing:
-        filter_, start = disturbed(e, strength.put_into(Colour({})), t_r)
+        filter_, start = disturbed(e, strength.put_into(NoiseModel({})), t_r)
         mean, sd = smoothed(filter_, e.measured - e.predicted, start)
         both = {name: (mean[:, i], sd[:, i]) for i, name in enumerate(("force", "moment"))}
         return Missing(e.run.name, e.run.time, {n: m for n, (m, _) in both.items()}, {n: s for n, (_, s) in both.items()})
 
-    return each(one, evidence.runs)
+    return parallel_map(one, evidence.runs)
 
 
 def orders(

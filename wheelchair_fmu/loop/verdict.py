@@ -16,25 +16,25 @@ from ..campaign import Campaign, windows
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .calibration import Calibrated, calibration, doubts
-from .climb import Climb
 from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, at_the_floor
 from .disturbance import Strength, strength
-from .evidence import Colour, Evidence
 from .experiment import Experiment, reveal, separate
+from .factory import CALIBRATED, MEASURED, ModelFactory
 from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
 from .lead import lead
+from .likelihood import Evidence, NoiseModel
 from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
 from .probability import Belief, beliefs, shared
 from .relief import reliefs
 from .screen import AT_THE_FLOOR
+from .selection import StepwiseSelection
 from .staircase import Step
 from .statistics import correlation_time, decisive, estimates
 from .ties import NEARLY, grouped, tied
 from .unexplained import Unexplained, geometry, unexplained
-from .workshop import CALIBRATED, MEASURED, Workshop
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
@@ -96,7 +96,7 @@ class Diagnosis:
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
         """By effect, which of its parameters (k,) may only be positive."""
-        w, records = self.search.workshop, self.search.records
+        w, records = self.search.factory, self.search.records
         return {e: np.array([records[n].lower == 0 for n in w.parameters(e)], bool) for e in w.catalogue}
 
     def _decided(self, effect: str) -> Round:
@@ -124,39 +124,39 @@ def diagnose(
     progress: Callable[[str], None] = lambda words: None,
     experiments: Sequence[Experiment] = (),
     fixed: Iterable[str] = (),
-    climbed: Callable[[Sequence[Step]], None] = lambda ladder: None,
+    stepped: Callable[[Sequence[Step]], None] = lambda ladder: None,
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words, and `climbed` the staircase whenever it has changed.
+    what is being done, in words, and `stepped` the staircase whenever it has changed.
     """
     began = time.monotonic()
     campaign = windows(campaign)
 
-    def searched(colour: Colour | None, terms: Mapping[str, Effect]) -> Diagnosis:
-        workshop = Workshop(campaign, variant or Variant(), fixed, calibrated)
-        workshop.colour = colour or workshop.colour
-        return _searched(Search(workshop, progress), terms, experiments, climbed)
+    def searched(noise_model: NoiseModel | None, terms: Mapping[str, Effect]) -> Diagnosis:
+        factory = ModelFactory(campaign, variant or Variant(), fixed, calibrated)
+        factory.noise_model = noise_model or factory.noise_model
+        return _searched(Search(factory, progress), terms, experiments, stepped)
 
     found = searched(None, generic or {})
-    found = _with_forces(found, lambda colour: searched(colour, {}), progress)
+    found = _with_forces(found, lambda noise_model: searched(noise_model, {}), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     return replace(found, seconds=time.monotonic() - began)
 
 
-def _with_forces(found: Diagnosis, again: Callable[[Colour], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
+def _with_forces(found: Diagnosis, again: Callable[[NoiseModel], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
     before = _strength(found, found.rounds[0].fit)
     if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
         return replace(found, unexplained=Unexplained(before, _strength(found, found.top), ()))
     say("searching again, with forces that nobody recorded")
-    second = again(before.put_into(found.search.workshop.colour))
+    second = again(before.put_into(found.search.factory.noise_model))
     after = _strength(second, second.top)
-    left = unexplained(second.search.workshop.bench(second.included), second.top, before, after)
+    left = unexplained(second.search.factory.likelihood(second.included), second.top, before, after)
     if left.orders or not left.like_a_floor:
         return replace(found, unexplained=left)
     with_forces = replace(second.ladder[1], name=FORCES)
@@ -164,45 +164,45 @@ def _with_forces(found: Diagnosis, again: Callable[[Colour], Diagnosis], say: Ca
 
 
 def _strength(found: Diagnosis, at: Fit) -> Strength:
-    return strength(at.evidence, geometry(found.search.workshop.bench(), at)["chair.t_r"])
+    return strength(at.evidence, geometry(found.search.factory.likelihood(), at)["chair.t_r"])
 
 
 def _searched(
-    search: Search, generic: Mapping[str, Effect], experiments: Sequence[Experiment], climbed: Callable[[Sequence[Step]], None]
+    search: Search, generic: Mapping[str, Effect], experiments: Sequence[Experiment], stepped: Callable[[Sequence[Step]], None]
 ) -> Diagnosis:
     """The search up the staircase, and the verdict on where it ends."""
-    campaign = search.workshop.campaign
-    climb = Climb(search, climbed)
-    climb.to_the_top()
-    if retime_by_slopes(search, climb.effects, climb.base):
-        climb = Climb(search, climbed)
-        climb.to_the_top()
-    leftover, proposal = _leftover(climb, generic)
-    included, base, ladder, rounds = climb.effects, climb.base, climb.ladder, climb.rounds
+    campaign = search.factory.campaign
+    selection = StepwiseSelection(search, stepped)
+    selection.to_the_top()
+    if retime_by_slopes(search, selection.effects, selection.base):
+        selection = StepwiseSelection(search, stepped)
+        selection.to_the_top()
+    leftover, proposal = _leftover(selection, generic)
+    included, base, ladder, rounds = selection.effects, selection.base, selection.ladder, selection.rounds
     if proposal is not None:
         included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
-        climbed(tuple(ladder))
-    beside = {e: r for e, r in climb.beside.items() if r} if proposal is None else {}
-    helping = {e for e in climb.helping.intersection(included) if search.small(base, e)}
-    effects = tuple(e for e in included if e not in climb.already and e not in helping)
+        stepped(tuple(ladder))
+    beside = {e: r for e, r in selection.beside.items() if r} if proposal is None else {}
+    helping = {e for e in selection.helping.intersection(included) if search.small(base, e)}
+    effects = tuple(e for e in included if e not in selection.already and e not in helping)
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties = tuple(group for group, _ in groups)
-    values = calibration(search.workshop.bench(included), proposal.fit if proposal else base)
+    values = calibration(search.factory.likelihood(included), proposal.fit if proposal else base)
     verdict = _verdict(search, effects, ties, rounds, proposal, ladder, base.evidence, values)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
     named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
     following = _next(search, verdict, groups, rounds, experiments)
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
-    settle_clocks(search, base.evidence, climb.held)
+    settle_clocks(search, base.evidence, selection.held)
     thinned = (campaign.thinned,) if campaign.thinned else ()
-    beyond_limits = beyond(search.workshop.bench(climb.effects), base.evidence)
+    beyond_limits = beyond(search.factory.likelihood(selection.effects), base.evidence)
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     notes = (*thinned, *search.notes, *search.noise_notes, *doubtful, *beyond_limits)
     return Diagnosis(
         campaign.name,
         verdict,
         tuple(named),
-        climb.already,
+        selection.already,
         ties,
         tuple(ladder),
         tuple(rounds),
@@ -220,8 +220,8 @@ def _searched(
 
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
     """Intervals of the parameters of the effects that were found."""
-    bench, names = search.workshop.bench(included), [n for e in effects for n in search.workshop.parameters(e)]
-    return {n: profile_interval(bench, found, n) for n in names if n in found.names}
+    likelihood, names = search.factory.likelihood(included), [n for e in effects for n in search.factory.parameters(e)]
+    return {n: profile_interval(likelihood, found, n) for n in names if n in found.names}
 
 
 def _next(
@@ -246,13 +246,13 @@ def _next(
     return None
 
 
-def _leftover(climb: Climb, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:
+def _leftover(selection: StepwiseSelection, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:
     """Test the generic terms on what is left; a proposal where one is found that no effect explains."""
     if not generic:
         return None, None
-    search, effects, base, held, rounds = climb.search, climb.effects, climb.base, climb.held, climb.rounds
+    search, effects, base, held, rounds = selection.search, selection.effects, selection.base, selection.held, selection.rounds
     search.say("looking for what no effect explains")
-    wider = search.workshop.widened(generic)
+    wider = search.factory.widened(generic)
     generic_search = Search(wider, search.say)
     found = effects[len(rounds[0].effects) :]
     first = rounds[0]
@@ -308,14 +308,14 @@ def _settle(
     search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate, ladder: list[Step]
 ) -> tuple[tuple[str, ...], Candidate, list[Step]]:
     """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
-    wider = Search(search.workshop.widened(generic), search.say)
+    wider = Search(search.factory.widened(generic), search.say)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
     whole = (*beside, proposal.effect)
     found, held = wider.settled(whole, proposal.fit)
     every, fewer = wider.pruned(whole, found)
     if every != whole:
         found, held = wider.settled(every, fewer)
-    estimate, covariance = estimates(found, wider.workshop.parameters(proposal.effect))
+    estimate, covariance = estimates(found, wider.factory.parameters(proposal.effect))
     kept = every[:-1]
     steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
     steps.append(Step.of(f"+{proposal.effect}", found.evidence, held))

@@ -14,7 +14,7 @@ import numpy as np
 from ..campaign import BY_NAME
 from ..campaign.channels import SIDES
 from ..errors import SimulationError
-from .evidence import START, Bench
+from .likelihood import START, Likelihood
 
 LIKE = 0.2  # share of its mean square that k times what the model reads may leave of a channel,
 ABOUT = 0.25  # and by which k may be off
@@ -32,14 +32,14 @@ class Wiring:
     trusted: bool = True
 
 
-def wiring(bench: Bench, values: Mapping[str, float]) -> Wiring:
+def wiring(likelihood: Likelihood, values: Mapping[str, float]) -> Wiring:
     """What the runs to be fitted, all together, say of their columns."""
     try:
-        factors = {c: _agreed(pairs) for c, pairs in _readings(bench, values).items()}
+        factors = {c: _agreed(pairs) for c, pairs in _readings(likelihood, values).items()}
     except SimulationError:
         return Wiring()  # which the fit will say
     found = _exchanged_pushes(factors) or _channels(factors)
-    if found.wrong and all(set(run.channels) <= set(found.wrong) for run in bench.campaign.fit):
+    if found.wrong and all(set(run.channels) <= set(found.wrong) for run in likelihood.campaign.fit):
         return Wiring((), (*found.notes, "nothing else was measured, so no verdict can be trusted"), False)
     return found
 
@@ -78,12 +78,12 @@ def _channels(factors: Mapping[str, float]) -> Wiring:
     return Wiring(tuple(wrong), tuple(notes))
 
 
-def _readings(bench: Bench, values: Mapping[str, float]) -> dict[str, list[np.ndarray]]:
+def _readings(likelihood: Likelihood, values: Mapping[str, float]) -> dict[str, list[np.ndarray]]:
     """By channel, and for the difference of the two wheels: measured and simulated (2, n), of each run to be fitted."""
     found: dict[str, list[np.ndarray]] = {}
-    for run in bench.campaign.fit:
+    for run in likelihood.campaign.fit:
         start = {name: run.set.get(name, 0.0) for name in START} | ({} if run.u0 is None else {"start.u": run.u0})
-        channels, measured, predicted = bench.readings(run, values, start)  # a wrong column says nothing of the start
+        channels, measured, predicted = likelihood.readings(run, values, start)  # a wrong column says nothing of the start
         pairs = np.stack([measured, predicted])  # (2, n, nz)
         by_name = {c: pairs[:, :, i] for i, c in enumerate(channels)}
         if set(SIDES) <= set(channels):

@@ -12,10 +12,10 @@ from ..campaign.channels import PUSHES
 from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
-from ..loop.evidence import SETTLED, START, TOLERANCE, Colour, driven, prior_start, start_sd
+from ..loop.factory import ModelFactory
+from ..loop.likelihood import SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
-from ..loop.workshop import Workshop
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
@@ -27,15 +27,15 @@ FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
 
 
 def content(
-    campaign: Campaign, variant: Variant, colour: Colour, diagnosis: Mapping[str, Any], fixed: Sequence[str] = ()
+    campaign: Campaign, variant: Variant, colour: NoiseModel, diagnosis: Mapping[str, Any], fixed: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Everything that `page.html` shows, as JSON; series are numbers under the key "f64", null in gaps.
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
     campaign = replace(campaign, runs=tuple(_in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
-    workshop = Workshop(campaign, variant, fixed)
-    variants = [variant.with_effects(ids) for ids in layers(workshop, campaign.effects, diagnosis["effects"])]
+    factory = ModelFactory(campaign, variant, fixed)
+    variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], START, driven(campaign))
     measured = {name for r in campaign.runs for name in r.channels}
     return {
@@ -47,9 +47,9 @@ def content(
         "drifting": [c.name for c in CHANNELS if c.drifts],
         "pushed": list(PUSHES),
         "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
-        "known": {**workshop.variant.values, **campaign.known},
+        "known": {**factory.variant.values, **campaign.known},
         "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],
-        "effects": [_effect(e) for e in workshop.catalogue.values()],
+        "effects": [_effect(e) for e in factory.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "regimes": _regimes(variant),
         "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
@@ -67,7 +67,7 @@ def _in_time(run: Run, sync: Mapping[str, Any]) -> Run:
     return run if late is None or run.clocks else retimed(run, Late(late["offset"], 0.0))
 
 
-def layers(w: Workshop, given: Sequence[str], found: Sequence[str]) -> list[tuple[str, ...]]:
+def layers(w: ModelFactory, given: Sequence[str], found: Sequence[str]) -> list[tuple[str, ...]]:
     """Effects of each model the page carries, the lightest first: what brings no state and what the campaign has `given` a
     size, that and what was `found`, what brings states, what needs other laws."""
     seldom = (*w.heavy, *w.demanding)

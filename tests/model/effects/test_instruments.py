@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from tests.model.effects.chair import I_Z, MASS, SMOOTH, T_R, TOP, G, run
 from wheelchair_fmu.campaign import Campaign, Run
 from wheelchair_fmu.engine.simulate import Trajectory
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 ALL = (
@@ -183,6 +183,6 @@ def test_a_record_that_is_early_by_tau_is_read_that_much_later(tau):
         (recorded,),
         "",
     )
-    bench = Bench(campaign, Variant().with_effects(["push_force_delay"]))
-    seen = bench.evidence(campaign.runs, {"effect.push_force_delay.tau": tau}).runs[0].predicted[:, 0]
+    likelihood = Likelihood(campaign, Variant().with_effects(["push_force_delay"]))
+    seen = likelihood.evidence(campaign.runs, {"effect.push_force_delay.tau": tau}).runs[0].predicted[:, 0]
     np.testing.assert_allclose(seen, speed, atol=2e-5)

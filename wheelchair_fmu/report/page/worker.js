@@ -1,4 +1,4 @@
-/* The chair in a worker: simulates runs by WebAssembly and whitens what is left, as loop/evidence.py does.
+/* The chair in a worker: simulates runs by WebAssembly and whitens what is left, as loop/likelihood.py does.
  *
  * A page's worker has no imports, so this file stands alone. Messages in:
  *   {load: {models, runs, noise, pushed, start, tuning, tolerance}}   once; see report/content.py
@@ -382,7 +382,7 @@ function slopes(index, values, steps) {
   return { jtj, jtr, squares };
 }
 
-/** Errors by channel, as loop/evidence.py's `errors`, their squares and those in SI units (`gaps`), and the series that the
+/** Errors by channel, as loop/likelihood.py's `errors`, their squares and those in SI units (`gaps`), and the series that the
  *  page draws. */
 function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread, innovations }) {
   const errors = {}, simulated = {}, squares = {}, counts = {}, gaps = {};

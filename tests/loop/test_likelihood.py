@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.diagnose import Search
-from wheelchair_fmu.loop.evidence import Bench
+from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.fit import fit, prior_of
+from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.score import _long_run_variance
-from wheelchair_fmu.loop.workshop import Workshop
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import PREDICTS
 
@@ -35,9 +35,9 @@ def biased(short):
 
 
 def test_again_is_the_evidence_itself_where_nothing_moved(short):
-    bench = Bench(short, Variant())
-    here = bench.evidence(short.fit, {}, NAMES)
-    again = bench.again(here, {})
+    likelihood = Likelihood(short, Variant())
+    here = likelihood.evidence(short.fit, {}, NAMES)
+    again = likelihood.resimulated(here, {})
     np.testing.assert_allclose(again.r, here.r, atol=1e-9)
     assert again.rms == pytest.approx(here.rms, rel=1e-9)
 
@@ -45,15 +45,15 @@ def test_again_is_the_evidence_itself_where_nothing_moved(short):
 def test_position_is_judged_by_what_each_reading_adds(short):
     """A chair as modelled, whose pushes were recorded with noise: wherever it drifts to, its whitened error is one."""
     rng, runs = np.random.default_rng(1), []
-    bench, noise = Bench(short, Variant()), {**short.noise, "x": 0.003, "y": 0.003, "yaw": 0.004}
+    likelihood, noise = Likelihood(short, Variant()), {**short.noise, "x": 0.003, "y": 0.003, "yaw": 0.004}
     for run in short.runs * 4:
-        results = bench.evidence([run], {}).runs[0].results
-        names = [o.name for o in bench.variant.model().outputs]
+        results = likelihood.evidence([run], {}).runs[0].results
+        names = [o.name for o in likelihood.variant.model().outputs]
         true = {c: results[:, names.index(PREDICTS[c])] for c in noise if c in PREDICTS}
         read = {c: v + rng.normal(0, noise[c], len(v)) for c, v in true.items()}
         pushed = {n: v + rng.normal(0, 0.4, len(v)) for n, v in run.inputs.items()}
         runs.append(replace(run, name=f"{run.name} {len(runs)}", channels=read, inputs=pushed))
-    there = Bench(replace(short, runs=tuple(runs), noise=noise), Variant()).evidence(runs, {})
+    there = Likelihood(replace(short, runs=tuple(runs), noise=noise), Variant()).evidence(runs, {})
     for c in ("x", "y", "yaw"):
         assert np.sqrt(np.mean([e.rms[c] ** 2 for e in there.runs])) == pytest.approx(1, abs=0.02)
     one = there.runs[0]
@@ -74,18 +74,18 @@ def test_where_a_chair_comes_to_rest_slopes_foretell_nothing(short):
         set={"start.u": 0.6},
         channels={c: 0 * time for c in ("wheel_speed_l", "wheel_speed_r", "a_x", "a_y")},
     )
-    bench = Bench(replace(short, runs=(run,)), Variant())
-    true = bench.evidence([run], {}).runs[0].predicted
+    likelihood = Likelihood(replace(short, runs=(run,)), Variant())
+    true = likelihood.evidence([run], {}).runs[0].predicted
     moving = true[:, 0] > 0.001
     assert moving[0] and not moving[-100:].any()  # it does come to rest
     run = replace(run, channels={c: true[:, i] for i, c in enumerate(run.channels)})
-    bench = Bench(replace(short, runs=(run,)), Variant())
-    (e,) = bench.evidence([run], {}).runs
+    likelihood = Likelihood(replace(short, runs=(run,)), Variant())
+    (e,) = likelihood.evidence([run], {}).runs
     silent = np.argwhere(e.whitener.kinks)
     assert set(silent[:, 1]) == {2, 3} and np.isfinite(e.r).all() and not e.r[e.whitener.kinks].any()
     assert np.abs(time[silent[:, 0]] - time[moving][-1]).max() < 0.08
-    earlier = bench.known(run)["resistance.f_r"] * np.linspace(1.1, 1.11, 200)  # so that it stops half a second early
-    foretold = [bench.evidence([run], {"resistance.f_r": f}).runs[0].r[:, 2:] for f in earlier]
+    earlier = likelihood.known(run)["resistance.f_r"] * np.linspace(1.1, 1.11, 200)  # so that it stops half a second early
+    foretold = [likelihood.evidence([run], {"resistance.f_r": f}).runs[0].r[:, 2:] for f in earlier]
     assert np.abs(foretold).max() * short.noise["a_x"] < 0.4  # m/s²
 
 
@@ -93,8 +93,8 @@ def test_a_start_that_a_run_sets_stands(short):
     """Whatever its first samples say, and however the readings pull."""
     said = {"start.x": 3.0, "start.y": -1.0, "start.psi": 0.7, "start.u": 0.4, "start.v": 0.02, "start.psi_dot": 0.1}
     run = replace(short.fit[1], set=said, channels={**short.fit[1].channels, "yaw": 0 * short.fit[1].time})
-    bench = Bench(replace(short, runs=(run,), noise={**short.noise, "yaw": 0.01}), Variant())
-    (e,) = bench.evidence([run], {}, tune_start=2).runs
+    likelihood = Likelihood(replace(short, runs=(run,), noise={**short.noise, "yaw": 0.01}), Variant())
+    (e,) = likelihood.evidence([run], {}, tune_start=2).runs
     assert e.start == said
     assert dict(zip(("x", "y", "psi", "u", "v", "psi_dot"), e.results[0], strict=False)) == pytest.approx(
         {name.partition(".")[2]: value for name, value in said.items()}
@@ -103,45 +103,45 @@ def test_a_start_that_a_run_sets_stands(short):
 
 
 def test_an_effect_that_a_run_sets_is_on_in_that_run(short):
-    """Also one that brings states, which a bench has only where somebody asks for it."""
+    """Also one that brings states, which a likelihood has only where somebody asks for it."""
     sigma = "effect.relaxation_length.sigma"
     first, second, *_ = short.runs
-    bench = Bench(replace(short, runs=(replace(first, set={sigma: 0.5}), second)), Variant())
-    found = bench.evidence(bench.campaign.runs, {}).table()
-    other = Bench(short, Variant().with_effects(["relaxation_length"]))
+    likelihood = Likelihood(replace(short, runs=(replace(first, set={sigma: 0.5}), second)), Variant())
+    found = likelihood.evidence(likelihood.campaign.runs, {}).table()
+    other = Likelihood(short, Variant().with_effects(["relaxation_length"]))
     assert found[first.name] == pytest.approx(other.evidence([first], {sigma: 0.5}).table()[first.name])
     assert found[second.name] == pytest.approx(other.evidence([second], {}).table()[second.name])
     assert found[first.name]["a_y"] != pytest.approx(other.evidence([first], {}).table()[first.name]["a_y"], rel=1e-3)
 
 
 def test_again_follows_the_slopes_for_a_small_step(short):
-    bench = Bench(short, Variant())
-    here = bench.evidence(short.fit, {"resistance.f_r": 0.012}, NAMES)
+    likelihood = Likelihood(short, Variant())
+    here = likelihood.evidence(short.fit, {"resistance.f_r": 0.012}, NAMES)
     step = 1e-5
-    moved = bench.again(here, {"resistance.f_r": 0.012 + step}).r - here.r
+    moved = likelihood.resimulated(here, {"resistance.f_r": 0.012 + step}).r - here.r
     expected = -here.S[:, 1] * step
     assert np.linalg.norm(moved - expected) < 0.02 * np.linalg.norm(expected)
 
 
 def test_a_fit_ends_where_the_slopes_see_nothing_more_to_gain(short):
     names = (*NAMES, DRAG)  # which was hidden, so that no bound is met
-    bench = Bench(short, Variant().with_effects(["rolling_resistance_asymmetry"]))
-    found = fit(bench, names, {"tyre.C_lambda": 4500.0, "resistance.f_r": 0.012})
-    anew = bench.evidence(short.fit, found.values, names)
-    prior = prior_of(bench, names)
+    likelihood = Likelihood(short, Variant().with_effects(["rolling_resistance_asymmetry"]))
+    found = fit(likelihood, names, {"tyre.C_lambda": 4500.0, "resistance.f_r": 0.012})
+    anew = likelihood.evidence(short.fit, found.values, names)
+    prior = prior_of(likelihood, names)
     g = anew.S.T @ anew.r + prior.slopes @ prior.rows(np.array([found.values[n] for n in names]))
     assert g @ np.linalg.solve(anew.S.T @ anew.S + prior.slopes**2, g) < 1.0  # −2 log likelihood
 
 
 def test_an_offset_that_the_campaign_names_is_estimated(biased):
-    bench = Bench(biased, CHAIR)
-    assert bench.offsets == {"offset.yaw_rate": "yaw_rate"}
-    found = fit(bench, (*NAMES, "offset.yaw_rate"), {})
+    likelihood = Likelihood(biased, CHAIR)
+    assert likelihood.offsets == {"offset.yaw_rate": "yaw_rate"}
+    found = fit(likelihood, (*NAMES, "offset.yaw_rate"), {})
     assert found.values["offset.yaw_rate"] == pytest.approx(BIAS, abs=0.004)
 
 
 def test_an_effect_is_never_tested_beside_the_offset_that_it_is(biased):
-    search = Search(Workshop(biased, CHAIR, fixed=[DRAG]))
+    search = Search(ModelFactory(biased, CHAIR, fixed=[DRAG]))
     base, held, _, _ = search.calibrate()
     assert "offset.yaw_rate" in base.names
     screened = search.screen(base, (), ["gyro_bias", "gyro_scale"])
@@ -166,8 +166,8 @@ def test_a_recorded_brake_brakes(short):
     """The first run was coasted without: a brake in the record of one wheel is an error, with derivatives and without."""
     first = short.fit[0]
     pulled = replace(first, inputs={**first.inputs, "brake.rl": np.full(len(first.time), 0.02)})
-    bench = Bench(replace(short, runs=(pulled, *short.runs[1:])), Variant())
-    before = Bench(short, Variant()).evidence([first], {}, NAMES)
-    braked = bench.evidence([pulled], {}, NAMES)
+    likelihood = Likelihood(replace(short, runs=(pulled, *short.runs[1:])), Variant())
+    before = Likelihood(short, Variant()).evidence([first], {}, NAMES)
+    braked = likelihood.evidence([pulled], {}, NAMES)
     assert braked.rms > 1.5 * before.rms
-    assert bench.again(braked, {}).rms == pytest.approx(braked.rms, rel=1e-6)
+    assert likelihood.resimulated(braked, {}).rms == pytest.approx(braked.rms, rel=1e-6)

@@ -6,11 +6,11 @@ from threading import get_ident
 
 import pytest
 
-from wheelchair_fmu.loop.cores import each
+from wheelchair_fmu.loop.parallel import parallel_map
 
 
 def test_results_stand_in_the_order_of_things():
-    assert each(lambda n: n * n, range(20)) == [n * n for n in range(20)]
+    assert parallel_map(lambda n: n * n, range(20)) == [n * n for n in range(20)]
 
 
 def test_the_largest_are_begun_first_and_results_stand_in_order():
@@ -20,22 +20,22 @@ def test_the_largest_are_begun_first_and_results_stand_in_order():
         begun.append(n)
         return -n
 
-    assert each(do, range(40), size=lambda n: n % 10) == [-n for n in range(40)]
+    assert parallel_map(do, range(40), size=lambda n: n % 10) == [-n for n in range(40)]
     assert set(begun[:2]) <= {9, 19, 29, 39}
     assert set(begun[-2:]) <= {0, 10, 20, 30}
 
 
 def test_work_within_work_stays_where_it_is():
-    outer = each(lambda n: (get_ident(), set(each(lambda m: get_ident(), range(n)))), range(2, 8))
+    outer = parallel_map(lambda n: (get_ident(), set(parallel_map(lambda m: get_ident(), range(n)))), range(2, 8))
     assert all(inner == {here} for here, inner in outer)
 
 
 def test_one_alone_leaves_the_cores_to_what_is_in_it():
-    [(here, inner)] = each(lambda n: (get_ident(), each(lambda m: get_ident(), range(4))), [0])
+    [(here, inner)] = parallel_map(lambda n: (get_ident(), parallel_map(lambda m: get_ident(), range(4))), [0])
     assert here == get_ident()
     assert here not in inner
 
 
 def test_a_fault_in_one_thing_is_told():
     with pytest.raises(ZeroDivisionError):
-        each(lambda n: 1 / n, [1, 0, 2])
+        parallel_map(lambda n: 1 / n, [1, 0, 2])

@@ -19,26 +19,26 @@ RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted 
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 
-class Climb:
+class StepwiseSelection:
     """A model on its way up: its `effects`, the fit `base` with all of them, the `held`-out evidence, the staircase `ladder`
     that led there, the `rounds` of search, and for an effect that was found the one that judges it `beside` all others.
 
     `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named.
-    `climbed` is told the staircase whenever it has changed.
+    `stepped` is told the staircase whenever it has changed.
     """
 
-    def __init__(self, search: Search, climbed: Callable[[Sequence[Step]], None]):
-        self.search, self._climbed = search, climbed
+    def __init__(self, search: Search, stepped: Callable[[Sequence[Step]], None]):
+        self.search, self._stepped = search, stepped
         self.effects: tuple[str, ...] = ()
         self.rounds: list[Round] = []
         self.beside: dict[str, Round | None] = {}
         self.helping: set[str] = set()
         self._tried_together = False
-        self._recoloured = 0  # rounds that were searched with other noise than is known now
+        self._noise_known_since = 0  # rounds that were searched with other noise than is known now
         self.base, self.held, self.ladder = begin(search, search.say)
         self._tell()
-        for effect in search.workshop.variant.effects:
-            if search.workshop.parameters(effect):
+        for effect in search.factory.variant.effects:
+            if search.factory.parameters(effect):
                 self.effects = (*self.effects, effect)
                 self.base, self.held = search.with_given(self.effects, self.base)
                 self._step()
@@ -56,11 +56,11 @@ class Climb:
     def _put_in(self, best: Candidate) -> bool:
         """The model with what the last round found, and without what that makes needless; as before, if the error rises once
         runs start where this model wants them."""
-        workshop, effects = self.search.workshop, (*self.rounds[-1].effects, best.effect)
-        before = dict(workshop.starts)
+        factory, effects = self.search.factory, (*self.rounds[-1].effects, best.effect)
+        before = dict(factory.starts)
         base, held = self.search.settled(effects, best.fit)
         if base.evidence.rms > RISEN * self.base.evidence.rms:
-            workshop.starts, self.ladder = before, self.ladder[: 2 + len(self.effects)]
+            factory.starts, self.ladder = before, self.ladder[: 2 + len(self.effects)]
             self.helping.discard(best.effect)
             return False
         self.effects, self.base, self.held = effects, base, held
@@ -97,7 +97,7 @@ class Climb:
         if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
             return before
         self.search.say(f"searching for {effect} again, beside all others")
-        known = before if latest >= self._recoloured else None
+        known = before if latest >= self._noise_known_since else None
         return beside(self.search, effect, self.effects, self.base, self.held, known)
 
     def _found(self) -> Candidate | None:
@@ -128,9 +128,9 @@ class Climb:
 
     def _step(self) -> None:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""
-        if self.search.recolour(self.base.evidence, again=True):
+        if self.search.reestimate_noise(self.base.evidence, again=True):
             self.search.say("calibrating with the noise that is left")
-            self._recoloured = len(self.rounds)
+            self._noise_known_since = len(self.rounds)
             self._anew(self.base)
         else:
             self.ladder.append(self._top())
@@ -150,4 +150,4 @@ class Climb:
         return Step.of(f"+{self.effects[-1]}", self.base.evidence, self.held)
 
     def _tell(self) -> None:
-        self._climbed(tuple(self.ladder))
+        self._stepped(tuple(self.ladder))

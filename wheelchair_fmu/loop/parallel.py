@@ -14,7 +14,7 @@ Thing = TypeVar("Thing")
 Result = TypeVar("Result")
 
 
-def each(
+def parallel_map(
     do: Callable[[Thing], Result], things: Iterable[Thing], size: Callable[[Thing], float] = lambda thing: 0.0
 ) -> list[Result]:
     """`do` of each thing, on all cores, the largest first, so that no core waits long for the last. In what is done so

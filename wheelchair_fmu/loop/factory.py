@@ -14,7 +14,7 @@ from ..campaign.channels import MOMENTUM
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import adds_state
-from .evidence import Bench, Colour, driven
+from .likelihood import Likelihood, NoiseModel, driven
 from .timing import Late, retimed
 
 MEASURED = ("chair.m", "chair.a", "chair.b", "chair.t_r")  # by scales and tape, well enough to be doubted only a little
@@ -29,8 +29,8 @@ def _of_the_body(campaign: Campaign) -> tuple[str, ...]:
     return (SCALE,) if BY_NAME[MOMENTUM].fmu in driven(campaign) else ()
 
 
-class Workshop:
-    """A campaign, the variant it is compared with, and a bench for every question.
+class ModelFactory:
+    """A campaign, the variant it is compared with, and a likelihood for every question.
 
     `calibrated` are the parameters that every fit estimates, `fixed` those that nobody estimates. `given` are the values that
     the variant's own effects have for a start; they are estimated again, unless they are fixed.
@@ -46,34 +46,34 @@ class Workshop:
         self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
         self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
         self.light = [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
-        self.colour = Colour(campaign.noise)
-        self._benches: dict[tuple[frozenset[str], bool], Bench] = {}
+        self.noise_model = NoiseModel(campaign.noise)
+        self._benches: dict[tuple[frozenset[str], bool], Likelihood] = {}
         self.starts: dict[str, dict[str, float]] = {}
 
-    def bench(self, effects: Iterable[str] = ()) -> Bench:
-        """The bench on which these effects may be on."""
+    def likelihood(self, effects: Iterable[str] = ()) -> Likelihood:
+        """The likelihood on which these effects may be on."""
         wanted = {*effects, *self.variant.effects}
         heavy = wanted.difference(self.light)
-        return self._bench(wanted if heavy and heavy == wanted else {*self.light, *heavy})
+        return self._likelihood(wanted if heavy and heavy == wanted else {*self.light, *heavy})
 
-    def wide(self, effects: Iterable[str] = ()) -> Bench:
-        """The bench on which these effects, and all light ones, may be on."""
-        return self._bench({*self.light, *effects, *self.variant.effects})
+    def wide(self, effects: Iterable[str] = ()) -> Likelihood:
+        """The likelihood on which these effects, and all light ones, may be on."""
+        return self._likelihood({*self.light, *effects, *self.variant.effects})
 
-    def rerun(self, effects: Iterable[str] = ()) -> Bench:
-        """A bench on which these effects may be on, and that only runs evidence again: it is compiled in half the time."""
-        return self._bench({*effects, *self.variant.effects}, derives=False)
+    def rerun(self, effects: Iterable[str] = ()) -> Likelihood:
+        """A likelihood on which these effects may be on, and that only runs evidence again: it is compiled in half the time."""
+        return self._likelihood({*effects, *self.variant.effects}, derives=False)
 
-    def _bench(self, effects: set[str], derives: bool = True) -> Bench:
+    def _likelihood(self, effects: set[str], derives: bool = True) -> Likelihood:
         key = frozenset(effects), derives
         if key not in self._benches:
             variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
             columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
-            self._benches[key] = Bench(self.campaign, variant, columns=columns, derives=derives)
-        bench = self._benches[key]
-        bench.colour = self.colour
-        bench.starts.update(self.starts)
-        return bench
+            self._benches[key] = Likelihood(self.campaign, variant, columns=columns, derives=derives)
+        likelihood = self._benches[key]
+        likelihood.noise_model = self.noise_model
+        likelihood.starts.update(self.starts)
+        return likelihood
 
     def leave_out(self, channels: Container[str]) -> None:
         """Go on without these channels, and without runs that have no other."""
@@ -88,15 +88,15 @@ class Workshop:
             self.campaign = replace(self.campaign, runs=runs)
             self._benches.clear()
 
-    def remember(self, bench: Bench) -> None:
-        """Keep the starts a bench has found, for the next one."""
-        self.starts.update(bench.starts)
+    def remember(self, likelihood: Likelihood) -> None:
+        """Keep the starts a likelihood has found, for the next one."""
+        self.starts.update(likelihood.starts)
 
-    def widened(self, more: Mapping[str, Effect]) -> Workshop:
+    def widened(self, more: Mapping[str, Effect]) -> ModelFactory:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
         variant = replace(self.variant, catalogue={**self.catalogue, **more})
-        other = Workshop(self.campaign, variant, self.fixed, [n for n in self.calibrated if n != SCALE])
-        other.colour, other.starts = self.colour, dict(self.starts)
+        other = ModelFactory(self.campaign, variant, self.fixed, [n for n in self.calibrated if n != SCALE])
+        other.noise_model, other.starts = self.noise_model, dict(self.starts)
         return other
 
     def parameters(self, effect: str) -> tuple[str, ...]:

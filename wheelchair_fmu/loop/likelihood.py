@@ -21,8 +21,8 @@ from ..errors import SimulationError
 from ..model.frames import to_room, velocity_at
 from ..model.variant import Variant
 from ..quantities import Parameter
-from .cores import each
 from .local import Marginal, felt, locals_of, rate_of, read, slope
+from .parallel import parallel_map
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
@@ -43,7 +43,7 @@ FIRST = 0.2  # s of samples that say where a run starts
 
 
 @dataclass(frozen=True)
-class Colour:
+class NoiseModel:
     """Noise of each channel, and of the recorded pushes: standard deviation (SI) and AR(1) coefficient; and the forces that
     nobody recorded."""
 
@@ -52,8 +52,8 @@ class Colour:
     force: float = 0.0  # N, standard deviation of what pushes the chair along its heading and nobody recorded,
     moment: float = 0.0  # N m, and of what turns it
 
-    def differs(self, other: Colour) -> bool:
-        """Is some channel's noise of another size or colour, by more than estimates of either scatter?"""
+    def differs(self, other: NoiseModel) -> bool:
+        """Is some channel's noise of another size or noise_model, by more than estimates of either scatter?"""
         sizes = (other.sd[c] / sd for c, sd in self.sd.items() if sd > 0)
         colours = (abs(self.ar.get(c, 0.0) - other.ar.get(c, 0.0)) for c in {*self.ar, *other.ar})
         return any(not 1 / SCATTER < ratio < SCATTER for ratio in sizes) or any(c > 1 - 1 / SCATTER for c in colours)
@@ -100,13 +100,13 @@ class RunEvidence:
         """Where the simulation started, by parameters of the model."""
         return {n: self.start[n] for n in starts_of(self.start)}
 
-    def brief(self) -> RunEvidence:
+    def summary(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
         return replace(self._bare(), whitener=Weighed(self.whitener.logdet, self.whitener.spread))
 
     def ruler(self) -> RunEvidence:
         """What `errors` of another model's predictions needs, and no more: the filter only where a channel drifts."""
-        return self._bare() if self._drift else self.brief()
+        return self._bare() if self._drift else self.summary()
 
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
@@ -171,7 +171,7 @@ class Evidence:
     @cached_property
     def rms(self) -> float:
         """Whitened RMS error over all runs and channels: 1.0 is the noise floor."""
-        errors = each(lambda e: e.e, self.runs)
+        errors = parallel_map(lambda e: e.e, self.runs)
         e = np.concatenate([e[np.isfinite(e)] for e in errors] or [np.empty(0)])
         return float(np.sqrt(e @ e / len(e))) if len(e) else float("nan")
 
@@ -208,9 +208,9 @@ class Evidence:
         there = after.table()
         return max(rms - there[run][channel] for run, row in self.table().items() for channel, rms in row.items())
 
-    def brief(self) -> Evidence:
-        """See `RunEvidence.brief`."""
-        return Evidence(tuple(e.brief() for e in self.runs), ())
+    def summary(self) -> Evidence:
+        """See `RunEvidence.summary`."""
+        return Evidence(tuple(e.summary() for e in self.runs), ())
 
     def only(self, names: Sequence[str]) -> Evidence:
         """The same evidence with sensitivities by some of its parameters."""
@@ -223,11 +223,11 @@ def driven(campaign: Campaign) -> frozenset[str]:
     return frozenset(name for run in campaign.runs for name in run.inputs)
 
 
-class Bench:
-    """A campaign on the bench: simulates its runs with any parameter values and whitens what is left.
+class Likelihood:
+    """A campaign on the likelihood: simulates its runs with any parameter values and whitens what is left.
 
     `variant` has every effect that may be asked for, besides those that the campaign gives a size; effects at zero change
-    nothing. `colour` is the noise. Sensor offsets
+    nothing. `noise_model` is the noise. Sensor offsets
     that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
     the parameters that sensitivities may be asked by, all if not given; the start is among them in any case. One that does not
     derive is compiled without, and only runs evidence `again`.
@@ -237,7 +237,7 @@ class Bench:
         self,
         campaign: Campaign,
         variant: Variant,
-        colour: Colour | None = None,
+        noise_model: NoiseModel | None = None,
         columns: Sequence[str] | None = None,
         derives: bool = True,
     ):
@@ -245,7 +245,7 @@ class Bench:
         self.start_names = starts_of(p.name for p in self.variant.parameters())
         wanted = None if columns is None else (*columns, *self.start_names)
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
-        self.colour = colour or Colour(campaign.noise)
+        self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
@@ -276,9 +276,9 @@ class Bench:
             except SimulationError as error:
                 raise SimulationError(f"run {run.name}: {error}") from error
 
-        return Evidence(tuple(each(one, runs, lambda run: len(run.time))), tuple(by))
+        return Evidence(tuple(parallel_map(one, runs, lambda run: len(run.time))), tuple(by))
 
-    def again(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
+    def resimulated(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
 
         def one(e: RunEvidence) -> RunEvidence:
@@ -288,7 +288,7 @@ class Bench:
             r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
             return replace(e, r=r, results=results, predicted=predicted, measured=measured)
 
-        return Evidence(tuple(each(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+        return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
@@ -302,7 +302,7 @@ class Bench:
                 return e  # where it cannot start there, it is judged from where it can
             return replace(e, start=start, results=results, predicted=predicted)
 
-        return Evidence(tuple(each(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+        return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
     def readings(
         self, run: Run, values: Mapping[str, float], start: Mapping[str, float]
@@ -348,7 +348,11 @@ class Bench:
         spread = to_state * [sd[n] for n in self.start_names]
         noise = self._noise(run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
-        unknown = disturbance(self.colour, len(pushes), given[self._tread]) if self.colour.force or self.colour.moment else None
+        unknown = (
+            disturbance(self.noise_model, len(pushes), given[self._tread])
+            if self.noise_model.force or self.noise_model.moment
+            else None
+        )
         filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
         constants = locals_of(run)
         by_constant = [slope(c, run, channels, predicted, pushes, filter_) for c in constants]
@@ -435,24 +439,24 @@ class Bench:
         usual = float(np.median(np.diff(run.time)))
         step = np.array([run.input_steps.get(n, usual) for n in pushes])
         swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
-        sd, ar = self.colour.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.colour.ar}
+        sd, ar = self.noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.noise_model.ar}
         names = [BY_FMU_NAME[n].name for n in pushes]
         of_pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in some] for some in (names, channels))
         return Noise(*np.array(of_pushes).T, *np.array(readings).T, start, step)
 
-    def with_colour(self, colour: Colour) -> Bench:
-        """The same bench with other noise; starts found so far are kept."""
-        other = object.__new__(Bench)
-        other.__dict__ = {**self.__dict__, "colour": colour}
+    def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
+        """The same likelihood with other noise; starts found so far are kept."""
+        other = object.__new__(Likelihood)
+        other.__dict__ = {**self.__dict__, "noise_model": noise_model}
         return other
 
 
-def disturbance(colour: Colour, pushes: int, t_r: float) -> Disturbance:
+def disturbance(noise_model: NoiseModel, pushes: int, t_r: float) -> Disturbance:
     """A force along the heading and a moment, as changes of the recorded pushes, of which the first two are on the left and
     on the right wheel, `t_r` apart."""
     as_push = np.zeros((pushes, 2))
     as_push[:2] = [[0.5, 1 / t_r], [0.5, -1 / t_r]]
-    return Disturbance(np.array([colour.force, colour.moment]), np.full(2, FORGOTTEN), as_push)
+    return Disturbance(np.array([noise_model.force, noise_model.moment]), np.full(2, FORGOTTEN), as_push)
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:
