@@ -136,3 +136,12 @@ def test_nothing_in_a_sentence_becomes_markup():
         [{"kind": '"><i>', "title": "<b>", "lines": line}]
     )
     assert "<script" not in html and "<i>" not in html and "<b>" not in html
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_campaign_without_runs_held_out_is_told_by_those_it_was_fitted_to(case):
+    ladder = [{**step, "heldout": None} for step in SAMPLE["ladder"]]
+    ranking = [{**row, "heldout_before": None, "heldout_after": None} for row in SAMPLE["ranking"]]
+    story = tale({**CASES[case], "ladder": ladder, "ranking": ranking})
+    lines = texts([*story.cards, *story.screens])
+    assert not [line for line in lines if "kept back" in line or "None" in line]
