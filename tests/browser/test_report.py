@@ -131,6 +131,10 @@ def test_dragging_follows_at_once(reader):
         page.mouse.move(box["x"] + (0.7 - 0.02 * i) * box["width"], box["y"] + box["height"] / 2)
         page.wait_for_timeout(60)
         errors.append(page.evaluate("report.now.heldout"))
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + box["height"] / 2)  # at zero the effect is out
+    page.wait_for_timeout(300)
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + box["height"] / 2)
+    page.wait_for_function(f"() => report.values['effect.{HIDDEN}.D'] < -0.5")  # and the drag goes on
     page.mouse.up()
     reader.settle()
     timings = [t for t in page.evaluate("report.timings")[begun:] if not t["exact"]]

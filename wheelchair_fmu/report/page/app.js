@@ -18,7 +18,7 @@ import { Story } from "page/story";
 import { Timeline } from "page/timeline";
 import { channelOf, runOf, stepOf } from "page/words";
 
-const REST = 80; // ms without a change after which the numbers are made exact
+const REST = 180; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const DEEP = 60; // changes that can be undone

@@ -131,7 +131,7 @@ export class Controls {
       box.checked = effect.parameters.some((p) => this.values[p.name]);
       sliders.hidden = !box.checked && document.activeElement?.closest?.(".sliders") !== sliders;
     }
-    this.again.hidden = ![...this.boxes.values()].some(({ box }) => box.checked);
+    this.again.disabled = ![...this.boxes.values()].some(({ box }) => box.checked); // not hidden: nothing moves under a pointer that drags
     for (const [name, { range, number, factor, record }] of this.sliders) {
       const value = (this.values[name] ?? this.campaign.known[name] ?? record.default) * factor;
       if (document.activeElement !== range || Math.abs(range.valueAsNumber - value) > 1e-9 * Math.abs(value)) range.value = value;
