@@ -82,12 +82,20 @@ def test_quantities_are_what_a_law_may_name():
 def test_ones_own_effects_are_in_the_ranking_however_unlikely():
     parameter = {"q": {"estimate": 1.0, "se": 0.5, "unit": "N", "smallest_interesting": 1.0}}
     rows = [
-        {"effect": f"e{i}", "p": 10.0**-i, "power": 0.5, "lr": 3.0, "verdict": "not needed", "parameters": parameter}
+        {
+            "effect": f"e{i}",
+            "p": 10.0**-i,
+            "power": 0.5,
+            "probability": None,
+            "lr": 3.0,
+            "verdict": "not needed",
+            "parameters": parameter,
+        }
         for i in range(20)
     ]
-    rows[0] |= {"p": 0.0, "verdict": "cannot_see"}
+    rows[0] |= {"p": 0.0, "verdict": "cannot_see", "probability": 0.987}
     rows[1] |= {"p": 0.9, "verdict": "cannot_see"}
     columns = [list(c.cells) for c in _ranking({"ranking": rows}, {"e3", "e17"}).columns]
     assert columns[0] == [f"e{i}" for i in range(LIKELIEST)] + ["e17"]
-    assert columns[4][:2] == ["<1e-300", "0.9"]
+    assert columns[4][:2] == ["0.99", ""]
     assert columns[7][:3] == ["not chosen", "cannot see", "not needed"]

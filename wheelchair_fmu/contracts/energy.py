@@ -37,6 +37,7 @@ KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in ea
     "spinning on the spot": (0.0, 0.2, 3.0),
     "sliding": (0.5, 1.0, 1.0),
 }
+WORK = ("push.", "rider.")  # inputs by which a person does work
 FREE: Mapping[str, float] = {"resistance.f_r": 0.0, "resistance.f_f": 0.0}
 
 
@@ -130,7 +131,7 @@ class Energy:
 
     @cached_property
     def _surroundings(self) -> np.ndarray:
-        return np.array([not i.name.startswith("push.") for i in self._model.inputs])
+        return np.array([not i.name.startswith(WORK) for i in self._model.inputs])
 
     @cached_property
     def _reach(self) -> tuple[np.ndarray, np.ndarray]:

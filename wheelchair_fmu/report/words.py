@@ -9,7 +9,6 @@ from ..loop.ties import grouped
 from ..loop.verdict import A_LITTLE
 from ..quantities import DisplayUnit, Quantity, Unit
 
-LEAST = 1e-300  # of probabilities that are printed
 HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a probability below which the data show something like the effect
 
@@ -115,11 +114,6 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
     first, exponent = f"{se:.0e}".split("e")
     place = max(0, (1 if first in "12" else 0) - int(exponent))
     return f"{value:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")
-
-
-def probability(p: float) -> str:
-    """ "3e-138"; what floats cannot hold is smaller than anything they can."""
-    return f"{p:.1g}" if p > LEAST else f"<{LEAST:.0e}"
 
 
 def probability_words(p: float) -> str:
