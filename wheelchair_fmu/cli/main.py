@@ -34,7 +34,7 @@ COMMANDS = {
     "add": "Refit with one more effect, and write the improved variant.",
     "improve": "Diagnose and add, until nothing is missing.",
     "report": "Write one page with the verdict, its evidence, and the model.",
-    "export": "Write a campaign as a problem of parameter estimation, for other programs.",
+    "export": "Write the problem of a fit, for other programs to solve.",
     "workbench": "Do all of this in a browser, from recordings dropped in.",
     "effects": "The physical effects that the chair can have.",
     "quantities": "What the equations speak of, for laws of your own.",
