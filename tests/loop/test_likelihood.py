@@ -152,14 +152,28 @@ def test_an_effect_is_never_tested_beside_the_offset_that_it_is(biased):
     assert found.estimate[0] == pytest.approx(BIAS, abs=0.004)
 
 
-def test_long_run_variance_is_bartletts_sum():
-    q = np.random.default_rng(3).normal(size=(200, 2)).cumsum(axis=0)
-    lags = 7
+def _bartlett(q, lags):
     total = q.T @ q
     for lag in range(1, lags + 1):
         c = q[lag:].T @ q[:-lag]
         total = total + (1 - lag / (lags + 1)) * (c + c.T)
-    np.testing.assert_allclose(_long_run_variance(q, lags), total, rtol=1e-10)
+    return total
+
+
+def test_long_run_variance_is_bartletts_sum_where_nothing_lasts():
+    """Each sample comes with its opposite next to it, so that no column has an AR(1) law that lasts."""
+    q = np.random.default_rng(3).normal(size=(200, 2))
+    q[1::2] = -q[::2]
+    np.testing.assert_allclose(_long_run_variance(q, 7), _bartlett(q, 7), rtol=1e-10)
+
+
+def test_long_run_variance_is_recoloured_by_the_law_that_was_taken_out():
+    q = np.random.default_rng(3).normal(size=(200, 1)).cumsum(axis=0)
+    about = q - q.mean()
+    rho = min(0.97, float(np.sum(about[1:] * about[:-1]) / np.sum(about**2)))
+    left = np.concatenate([q[:1], q[1:] - rho * q[:-1]])
+    assert rho > 0.8
+    np.testing.assert_allclose(_long_run_variance(q, 7), _bartlett(left, 7) / (1 - rho) ** 2, rtol=1e-10)
 
 
 def test_a_recorded_brake_brakes(short):

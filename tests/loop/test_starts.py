@@ -58,8 +58,8 @@ def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkey
     sizes = (-0.02, -0.01, 0.0, 0.01, 0.02)
     tries = [[*(calibrated.values[n] for n in CALIBRATED), r, left] for r, left in product(sizes, sizes)]
     calls = []
-    again = likelihood.again
-    monkeypatch.setattr(likelihood, "again", lambda e, values: calls.append(len(e.runs)) or again(e, values))
+    again = likelihood.resimulated
+    monkeypatch.setattr(likelihood, "resimulated", lambda e, values: calls.append(len(e.runs)) or again(e, values))
     quick = most_promising(likelihood, known, names, tries, 2, known.r)
     glances, calls[:] = sum(calls), []
     monkeypatch.setattr(starts, "GLANCED", len(known.runs))
