@@ -64,7 +64,8 @@ def test_in_a_turn_it_is_the_papers_equations_by_differences(u, delta_force, fre
 
 @pytest.mark.parametrize("free", [False, True])
 def test_the_fmus_directional_derivatives_are_the_same(free, tmp_path):
-    """C and D of every output. An accelerometer feels u' − v ψ' and v' + u ψ', and 1 m before the CM ψ'' more: A and B."""
+    """C and D of every output. An accelerometer feels u' − v ψ' and v' + u ψ', and 1 m before the CM ψ'' more: A and B. The
+    body's momentum p moves the CM at p/m in the frame, which so feels −p'/m ahead and, as that turns, −2 ψ' p/m aside."""
     variant = with_chosen_effects(Variant()).with_values({"effect.lateral_load_transfer.h": 0.5, "tyre.law": "magic_formula"})
     s = trim(Chair(variant), 1.2, 25.0)
     found = linearize(s, free_speed=free)
@@ -78,7 +79,9 @@ def test_the_fmus_directional_derivatives_are_the_same(free, tmp_path):
     A = np.array([C[a_x], C[a_y], before[a_y] - C[a_y]]) + turning
     np.testing.assert_allclose(A[first:], found.A, rtol=1e-8, atol=1e-8)
     gravity = G * (np.array(found.inputs) == [["floor.slope_x"], ["floor.slope_y"], [""]])  # which no accelerometer feels
-    B = np.array([D[a_x], D[a_y], D_before[a_y] - D[a_y]]) + gravity
+    mass = s.chair.variant.vector()[[p.name for p in s.chair.variant.parameters()].index("chair.m")]
+    body = np.array([[n == "rider.force", 2 * s.psi_dot * (n == "rider.momentum"), 0.0] for n in found.inputs]).T / mass
+    B = np.array([D[a_x], D[a_y], D_before[a_y] - D[a_y]]) + gravity + body
     np.testing.assert_allclose(B[first:], found.B, rtol=1e-8, atol=1e-8)
 
 

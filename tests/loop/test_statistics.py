@@ -19,7 +19,7 @@ from wheelchair_fmu.loop.chance import student
 from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.interval import NORMAL, half_width
-from wheelchair_fmu.loop.likelihood import START_SD, Evidence, Likelihood, uncertain
+from wheelchair_fmu.loop.likelihood import START_SD, Evidence, Likelihood
 from wheelchair_fmu.loop.score import Projector, robust_variance, score
 from wheelchair_fmu.loop.statistics import (
     TIED,
@@ -372,7 +372,8 @@ def test_what_readings_leave_uncertain_of_a_start():
     size, axes = np.linalg.eigh(covariance)
     whitened = axes @ ((axes.T @ np.ones(n)) / np.sqrt(size))
     (e,) = evidence([np.zeros((n, 1))], [np.zeros((n, 1, 0))], ()).runs
-    names = list(uncertain(e.run))
+    e = replace(e, start=dict.fromkeys(START, 0.0))
+    names = list(e.uncertain)
     slopes = np.zeros((n, 1, len(names)))
     slopes[:, 0, names.index("start.u")] = whitened
     left = replace(e, start_S=slopes).posterior_sd("start.u", p)

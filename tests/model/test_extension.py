@@ -71,7 +71,9 @@ def test_torque_changes_sides_in_reverse():
     model, variant = Variant().model(), Variant()
     for u, expected in ((1.0, -1), (-1.0, 1)):
         x = np.array([0, 0, 0, u, 0.01, 0])
-        M_t, lam = evaluate(model, Place(x, np.zeros(9), variant.vector()), model.quantities["M_t"], model.quantities["lam"])
+        M_t, lam = evaluate(
+            model, Place(x, np.zeros(len(model.inputs)), variant.vector()), model.quantities["M_t"], model.quantities["lam"]
+        )
         np.testing.assert_allclose(M_t, expected * 45.0 * lam, rtol=1e-3)
 
 

@@ -26,7 +26,9 @@ def lateral_modes(sigma: float, speed: float, **values: float) -> np.ndarray:
     """Eigenvalues of v, ψ' and the two lagged slips, straight ahead."""
     variant = Variant().with_values({**SMOOTH, "effect.relaxation_length.sigma": sigma, **values})
     model, x = variant.model(), np.array([0, 0, 0, speed, 0, 0, 0, 0])
-    A, mass = evaluate(model, Place(x, np.zeros(9), variant.vector()), cs.jacobian(model.f, model.x), model.mass)
+    A, mass = evaluate(
+        model, Place(x, np.zeros(len(model.inputs)), variant.vector()), cs.jacobian(model.f, model.x), model.mass
+    )
     return np.linalg.eigvals((A / mass[:, None])[4:, 4:])
 
 
