@@ -256,11 +256,11 @@ def test_what_a_later_effect_makes_needless_is_left_out(sample, sampled, monkeyp
 
 def test_what_is_small_may_help_and_is_not_named(tmp_path):
     """A wheel that drags, and a radius that is wrong by less than anybody cares for, which the recordings show all the same."""
-    hidden = {"rolling_resistance_asymmetry": {"D": 1.6}, "wheel_radius_error": usual("wheel_radius_error", 0.7)}
+    hidden = {"rolling_resistance_asymmetry": {"D": 1.6}, "wheel_radius_error": usual("wheel_radius_error", 0.45)}
     found = diagnose(read(make(tmp_path / "campaign", hidden, seed=5)))
     assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)
     assert found.included == ("rolling_resistance_asymmetry", "wheel_radius_error")
-    assert found.ladder[-2].left > 1.15 > 1.02 > found.ladder[-1].left
+    assert found.ladder[-2].left > 1.05 > 1.02 > found.ladder[-1].left
     rows = {row["effect"]: row["verdict"] for row in as_json(found)["ranking"]}
     assert rows["rolling_resistance_asymmetry"] == "missing" and rows["wheel_radius_error"] == "small"
 

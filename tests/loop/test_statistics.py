@@ -19,7 +19,7 @@ from wheelchair_fmu.loop.chance import student
 from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.interval import NORMAL, half_width
-from wheelchair_fmu.loop.likelihood import START_SD, Evidence, Likelihood
+from wheelchair_fmu.loop.likelihood import START, START_SD, Evidence, Likelihood
 from wheelchair_fmu.loop.score import Projector, robust_variance, score
 from wheelchair_fmu.loop.statistics import (
     TIED,
