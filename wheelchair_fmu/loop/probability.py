@@ -58,21 +58,26 @@ def support(
     along = axes.T @ size
     one = float(np.linalg.norm(axes, axis=1).max())  # what δ of the parameter that shows most does along the seen directions
 
-    def marginal(sd: float) -> tuple[float, float, float]:
-        """The log marginal likelihood for sizes with this standard deviation, the share of the fall that these leave, and the
-        probability of more than δ."""
+    def posterior(sd: float) -> tuple[np.ndarray, np.ndarray]:
+        """Means and variances of the size along the seen directions, where it has this standard deviation beforehand."""
         width = spread + sd**2
-        mean, variance = along * sd**2 / width, spread * sd**2 / width
-        draws = mean + np.sqrt(variance) * np.random.default_rng(0).standard_normal((DRAWS, len(along)))
-        free = np.all((draws @ axes.T)[:, lawful] >= 0, axis=1)
+        return along * sd**2 / width, spread * sd**2 / width
+
+    def marginal(sd: float) -> tuple[float, float]:
+        """The log marginal likelihood for sizes with this standard deviation, and the share of the fall that these leave."""
+        mean, variance = posterior(sd)
+        width = spread + sd**2
         sides = (axes @ mean)[lawful] / np.sqrt((axes**2 @ variance)[lawful])
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
-        beyond = np.linalg.norm(draws[free], axis=1) > one
         left = float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
         value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * float(np.sum(np.log(width / spread) + along**2 / width)) + allowed
-        return value, left, float(beyond.mean()) if free.any() else 0.0
+        return value, left
 
-    (large, _, beyond), (slight, left, _) = marginal(LARGE), marginal(SLIGHT)
+    mean, variance = posterior(LARGE)
+    draws = mean + np.sqrt(variance) * np.random.default_rng(0).standard_normal((DRAWS, len(along)))
+    free = draws[np.all((draws @ axes.T)[:, lawful] >= 0, axis=1)]
+    beyond = float(np.mean(np.linalg.norm(free, axis=1) > one)) if len(free) else 0.0
+    (large, _), (slight, left) = marginal(LARGE), marginal(SLIGHT)
     return Support(effect, large, slight, left, beyond)
 
 
