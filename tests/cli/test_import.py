@@ -46,7 +46,7 @@ def test_a_folder_of_recordings_becomes_a_campaign(made):
     assert {f.name for f in out.iterdir()} == {"campaign.toml", "preview.html", "preview.png", "runs"}
     content = tomllib.loads((out / "campaign.toml").read_text(encoding="utf-8"))
     assert content["chair"] == {"m": 90, "t_r": 0.56} and content["wheel"] == {"R": lab.RADIUS}
-    assert content["nuisance"] == {"F_rl": True, "F_rr": True}
+    assert content["nuisance"] == dict.fromkeys(("F_rl", "F_rr", "yaw_rate", "a_x", "a_y"), True)
     assert [run["role"] for run in content["run"]] == ["fit", "fit", "holdout"]
     for run in content["run"]:
         first = next(iter(run["files"]))

@@ -178,6 +178,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, f
         clocks=run.clocks,
         baselines=unsure,
         input_steps=run.input_steps,
+        devices=len(run.drafts),
     )
     whole = covered(whole, run.late)
     return between(whole, *run.seen) if run.seen else whole

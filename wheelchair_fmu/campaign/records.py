@@ -52,7 +52,8 @@ class Run:
 
     Where several devices recorded the run, `time` has the times of all their samples, and a channel is NaN at those of the
     others; inputs are straight lines between their own samples. `clocks` and `baselines` are what is uncertain of it;
-    `input_steps` are the times between an input's own samples, in s, where they are not those of `time`.
+    `input_steps` are the times between an input's own samples, in s, where they are not those of `time`. `devices` is how many
+    recorded it.
     """
 
     name: str
@@ -67,6 +68,7 @@ class Run:
     clocks: tuple[Clock, ...] = ()
     baselines: tuple[Baseline, ...] = ()
     input_steps: Mapping[str, float] = field(default_factory=dict)
+    devices: int = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +79,8 @@ class Campaign:
     channel that was measured and per input in `F_rl`, `F_rr`, `M_rl`, `M_rr` that was logged (0 for an input
     known exactly because no run logged it); `noise_estimated` says for which it was not given. `nuisance` names
     channels with an unknown offset, `nuisance_sd` its prior where one is given. `warnings` are what `check` found
-    that is no error; `thinned` says, in a sentence, what `windows` chose of a larger campaign. `rims` are, by run and push, the
-    `offset` and the `ripple` (N m) that were taken out of what instrumented wheels recorded, and the offset's `se`.
+    that is no error; `thinned` says what a search looks at of a larger campaign. `rims` are, by run and push,
+    the `offset` and the `ripple` (N m) that were taken out of what instrumented wheels recorded, and the offset's `se`.
     """
 
     name: str

@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .condensed import condensed
 from .records import Campaign, Run
 
 LARGE = 36_000  # samples of a campaign, above which a search works on a choice of windows
@@ -27,14 +28,18 @@ Cell = tuple[Run, int, int]  # samples from … to (not included) of a run
 
 
 def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
-    """The campaign, if it has at most so many samples, or a choice of windows from it that says so in `thinned`.
+    """The campaign as a search looks at it, which says so in `thinned`: `condensed`, and where it still has more than so many
+    samples, a choice of windows from it.
 
     Runs are cut into cells of WINDOW seconds. Of each run's cells (of each role's, where there are more runs than windows) the
     same share is drawn: one at random from each of equally many neighbours, the same draw each time. A window keeps its run's
     role and settings.
     """
+    if campaign.thinned:
+        return campaign
+    campaign = condensed(campaign)
     samples = sum(len(run.time) for run in campaign.runs)
-    if samples <= most or campaign.thinned:
+    if samples <= most:
         return campaign
     rng = np.random.default_rng(0)
     chosen = [
@@ -48,7 +53,7 @@ def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
         f"{samples} samples are too many to search at once: {len(runs)} windows of about {WINDOW:g} s, spread over all "
         f"runs, were used, {100 * share:.2g} % of the samples; `wheelchair compare` looks at all"
     )
-    return replace(campaign, runs=runs, thinned=said)
+    return replace(campaign, runs=runs, thinned="; ".join(filter(None, (campaign.thinned, said))))
 
 
 def pieces(run: Run, seconds: float) -> list[Run]:

@@ -148,7 +148,7 @@ def _pushes(run: Run) -> dict[str, np.ndarray]:
 
 def _one_clock(run: Run) -> bool:
     """Were its pushes and readings recorded by one device, whose clock nobody has looked at?"""
-    return not run.clocks and not run.input_steps
+    return not run.clocks and run.devices == 1
 
 
 def _signals(run: Run) -> Iterator[Signal]:

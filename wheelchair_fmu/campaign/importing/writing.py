@@ -135,12 +135,13 @@ def needs_radius(plans: Sequence[Plan]) -> bool:
 
 
 def _nuisance(plans: Sequence[Plan]) -> str:
-    names = [name for name in PUSHES if any((c := plan.find(name)) and c.si == "N.m" for plan in plans)]
-    lines = [
-        _line("[nuisance]", "what the rims show where nobody touches them is estimated"),
-        *(f"{name} = true" for name in names),
-    ]
-    return "\n".join(lines) if names else ""
+    """What instruments show by themselves, and nobody zeroed: torques of rims, rates and accelerations of sensors on the frame,
+    and the heading of a line between two markers, which somebody stuck on by eye."""
+    rims = [name for name in PUSHES if any((c := plan.find(name)) and c.si == "N.m" for plan in plans)]
+    sensed = [name for name in ("yaw_rate", "a_x", "a_y") if any(plan.find(name) for plan in plans)]
+    names = rims + (["yaw"] if any(plan.markers for plan in plans) else []) + sensed
+    meaning = "what sensors show where there is nothing to show is estimated"
+    return "\n".join([_line("[nuisance]", meaning), *(f"{name} = true" for name in names)]) if names else ""
 
 
 def _columns(plan: Plan) -> str:
