@@ -119,7 +119,7 @@ def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]
 
     def one(e: RunEvidence) -> Missing:
         filter_, start = disturbed(e, strength.put_into(NoiseModel({})), t_r)
-        mean, sd = smoothed(filter_, e.measured - e.predicted, start)
+        mean, sd = smoothed(filter_, e.measured - e.foretold, start)
         both = {name: (mean[:, i], sd[:, i]) for i, name in enumerate(("force", "moment"))}
         return Missing(e.run.name, e.run.time, {n: m for n, (m, _) in both.items()}, {n: s for n, (_, s) in both.items()})
 
