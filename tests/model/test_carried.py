@@ -84,3 +84,10 @@ def test_the_catalogue_goes_before_the_file_and_where_they_differ_this_is_said(t
 
 def test_effects_without_programs_have_no_tables():
     assert text(bundled().values()) == ""
+
+
+def test_a_variant_that_was_written_before_says_that_it_needs_the_folder(tmp_path):
+    (tmp_path / "old.toml").write_text('[laws]\neffects = ["my_drag"]\n', encoding="utf-8")
+    with pytest.raises(UsageError, match="one of your own needs the folder of its file, by --effects"):
+        read_variant(tmp_path / "old.toml")
+    assert read_variant(tmp_path / "old.toml", chair_with(SOURCE).catalogue).effects == ("my_drag",)

@@ -187,6 +187,11 @@ def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Varian
     effects = laws.pop("effects", [])
     if not isinstance(effects, list) or not all(isinstance(e, str) for e in effects):
         raise UsageError(f'effects = {effects!r} in [laws] is no list of ids; write effects = ["relaxation_length"]')
+    for effect in effects:
+        if effect not in catalogue:
+            raise UsageError(
+                f"{unknown('effect', effect, catalogue)}; one of your own needs the folder of its file, by --effects"
+            )
     for kind in laws:
         if kind not in LAWS:
             raise unknown("law in [laws]", kind, (*LAWS, "effects"))
