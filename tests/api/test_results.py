@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -14,6 +15,7 @@ import pytest
 import wheelchair_fmu as wc
 from wheelchair_fmu.api import latex
 from wheelchair_fmu.api.diagnoses import probabilities_in
+from wheelchair_fmu.cli.effects import template
 from wheelchair_fmu.report.estimates_figure import estimates_figure
 
 HIDDEN = ("rolling_resistance_asymmetry", "D")
@@ -152,3 +154,17 @@ def test_a_campaign_with_faults_says_them_all(tmp_path):
     with pytest.raises(wc.CampaignError) as met:
         wc.read(tmp_path)
     assert met.value.faults and str(tmp_path) in str(met.value)
+
+
+def test_a_variant_carries_the_effects_of_ones_own(tmp_path, monkeypatch):
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "mine.py").write_text(template("force", "mine"), encoding="utf-8")
+    chair = wc.Variant({"effect.mine.q": 2.0}, own_effects=tmp_path / "effects")
+    file = chair.save(tmp_path / "mine.toml")
+    shutil.rmtree(tmp_path / "effects")
+    assert wc.Variant.read(file).values == chair.values
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "another machine's"))
+    with pytest.raises(wc.WheelchairError, match="a program that runs with your rights"):
+        wc.simulate("coast-down", time=0.1, variant=file)
+    assert wc.Variant.read(file, trust=True).effects == ("mine",)

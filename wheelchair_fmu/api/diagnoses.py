@@ -15,7 +15,7 @@ import pandas as pd
 from .. import campaign as measured
 from ..errors import Failure, unknown
 from ..loop import improve, verdict
-from ..loop.subject import applied
+from ..loop.subject import applied, known_parameters
 from ..model import variant as chairs
 from ..report.estimates_figure import estimates_figure
 from ..report.figures import missing_figure, staircase_figure
@@ -23,7 +23,7 @@ from ..report.saving import save_svg
 from ..report.words import particulars, sentence
 from ..writing import written
 from . import latex
-from .campaigns import Campaign, read
+from .campaigns import Campaign
 from .diagnosing import page_of, searched
 from .variants import Values, Variant, of_record, plain
 
@@ -56,8 +56,9 @@ def diagnose(
     >>> found.verdict, found.effects
     ('missing', ('rolling_resistance_asymmetry',))
     """
-    given = campaign if isinstance(campaign, Campaign) else read(campaign)
-    chair, known, fixed = applied(values or {}, plain(variant, own_effects), given._record)
+    start = plain(variant, own_effects)
+    given = campaign._record if isinstance(campaign, Campaign) else measured.read(campaign, known_parameters(start.catalogue))
+    chair, known, fixed = applied(values or {}, start, given)
     known = measured.windows(known)
     found, told = searched(known, chair, fixed, progress or (lambda words: None))
     return Diagnosis(known, chair, fixed, found, told)

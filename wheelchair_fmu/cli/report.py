@@ -16,6 +16,7 @@ from ..writing import written
 from .group import Progress, working
 from .settings import subject
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -29,7 +30,7 @@ def report(
         Path | None, typer.Option(metavar="JSON", help="What `diagnose --json` wrote, instead of diagnosing again.")
     ] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     progress: Progress = False,
 ) -> None:
