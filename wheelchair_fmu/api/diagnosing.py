@@ -8,6 +8,7 @@ from typing import Any
 
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
+from ..loop.final import final
 from ..loop.likelihood import NoiseModel
 from ..loop.story import story
 from ..loop.verdict import Diagnosis, diagnose
@@ -27,7 +28,8 @@ def searched(
 ) -> tuple[Diagnosis, Story]:
     """The diagnosis, and the story that `diagnose --json` writes."""
     found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
-    return found, {**story(found), "missing": missing(found)}
+    terms = {p.name: p for e in library().values() for p in e.owned}
+    return found, {**story(found), "missing": missing(found), "final": final(found, terms)}
 
 
 def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:
