@@ -12,8 +12,8 @@ import pyarrow.parquet as pq
 import pytest
 
 import wheelchair_fmu as wc
-from wheelchair_fmu.api import latex
 from wheelchair_fmu.api.diagnoses import probabilities_in
+from wheelchair_fmu.report import latex
 from wheelchair_fmu.report.estimates_figure import estimates_figure
 
 HIDDEN = ("rolling_resistance_asymmetry", "D")
