@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from wheelchair_fmu.loop.verdict import FORCES
 from wheelchair_fmu.report.paper.folder import bibliography
 from wheelchair_fmu.report.paper.markup import cited
 from wheelchair_fmu.report.paper.methods import methods, tex
@@ -48,6 +49,14 @@ def with_offset() -> dict:
     return found
 
 
+def with_forces() -> dict:
+    """The search was made again with forces among the noise, as `verdict` does, and nothing more was found."""
+    found = calibrated("adequate")
+    found["ladder"].append({**found["ladder"][1], "step": FORCES})
+    found["models"].append({**found["models"][1], "step": FORCES})
+    return found
+
+
 CASES = {
     "missing": told(),
     "tie": told(verdict="tie", effects=[DRAG, CAMBER], ties=[[DRAG, CAMBER]], odds=[{DRAG: 0.75, CAMBER: 0.25}]),
@@ -62,6 +71,7 @@ CASES = {
     "at a bound": at_a_bound(),
     "an offset": with_offset(),
     "other noise": told(noise={"sd": {**told()["noise"]["sd"], "yaw_rate": 0.02}, "ar": {"a_x": 0.625}}),
+    "with forces": with_forces(),
     "next": told(next_experiment={"manoeuvre": "a slalom_with [20 kg]", "separates": [], "repeats": 3, "why": ""}),
 }
 
@@ -109,6 +119,11 @@ def test_the_numbers_are_those_of_the_diagnosis():
         ("an offset", "Constant offsets of `yaw_rate` (without a prior) were estimated with the other values."),
         ("other noise", "The residuals of `yaw_rate` contradict 0.344 deg/s; the 1.15 deg/s that they show was used instead."),
         ("other noise", "with a coefficient of 0.625 from one reading to the next"),
+        (
+            "with forces",
+            "the noise of the recorded pushes and a slow random force and moment that nobody recorded, forgotten over 1 s, as "
+            "process noise",
+        ),
         ("next", r"To be measured next: a slalom\_with \[20 kg\], 3 times."),
     ],
 )

@@ -24,7 +24,7 @@ from .replay import Replay, replay
 
 SOFTWARE = f"""@misc{{wheelchairfmu,
   author = {{{{The wheelchair-fmu authors}}}},
-  title  = {{wheelchair-fmu: a manual wheelchair on real tyres as an {{FMU}}}},
+  title  = {{{{wheelchair-fmu}}: a manual wheelchair on real tyres as an {{FMU}}}},
   note   = {{Version {__version__}}},
 }}"""
 

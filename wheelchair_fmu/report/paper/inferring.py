@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...campaign.channels import PUSH_NAMES
 from ...campaign.recorded import PUSHES_CLOCK
 from ...loop.diagnose import AS_LARGE, PLAIN, SIGNIFICANT, SURELY, VISIBLE
 from ...loop.likelihood import BLOCK, CASTER_SD, FORGOTTEN, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
@@ -45,16 +46,10 @@ def model(case: Case) -> str:
 
 def fitting(case: Case) -> str:
     """How the values were found, and what was allowed for without being estimated."""
-    pushes = "the noise of the recorded pushes as process noise" if _pushes_noisy(case) else "the pushes as known exactly"
-    forces = (
-        f", and a slow random force and moment that nobody recorded, which are forgotten over {FORGOTTEN:g} s, among it"
-        if case.with_forces
-        else ""
-    )
     told = [
         "All values were estimated together by maximum a posteriori on the fitted runs.",
         "The recorded pushes drove a simulation of each run, and a Kalman filter linearised along it turned readings less "
-        f"simulated readings into innovations, with {pushes}{forces} {cite('Astrom1980')}.",
+        f"simulated readings into innovations, with {_process(case)} {cite('Astrom1980')}.",
         "The sum of their squares, of the logarithms of their variances and of the squared deviations from priors in standard "
         "deviations was minimised by Gauss–Newton steps within bounds.",
         *_nuisances(case),
@@ -62,8 +57,12 @@ def fitting(case: Case) -> str:
     return " ".join(told)
 
 
-def _pushes_noisy(case: Case) -> bool:
-    return any(case.told["noise"]["sd"].get(c) for c in ("F_rl", "F_rr", "M_rl", "M_rr"))
+def _process(case: Case) -> str:
+    """What a filter takes for noise that the chair adds up."""
+    noise = ["the noise of the recorded pushes"] if any(case.told["noise"]["sd"].get(c) for c in PUSH_NAMES) else []
+    if case.with_forces:
+        noise.append(f"a slow random force and moment that nobody recorded, forgotten over {FORGOTTEN:g} s,")
+    return f"{listed(noise, 'and')} as process noise" if noise else "the pushes known exactly"
 
 
 def _nuisances(case: Case) -> Iterator[str]:

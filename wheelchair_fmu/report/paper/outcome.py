@@ -89,7 +89,7 @@ def fall(case: Case) -> str:
 
 def _step(case: Case, step: Mapping[str, Any]) -> str:
     if step["step"] == "nominal":
-        return "with the values as given"
+        return "with the values as given" + (" and no effect" if case.already else "")
     if step["step"] == case.begins["step"]:
         return "as calibrated"
     return "with the last model"
@@ -154,9 +154,9 @@ def _rivals(case: Case) -> Iterator[str]:
     if not near:
         return
     names, chances = [code(r["effect"]) for r in near], [chance(r["probability"]) for r in near]
-    one = len(near) == 1
+    one, where = len(near) == 1, "In its place" if len(case.told["effects"]) == 1 else "In the place of one of them"
     yield (
-        f"In its place {listed(names, 'and')} {'explains' if one else 'explain'} the fitted runs nearly as well; the "
+        f"{where} {listed(names, 'and')} {'explains' if one else 'explain'} the fitted runs nearly as well; the "
         f"{'probability that it is larger than its' if one else 'probabilities that they are larger than their'} δ "
         f"{'is' if one else 'are'} {listed(chances, 'and')}."
     )
