@@ -89,5 +89,6 @@ def _readme(case: Case, again: Replay) -> str:
 - `estimates.csv`, `estimates.tex`, `covariance.csv`: all estimates with 95 % intervals, and their covariance, in SI units.
 - `errors.csv`: RMS errors at every step, fitted and held out, by channel; whitened (1 is the noise floor) and in its unit.
 - `left_out.csv`, `fingerprints.json`: what was left out or found odd, and why; SHA-256 of data and code, versions of libraries.
-- `residuals` (of `{again.run}`, of the runs {kept} the one foretold least) and `estimates`, 170 mm wide: PDF, SVG.
+- `residuals` (of `{again.run}`, of the runs {kept} the one foretold least; bands hold 95 % of a sensor's noise) and\
+ `estimates` with their 95 % intervals: PDF and SVG, 170 mm wide.
 """
