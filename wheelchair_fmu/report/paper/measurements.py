@@ -77,7 +77,8 @@ def runs(case: Case) -> str:
     said = [f"{plain(capital(thinned.partition('; `')[0]))}."] if thinned else []
     said.append(f"{_several(fitted, thing)} fitted{_named(fitted)}.")
     if held:
-        said.append(f"{_several(held, thing)} held out, and used for no estimate{_named(held)}.")
+        said.append(f"{_several(held, thing)} held out{_named(held)}.")
+        said.append("No value was fitted to these, but an effect had to predict them to be chosen.")
     else:
         said.append("No run was held out, so all errors below are those of fitted runs.")
     return " ".join(said)
