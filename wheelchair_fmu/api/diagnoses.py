@@ -23,7 +23,7 @@ from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save_svg
 from ..report.words import particulars, sentence
 from ..writing import written
-from .campaigns import Campaign, read
+from .campaigns import Campaign
 from .diagnosing import page_of, searched, supplement_of
 from .variants import Values, Variant, of_record, plain
 
