@@ -28,7 +28,11 @@ class WheelchairError(Exception):
     exit_code = 1
 
 
-class FormerName(UserWarning):
+class Note(UserWarning):
+    """What a user should know and need not act on."""
+
+
+class FormerName(Note):
     """A parameter was given by a name that it had before; it is read, and this says as what."""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -12,8 +13,9 @@ import pyarrow.parquet as pq
 import pytest
 
 import wheelchair_fmu as wc
-from wheelchair_fmu.api import latex
 from wheelchair_fmu.api.diagnoses import probabilities_in
+from wheelchair_fmu.cli.effects import template
+from wheelchair_fmu.report import latex
 from wheelchair_fmu.report.estimates_figure import estimates_figure
 
 HIDDEN = ("rolling_resistance_asymmetry", "D")
@@ -33,6 +35,22 @@ def test_a_diagnosis_says_the_same_in_every_form(found, tmp_path):
     assert set(found.calibration.columns) >= {"value", "se", "prior", "prior_sd", "unit", "at_bound", "beyond"}
     with pytest.raises(wc.UsageError, match=r"no form of a diagnosis that ends in '\.xls'"):
         found.save(tmp_path / "e.xls")
+
+
+def test_a_diagnosis_has_the_whole_final_fit(found):
+    told = found.as_dict()
+    final = told["final"]
+    names = [p["name"] for p in final["parameters"]]
+    covariance = np.array(final["covariance"])
+    assert covariance.shape == (len(names), len(names)) and np.array_equal(covariance, covariance.T)
+    se = dict(zip(names, np.sqrt(np.diag(covariance)), strict=True))
+    assert [se[n] for n in found.calibration.index] == pytest.approx(found.calibration["se"].tolist(), rel=1e-12)
+    assert se[f"effect.{HIDDEN[0]}.{HIDDEN[1]}"] == pytest.approx(found.estimates.loc[HIDDEN].se, rel=1e-12)
+    assert {p["name"]: p["estimate"] for p in final["parameters"]} == told["models"][-1]["values"]
+    assert {p["name"]: p["prior"] for p in final["parameters"] if p["prior"]} == found.calibration["prior"].to_dict()
+    assert final["step"] == told["ladder"][-1]["step"] and not any(p["at_bound"] for p in final["parameters"])
+    assert all(c["used"] == c["readings"] for c in final["runs"]["slalom-slow"]["channels"].values())
+    assert told["fingerprint"] == found._campaign.fingerprint and told["made_by"]["version"] == wc.__version__
 
 
 def test_a_notebook_shows_the_verdict_and_the_staircase(found):
@@ -152,3 +170,17 @@ def test_a_campaign_with_faults_says_them_all(tmp_path):
     with pytest.raises(wc.CampaignError) as met:
         wc.read(tmp_path)
     assert met.value.faults and str(tmp_path) in str(met.value)
+
+
+def test_a_variant_carries_the_effects_of_ones_own(tmp_path, monkeypatch):
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "mine.py").write_text(template("force", "mine"), encoding="utf-8")
+    chair = wc.Variant({"effect.mine.q": 2.0}, own_effects=tmp_path / "effects")
+    file = chair.save(tmp_path / "mine.toml")
+    shutil.rmtree(tmp_path / "effects")
+    assert wc.Variant.read(file).values == chair.values
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "another machine's"))
+    with pytest.raises(wc.WheelchairError, match="a program that runs with your rights"):
+        wc.simulate("coast-down", time=0.1, variant=file)
+    assert wc.Variant.read(file, trust=True).effects == ("mine",)

@@ -13,7 +13,8 @@ from wheelchair_fmu.report.page import unpacked
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = str(ROOT / "examples" / "sample-campaign")
-TOLD = ROOT / "tests" / "browser" / "sample-diagnosis.json"
+TOLD = ROOT / "tests" / "browser" / "sample-diagnosis.json"  # of an earlier version
+PAPER = ROOT / "tests" / "report" / "paper" / "diagnosis.json"
 
 
 def run(*words: str):
@@ -53,3 +54,35 @@ def test_the_workbench_says_why_it_does_not_start(tmp_path, words, sentence):
     done = run("workbench", *words, "--no-open", "--folder", str(tmp_path / "work"))
     assert done.exit_code == 2
     assert sentence in done.stderr
+
+
+def test_a_diagnosis_becomes_the_supplement_of_a_paper(tmp_path):
+    done = run("report", SAMPLE, "--diagnosis", str(PAPER), "--paper", "-o", str(tmp_path / "supplement"))
+    assert done.exit_code == 0, done.output
+    assert [Path(line).name for line in done.stdout.splitlines()][:2] == ["methods.md", "methods.tex"]
+    assert sorted(done.stdout.splitlines()) == sorted(map(str, (tmp_path / "supplement").iterdir()))
+
+
+@pytest.mark.parametrize(
+    ("told", "words", "sentence"),
+    [
+        (TOLD, (), "has no 'final', as earlier versions wrote it; diagnose the campaign again"),
+        (PAPER, ("--set", "chair.m=80"), "was made with nothing set by --set; give the same values"),
+        (None, (), "a diagnosis of 'another', not of 'open-06-left-drag'"),
+    ],
+)
+def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, told, words, sentence):
+    if told is None:
+        told = tmp_path / "d.json"
+        told.write_text(json.dumps({**json.loads(PAPER.read_text(encoding="utf-8")), "campaign": "another"}))
+    done = run("report", SAMPLE, "--diagnosis", str(told), "--paper", "-o", str(tmp_path / "s"), *words)
+    assert done.exit_code == 1 and not (tmp_path / "s").exists()
+    assert done.stderr.splitlines()[-1].startswith(f"{told}: ") and sentence in done.stderr
+
+
+def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path):
+    place = tmp_path / "file"
+    place.write_text("is here")
+    done = run("report", SAMPLE, "--diagnosis", str(PAPER), "--paper", "-o", str(place))
+    assert done.exit_code == 1 and place.read_text() == "is here"
+    assert done.stderr.splitlines()[-1] == f"{place}: file exists; give another place, or the rights to use this one"

@@ -105,11 +105,11 @@ def test_ones_own_effects_and_variant_go_with_the_work(tmp_path):
     assert wheelchair("effects", "new", "my_drag", "-o", tmp_path).exit_code == 0
     own = sources(tmp_path)
     heavy = Variant(catalogue={**bundled(), **defined(own)}).with_effects(["my_drag"]).with_values({"chair.m": "95"})
-    job = Fleet((tmp_path,), (("effect.my_drag.q", "2"),), Recipe.of(heavy, own))
+    job = Fleet((tmp_path,), (("effect.my_drag.q", "2"),), Recipe.of(heavy))
     shutil.rmtree(tmp_path)
     there = pickle.loads(pickle.dumps(job)).chair()
     assert there.effects == ("my_drag",) and there.values == {"chair.m": 95.0, "effect.my_drag.q": 2.0}
-    other = Recipe.of(heavy, tuple((file, content + b"# another") for file, content in own))
+    other = replace(job.recipe, own=tuple((file, f"{text}# another") for file, text in job.recipe.own))
     assert replace(job, recipe=other).keys != job.keys
 
 

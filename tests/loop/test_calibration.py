@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 
 from benchmarks.independent.campaigns import make, truth
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.calibration import calibration, doubts
+from wheelchair_fmu.loop.calibration import at_bound, calibration, doubts
 from wheelchair_fmu.loop.factory import MEASURED, ModelFactory
 from wheelchair_fmu.loop.models import Models
 from wheelchair_fmu.loop.story import story
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.quantities import M, Parameter
 
 
 def fitted(campaign):
@@ -27,6 +29,21 @@ def test_values_as_given_raise_no_doubts(sample):
     assert set(MEASURED) < set(found)
     assert not any(c.beyond for c in found.values())
     assert found["chair.m"].value == pytest.approx(80, abs=1) and found["chair.m"].prior_sd == pytest.approx(2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sd", "stopped"),
+    [
+        ("chair.a", 0.29, 0.01, True),  # four standard deviations of its prior
+        ("chair.a", 0.289, 0.01, False),
+        ("chair.a", 1.0, inf, True),  # its own bound
+        ("effect.some.a", 0.9, 0.01, False),  # whose prior is no reason to stop
+        ("effect.some.a", 0.0, inf, True),
+    ],
+)
+def test_a_fit_stops_at_bounds_and_where_no_prior_lets_it_go(name, value, sd, stopped):
+    record = Parameter(name, M, default=0.25, lower=0.0, upper=1.0)
+    assert at_bound(record, value, 0.25, sd) is stopped
 
 
 def test_a_mass_that_nobody_weighed_is_said(sample):

@@ -66,3 +66,6 @@ def test_the_sample_is_off_by_what_its_channels_say(sample):
     step = Step.of("nominal", likelihood.evidence([], {}), evidence)
     assert step.as_json()["physical"]["yaw_rate"] == pytest.approx(by_hand)
     assert channel_errors(evidence)[run.name]["yaw_rate"].rms == pytest.approx(by_hand)
+    told = step.as_json()["channels"]["yaw_rate"]
+    assert told["heldout_rms"] == pytest.approx(by_hand) and told["fit_rms"] is told["fit"] is None
+    assert told["heldout"] == pytest.approx(evidence.runs[0].rms["yaw_rate"])

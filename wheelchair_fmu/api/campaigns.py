@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from .. import campaign as measured
+from ..contracts.own import catalogue
 from ..errors import unknown
 from ..loop.subject import known_parameters
 from .frames import framed
@@ -22,8 +23,10 @@ if TYPE_CHECKING:
 UNIT_OF = {c.name: c.unit.name for c in measured.CHANNELS} | {c.fmu: c.unit.name for c in measured.INPUTS}
 
 
-def read(path: str | Path) -> Campaign:
+def read(path: str | Path, *, own_effects: str | Path | None = None) -> Campaign:
     """The campaign in a folder, or of a campaign.toml, in SI units and the axes of SAE J670.
+
+    Where it gives sizes to effects of your own, `own_effects` is the folder of their files, which are programs.
 
     Raises CampaignError with every fault of its files, each with place, fact and cure (what `wheelchair check` prints as
     errors); what is odd but no error is in `Campaign.warnings`.
@@ -32,7 +35,7 @@ def read(path: str | Path) -> Campaign:
     >>> campaign.name, len(campaign.runs)
     ('open-06-left-drag', 10)
     """
-    return Campaign(measured.read(path, known_parameters()))
+    return Campaign(measured.read(path, known_parameters(catalogue(None if own_effects is None else Path(own_effects)))))
 
 
 class Campaign:

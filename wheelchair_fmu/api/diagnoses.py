@@ -15,16 +15,16 @@ import pandas as pd
 from .. import campaign as measured
 from ..errors import Failure, unknown
 from ..loop import improve, verdict
-from ..loop.subject import applied
+from ..loop.subject import applied, known_parameters
 from ..model import variant as chairs
+from ..report import latex
 from ..report.estimates_figure import estimates_figure
 from ..report.figures import missing_figure, staircase_figure
 from ..report.saving import save_svg
 from ..report.words import particulars, sentence
 from ..writing import written
-from . import latex
-from .campaigns import Campaign, read
-from .diagnosing import page_of, searched
+from .campaigns import Campaign
+from .diagnosing import page_of, searched, supplement_of
 from .variants import Values, Variant, of_record, plain
 
 if TYPE_CHECKING:
@@ -56,8 +56,9 @@ def diagnose(
     >>> found.verdict, found.effects
     ('missing', ('rolling_resistance_asymmetry',))
     """
-    given = campaign if isinstance(campaign, Campaign) else read(campaign)
-    chair, known, fixed = applied(values or {}, plain(variant, own_effects), given._record)
+    start = plain(variant, own_effects)
+    given = campaign._record if isinstance(campaign, Campaign) else measured.read(campaign, known_parameters(start.catalogue))
+    chair, known, fixed = applied(values or {}, start, given)
     known = measured.windows(known)
     found, told = searched(known, chair, fixed, progress or (lambda words: None))
     return Diagnosis(known, chair, fixed, found, told)
@@ -206,6 +207,19 @@ class Diagnosis:
         with written(path) as beside:
             beside.write_text(text, encoding="utf-8", newline="\n")
         return path
+
+    def paper(self, folder: str | Path) -> tuple[Path, ...]:
+        """Write what a paper's supplement needs into a folder, and return the files: the methods with every number filled in
+        (Markdown and LaTeX, with their references), estimates with 95 % intervals and covariance, errors by channel at every
+        step, what was left out and why, fingerprints of data and code, and two figures, 170 mm wide. Other files there stay.
+
+        Raises OSError where nothing can be written, and CampaignError where the campaign's files are no longer there; see
+        docs/supplement.md.
+
+        >>> [file.name for file in found.paper("supplement")][:4]
+        ['methods.md', 'methods.tex', 'references.bib', 'estimates.csv']
+        """
+        return supplement_of(self._campaign, self._chair, self._told, self._fixed, Path(folder), str(self._told["campaign"]))
 
     def plot_staircase(self) -> Figure:
         """The error falling, step by step."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
+from ..loop.final import final
 from ..loop.likelihood import NoiseModel
 from ..loop.story import story
 from ..loop.verdict import Diagnosis, diagnose
@@ -15,6 +18,8 @@ from ..model.generic import library
 from ..model.variant import Variant
 from ..report.content import content
 from ..report.page import page
+from ..report.paper.case import checked
+from ..report.paper.folder import supplement
 from ..report.tale import story_of
 from ..report.words import particulars, sentence
 from .lacking import missing
@@ -27,7 +32,8 @@ def searched(
 ) -> tuple[Diagnosis, Story]:
     """The diagnosis, and the story that `diagnose --json` writes."""
     found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
-    return found, {**story(found), "missing": missing(found)}
+    terms = {p.name: p for e in library().values() for p in e.owned}
+    return found, {**story(found), "missing": missing(found), "final": final(found, terms)}
 
 
 def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:
@@ -38,6 +44,23 @@ def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str
     colour = NoiseModel({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
     tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
     return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), tale)
+
+
+def supplement_of(
+    measured: Campaign,
+    chair: Variant,
+    told: Story,
+    fixed: Sequence[str],
+    folder: Path,
+    place: str,
+    say: Callable[[str], None] = lambda words: None,
+) -> tuple[Path, ...]:
+    """The files that `wheelchair report --paper` writes into a folder; `place` is what messages call the diagnosis.
+
+    Raises Failure for a diagnosis of other data, another chair or an earlier version, and OSError where nothing can be written.
+    """
+    told = json.loads(json.dumps(told))  # as it is read from a file
+    return supplement(checked(measured, chair, told, fixed, place), folder, say)
 
 
 def _with_proposal(chair: Variant, told: Mapping[str, Any]) -> Variant:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..contracts.own import catalogue, catalogue_of
+from ..contracts.own import catalogue, catalogue_of, text_of, variant_in
 from ..fmu.build import with_chosen_effects
 from ..model import variant as records
 from ..model.variant import LAWS
@@ -41,16 +41,19 @@ class Variant:
         self._record, self._staircase = record, staircase
 
     @classmethod
-    def read(cls, path: str | Path, *, own_effects: str | Path | None = None) -> Variant:
+    def read(cls, path: str | Path, *, own_effects: str | Path | None = None, trust: bool = False) -> Variant:
         """The variant in a TOML file, as `Variant.save` and `wheelchair add` write it.
 
-        Raises Failure or UsageError that name the file and the fault.
+        Effects of somebody's own in the file are programs and run with your rights: those that were not written on this machine
+        need `wheelchair trust FILE` once, or `trust`.
+
+        Raises Failure or UsageError that name the file and the fault, and EffectError for effects in it with faults.
 
         >>> path = wc.Variant({"chair.m": 110}).save("heavy.toml")
         >>> wc.Variant.read(path).values
         {'chair.m': 110.0}
         """
-        return of_record(plain(path, own_effects))
+        return of_record(plain(path, own_effects, trust=trust))
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -98,9 +101,12 @@ class Variant:
         return of_record(self._record.with_effects(effects))
 
     def save(self, path: str | Path) -> Path:
-        """Write it as TOML, which every command and `Variant.read` take, and return the path."""
+        """Write it as TOML, which every command and `Variant.read` take, and return the path.
+
+        The programs of effects of your own that are on go along.
+        """
         with written(Path(path)) as beside:
-            beside.write_text(records.variant_text(self._record), encoding="utf-8")
+            beside.write_text(text_of(self._record), encoding="utf-8")
         return Path(path)
 
     def __repr__(self) -> str:
@@ -122,7 +128,9 @@ def of_record(record: records.Variant, staircase: pd.DataFrame | None = None) ->
     return face
 
 
-def plain(variant: Variant | str | Path | None, own_effects: str | Path | None = None) -> records.Variant:
+def plain(
+    variant: Variant | str | Path | None, own_effects: str | Path | None = None, *, trust: bool = False
+) -> records.Variant:
     """The record behind a variant, in a file, or of the default chair; with a folder of more effects it may have those too."""
     if isinstance(variant, Variant):
         record = variant._record
@@ -130,7 +138,7 @@ def plain(variant: Variant | str | Path | None, own_effects: str | Path | None =
             record if own_effects is None else replace(record, catalogue={**record.catalogue, **catalogue(Path(own_effects))})
         )
     known = catalogue(None if own_effects is None else Path(own_effects))
-    return records.Variant(catalogue=known) if variant is None else records.read_variant(Path(variant), known)
+    return records.Variant(catalogue=known) if variant is None else variant_in(Path(variant), known, trust=trust)
 
 
 def chair_of(

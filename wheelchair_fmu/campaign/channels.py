@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
+from ..model.sensors import READINGS, Reading
 from ..quantities import M_S, M_S2, N_M, N_S, ONE, RAD, RAD_S, M, N, S, Unit
 
 
@@ -36,7 +37,7 @@ class Channel:
     @property
     def confused(self) -> tuple[float, str]:
         """How many times as large the readings are in the unit they are most often left in, and that unit in words."""
-        return _CONFUSED[self.unit.name]
+        return _CONFUSED.get(self.unit.name, (1000.0, f"thousandths of {self.unit.name}"))
 
 
 # by SI unit
@@ -90,6 +91,12 @@ def _pushes(side: str, word: str) -> tuple[Channel, ...]:
             f"brake_{side}", ONE, f"brake.{side}", f"brake on the {word} rear wheel, 0 free, 1 full", 0.0, 1.0, wrong_unit="%"
         ),
     )
+
+
+def _reading(r: Reading) -> Channel:
+    """What turns its sign in a mirror along the chair does so from ISO 8855 to SAE J670, too."""
+    iso_sign = -1 if r.mirror.startswith("-") else 1
+    return Channel(r.name, r.unit, f"sensor.{r.name}", r.meaning, r.low, r.high, iso_sign, wrong_unit=r.wrong_unit)
 
 
 TIME = Channel("time", S, "time", "time of the sample", -1e12, 1e12)
@@ -155,6 +162,7 @@ CHANNELS: tuple[Channel, ...] = (
         -1,
         wrong_unit="km/h",
     ),
+    *map(_reading, READINGS),
 )
 
 RIDER: tuple[Channel, ...] = (

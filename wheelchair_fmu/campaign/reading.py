@@ -18,7 +18,7 @@ from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
 from .devices import Part, parts, point_of
-from .document import Document, Entry, flatten, load, numbers
+from .document import FILE, Document, Entry, flatten, load, numbers
 from .draft import prepare
 from .noise import gather
 from .recorded import Recorded
@@ -213,10 +213,28 @@ def fingerprint(path: str | Path) -> str:
     return hashlib.sha256("\n".join(map(str, faults)).encode()).hexdigest() if doc is None else _fingerprint(doc)
 
 
+def data_files(path: str | Path) -> dict[str, str]:
+    """SHA-256 of campaign.toml and of every recording it names, by the name it gives them. Raises CampaignError where it cannot
+    be read, and OSError where a recording is not there."""
+    doc, faults = load(path)
+    if doc is None:
+        raise CampaignError(faults)
+    found = {FILE: hashlib.sha256(doc.raw).hexdigest()}
+    for file in _files(doc):
+        with (doc.folder / file).open("rb") as recording:
+            found[file] = hashlib.file_digest(recording, "sha256").hexdigest()
+    return found
+
+
+def _files(doc: Document) -> list[str]:
+    """The recordings that campaign.toml names, in order."""
+    return list(dict.fromkeys(part.file for entry in doc.entries for part in parts(doc, entry)))
+
+
 def _fingerprint(doc: Document) -> str:
     """SHA-256 over campaign.toml and the files it names, in order."""
     digest = hashlib.sha256(doc.raw)
-    for file in dict.fromkeys(part.file for entry in doc.entries for part in parts(doc, entry)):
+    for file in _files(doc):
         digest.update(f"\0{file}\0".encode())
         if not what_is(doc.folder / file):
             with (doc.folder / file).open("rb") as recording:

@@ -16,6 +16,7 @@ from .group import Progress, console, working
 from .settings import catalogue, subject
 from .staircase import physical_staircase, staircase_table, write_improved
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -27,7 +28,7 @@ def add(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="TOML", help="The improved variant.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The variant to improve.")] = None,
+    variant: Annotated[Path | None, variant_option("The variant to improve.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the staircase as JSON.")] = False,
     progress: Progress = False,

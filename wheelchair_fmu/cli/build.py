@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -15,9 +16,7 @@ def register(app: typer.Typer) -> None:
 
 
 def build(
-    variant: Annotated[
-        Path | None, typer.Option(metavar="TOML", help="Laws, effects and values, as `wheelchair add` writes.")
-    ] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values, as `wheelchair add` writes.")] = None,
     effects: Annotated[
         str, typer.Option(metavar="IDS", help="default (all without states of their own), all, none, ids, or a folder.")
     ] = "default",

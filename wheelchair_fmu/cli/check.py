@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -13,8 +13,10 @@ from rich import box
 from rich.table import Table
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, judged, read
+from ..contracts.own import catalogue
 from ..faults import ERROR
 from ..loop.subject import known_parameters
+from ..model.stage import Effect
 from ..report import preview
 from ..report.saving import save
 from ..writing import written
@@ -28,12 +30,12 @@ def register(app: typer.Typer) -> None:
     app.command()(check)
 
 
-def measurements(folder: Path) -> Campaign:
-    """A campaign without errors; what `check` would warn of is said on stderr.
+def measurements(folder: Path, catalogue: Mapping[str, Effect] | None = None) -> Campaign:
+    """A campaign without errors, which may name parameters of these effects; what `check` would warn of is said on stderr.
 
     Raises CampaignError with all its faults.
     """
-    campaign = read(folder, known_parameters())
+    campaign = read(folder, known_parameters(catalogue))
     for fault in campaign.warnings[:MOST]:
         console(stderr=True).print(str(fault))
     if len(campaign.warnings) > MOST:
@@ -43,12 +45,13 @@ def measurements(folder: Path) -> Campaign:
 
 def check(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
+    effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the faults as JSON.")] = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw every signal of every run: preview.html and PNG.")] = False,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where to draw.")] = Path("out"),
 ) -> None:
     """Read a campaign and print all its faults: place, fact, cure. Exits with 1 where there are errors."""
-    found = judged(campaign, known_parameters())
+    found = judged(campaign, known_parameters(catalogue(effects)))
     faults = found.faults
     if plot:
         draw(campaign.name, found.runs, faults, out)

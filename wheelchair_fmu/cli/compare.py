@@ -23,6 +23,7 @@ from .group import console, working
 from .settings import subject
 from .staircase import physical_table
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -32,7 +33,7 @@ def register(app: typer.Typer) -> None:
 def compare(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     calibrate: Annotated[str, typer.Option(metavar="NAMES", help="Parameters to fit first, with commas.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print the errors as JSON.")] = False,

@@ -25,6 +25,7 @@ from .group import Progress, console, working
 from .settings import subject
 from .staircase import physical_staircase, staircase_table
 from .terminal import announce
+from .trust import variant_option
 
 LIKELIEST = 8  # effects, of which the table tells
 SENTENCES = {
@@ -42,7 +43,7 @@ def register(app: typer.Typer) -> None:
 def diagnose(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the diagnosis as JSON.")] = None,
     output: Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from shlex import quote
@@ -11,8 +12,8 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..contracts.own import catalogue
 from ..errors import UsageError, unknown
+from ..loop.subject import chair
 from ..model.alike import look_alikes
 from ..model.effects import NAME, bundled
 from ..model.stage import Effect
@@ -23,10 +24,12 @@ from .files import print_json
 from .group import console
 from .quantities import quantities
 from .terminal import announce
+from .trust import variant_option
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
 KINDS = ("force", "moment", "reading", "state")
 Own = Annotated[Path | None, typer.Option("--effects", metavar="DIR", help="A folder with effect files of your own.")]
+In = Annotated[Path | None, variant_option("A variant, for the effects of somebody's own in it.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 app.command()(quantities)
@@ -37,17 +40,21 @@ def register(parent: typer.Typer) -> None:
 
 
 @app.command(name="list")
-def list_effects(as_json: AsJson = False, own: Own = None) -> None:
+def list_effects(as_json: AsJson = False, own: Own = None, variant: In = None) -> None:
     """Every effect with its parameters, their units and smallest interesting sizes."""
-    effects = catalogue(own).values()
+    known = chair(variant, own).catalogue
     if as_json:
-        print_json([record(effect) for effect in effects])
+        print_json([record(effect, known) for effect in known.values()])
         return
     table = Table(box=box.SIMPLE)
     for title in ("effect", "what it is", "parameters and their smallest interesting sizes"):
         table.add_column(title, no_wrap=title == "effect")
-    for effect in effects:
-        table.add_row(effect.id, effect.title, ", ".join(_size(p) for p in effect.parameters))
+    for effect in known.values():
+        table.add_row(
+            effect.id,
+            f"{effect.title} (your own)" if effect.program else effect.title,
+            ", ".join(_size(p) for p in effect.parameters),
+        )
     console().print(table)
 
 
@@ -56,12 +63,13 @@ def show(
     effect: Annotated[str, typer.Argument(metavar="ID", help="An effect, as `list` names it.")],
     as_json: AsJson = False,
     own: Own = None,
+    variant: In = None,
 ) -> None:
     """One effect: what it is, what it acts on, its parameters and where their sizes come from."""
-    known = catalogue(own)
+    known = chair(variant, own).catalogue
     if effect not in known:
         raise unknown("effect", effect, known)
-    told = record(known[effect])
+    told = record(known[effect], known)
     if as_json:
         print_json(told)
         return
@@ -72,10 +80,10 @@ def show(
         out.print(f"states of its own: {', '.join(told['states'])}")
     if told["needs"]:
         out.print("needs: " + ", ".join(f"{kind} = {law}" for kind, law in told["needs"].items()))
-    if effect in bundled():
-        out.print(f"in the default FMU: {'yes' if told['in_default_fmu'] else 'no'}")
-    else:
+    if told["own"]:
         out.print("your own; it keeps every contract that the bundled effects keep")
+    else:
+        out.print(f"in the default FMU: {'yes' if told['in_default_fmu'] else 'no'}")
     for a in told["alike"]:
         out.print(f"looks like {', '.join(a['with'])} in {a['what']}; told by {a['told_by']}")
     for p in told["parameters"]:
@@ -121,17 +129,18 @@ def template(kind: str, effect: str) -> str:
     return text.replace('"my_effect"', f'"{effect}"')
 
 
-def record(effect: Effect) -> dict[str, Any]:
-    """An effect as plain data."""
+def record(effect: Effect, catalogue: Mapping[str, Effect]) -> dict[str, Any]:
+    """An effect as plain data, beside the others of the catalogue."""
     return {
         "id": effect.id,
         "meaning": effect.title,
         "acts_on": list(dict.fromkeys(c.to for c in effect.contributions)),
         "states": [f"effect.{effect.id}.{name}" for row in effect.rows for name in row.state.names],
         "needs": dict(effect.needs),
-        "in_default_fmu": effect.stateless,
+        "own": effect.program is not None,
+        "in_default_fmu": effect.stateless and effect.program is None,
         "alike": [
-            {"what": a.what, "with": list(look_alikes(effect, a, bundled())), "told_by": a.told_by} for a in effect.alike
+            {"what": a.what, "with": list(look_alikes(effect, a, catalogue)), "told_by": a.told_by} for a in effect.alike
         ],
         "parameters": [_parameter(p) for p in effect.owned],
     }

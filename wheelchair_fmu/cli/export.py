@@ -10,6 +10,7 @@ import typer
 from ..api.problems import export
 from .settings import subject
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -21,7 +22,7 @@ def export_command(
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the problem's files go.")],
     fit: Annotated[str, typer.Option(metavar="IDS", help="Effects to be fitted beside what is calibrated, with commas.")] = "",
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
 ) -> None:
     """Write the chair as an FMU and what was measured, is known and is to be fitted as tables after PEtab 2."""

@@ -15,7 +15,6 @@ from ..chunks import bad, is_done
 from ..errors import UsageError
 from ..fleet import Fleet, folders, long, summary
 from ..loop.subject import chair
-from ..model.effects import sources
 from ..model.former import current
 from ..model.recipe import Recipe
 from ..writing import written
@@ -23,6 +22,7 @@ from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .group import console
 from .settings import parse
 from .terminal import announce
+from .trust import variant_option
 
 ENDINGS = (".parquet", ".csv")
 
@@ -35,7 +35,7 @@ def fleet(
     campaigns: Annotated[list[Path], typer.Argument(metavar="FOLDER...", help="Campaigns, or folders of campaigns.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT", help="The table: .parquet, or .csv beside it.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     workers: Workers = None,
     address: Address = None,
@@ -44,7 +44,7 @@ def fleet(
     if output.suffix not in ENDINGS:
         raise UsageError(f"-o {output}: give a name that ends in {' or '.join(ENDINGS)}")
     pool = pool_of(address, workers)
-    recipe = Recipe.of(chair(variant, effects), sources(effects) if effects else ())
+    recipe = Recipe.of(chair(variant, effects))
     given = current(parse(settings or ()), dict(recipe.values))
     job = Fleet(folders(campaigns), tuple(given.items()), recipe)
     job.chair()  # a wrong question is told before anything is done

@@ -15,7 +15,7 @@ from rich.text import Text
 from typer.core import TyperGroup
 
 from ..errors import INTERRUPTED as SAID
-from ..errors import FormerName, WheelchairError
+from ..errors import Note, WheelchairError
 from ..writing import FULL
 from .terminal import console, printable
 
@@ -44,7 +44,7 @@ class Group(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("default", FormerName)
+                warnings.simplefilter("default", Note)
                 warnings.showwarning = partial(_noted, warnings.showwarning)
                 return super().invoke(ctx)
         except (typer.Exit, typer.Abort):
@@ -70,7 +70,7 @@ class Group(TyperGroup):
 
 def _noted(usual: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
     """A note of ours in a line, other warnings as Python shows them."""
-    if issubclass(category, FormerName):
+    if issubclass(category, Note):
         console(stderr=True).print(f"note: {message}")
     else:
         usual(message, category, *place)

@@ -26,6 +26,7 @@ from .group import console
 from .settings import subject
 from .staircase import staircase_table, write_improved
 from .terminal import announce
+from .trust import variant_option
 
 MOST_PROPOSALS = 2
 ENDS = {
@@ -46,7 +47,7 @@ def improve(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="TOML", help="The improved variant.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The variant to improve.")] = None,
+    variant: Annotated[Path | None, variant_option("The variant to improve.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write the last diagnosis as JSON.")] = None,
 ) -> None:

@@ -21,6 +21,7 @@ from .files import print_json
 from .group import console
 from .settings import parse
 from .terminal import announce
+from .trust import variant_option
 
 LEAST = 0.0005  # %; less is not shown
 
@@ -35,7 +36,7 @@ def linearize_command(
     radius: Annotated[float | None, typer.Option(help="R_c [m] instead of ΔF: > 0 to the right, inf straight on.")] = None,
     free_speed: Annotated[bool, typer.Option("--free-speed", help="u is a state, by (20), not prescribed.")] = False,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values.")] = None,
     effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, ids, or a folder.")] = None,
     equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
     mat: Annotated[Path | None, typer.Option(metavar="FILE", help="Write A, B, C, D and the names as a .mat file.")] = None,

@@ -1,4 +1,4 @@
-"""`wheelchair report`: one HTML file, alive: tick an effect, watch the error fall."""
+"""`wheelchair report`: one HTML file, alive: tick an effect, watch the error fall; or the supplement of a paper."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..api.diagnosing import page_of, searched
+from ..api.diagnosing import page_of, searched, supplement_of
 from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.former import former
@@ -16,6 +16,7 @@ from ..writing import written
 from .group import Progress, working
 from .settings import subject
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -24,13 +25,21 @@ def register(app: typer.Typer) -> None:
 
 def report(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="HTML", help="The page.")] = Path("report.html"),
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            *("-o", "--output"), metavar="PLACE", help="The page (report.html), or the folder of --paper (supplement)."
+        ),
+    ] = None,
     diagnosis: Annotated[
         Path | None, typer.Option(metavar="JSON", help="What `diagnose --json` wrote, instead of diagnosing again.")
     ] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values to start from.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values to start from.")] = None,
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
+    paper: Annotated[
+        bool, typer.Option("--paper", help="Write a paper's supplement instead: methods, tables, figures, fingerprints.")
+    ] = False,
     progress: Progress = False,
 ) -> None:
     """Write one self-contained page with the verdict, its evidence, and the model itself to try it on."""
@@ -38,11 +47,17 @@ def report(
     measured = windows(measured)
     with working("reading", lines=progress) as say:
         told = _read(diagnosis, measured) if diagnosis else searched(measured, chair, fixed, say)[1]
-        say("writing the page")
-        html = page_of(measured, chair, told, fixed)
-    with written(output) as beside:
-        beside.write_text(html, encoding="utf-8")
-    announce(output)
+        if paper:
+            folder, place = output or Path("supplement"), str(diagnosis or campaign)
+            files = supplement_of(measured, chair, told, fixed, folder, place, say)
+        else:
+            say("writing the page")
+            html, files = page_of(measured, chair, told, fixed), (output or Path("report.html"),)
+    if not paper:
+        with written(files[0]) as beside:
+            beside.write_text(html, encoding="utf-8")
+    for file in files:
+        announce(file)
 
 
 def _read(file: Path, measured: Campaign) -> dict[str, Any]:

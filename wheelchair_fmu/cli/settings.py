@@ -33,4 +33,5 @@ def subject(
     campaign: Path, variant: Path | None, effects: Path | None, settings: Iterable[str] | None
 ) -> tuple[Variant, Campaign, tuple[str, ...]]:
     """What a command of the loop is about, by its options: the chair, the measurements, and the names that --set fixes."""
-    return applied(parse(settings or ()), chair(variant, effects), measurements(campaign))
+    start = chair(variant, effects)
+    return applied(parse(settings or ()), start, measurements(campaign, start.catalogue))

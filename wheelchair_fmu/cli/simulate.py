@@ -24,6 +24,7 @@ from .files import Kind, TableKind
 from .group import console
 from .settings import parse
 from .terminal import announce
+from .trust import variant_option
 
 
 def register(app: typer.Typer) -> None:
@@ -37,7 +38,7 @@ def simulate(
     period: Annotated[float | None, typer.Option(help="Period T of the slalom [s].")] = None,
     time: Annotated[float | None, typer.Option(help="Length [s].")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values.")] = None,
     effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, ids, or a folder.")] = None,
     equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
     fmu: Annotated[Path | None, typer.Option(metavar="PATH", help="Drive this FMU instead of building one.")] = None,

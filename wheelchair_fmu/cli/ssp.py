@@ -13,7 +13,7 @@ from rich.table import Table
 
 from ..errors import SystemStructureError
 from ..fmu import parameter_set
-from ..model.variant import read_variant
+from ..loop.subject import chair as subject_chair
 from ..report.course import PLAYED, Course, course_figure, course_frames
 from ..report.saving import save, save_film
 from ..studies.ssp import sources
@@ -27,6 +27,7 @@ from .files import print_json, write_table
 from .group import console
 from .settings import catalogue
 from .terminal import announce
+from .trust import asked, variant_option
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -56,7 +57,7 @@ def register(parent: typer.Typer) -> None:
 def build_ssp(
     system: Annotated[str, typer.Argument(metavar="SYSTEM", help=f"{', '.join(sources.systems())}, or a .toml.")] = "slalom",
     version: Annotated[str, VERSION] = "1",
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="The chair: laws, effects and values.")] = None,
+    variant: Annotated[Path | None, variant_option("The chair: laws, effects and values.")] = None,
     parameters: Annotated[
         list[str] | None,
         typer.Option(
@@ -71,7 +72,9 @@ def build_ssp(
 ) -> None:
     """Build the archive of a system: three FMUs, connections, parameter sets."""
     recording = read_recording(replay) if replay else None
-    chair = read_variant(variant, catalogue(effects)) if variant else None
+    for name in parameters or ():
+        _asked(name)
+    chair = subject_chair(variant, effects) if variant else None
     with console(stderr=True).status("building the FMUs"):
         path = build(system, output, version=version, variant=chair, parameters=parameters or (), recording=recording)
     announce(path)
@@ -130,10 +133,16 @@ def parameters(
     version: Annotated[str, VERSION] = "1",
 ) -> None:
     """Write a variant's values as an SSP parameter set, which other tools bind to the FMU."""
+    _asked(source)
     found = sources.parameter_set(source, catalogue(effects))[1]
     with written(output) as beside:
         beside.write_bytes(parameter_set.text(found, sources.version(version)))
     announce(output)
+
+
+def _asked(parameter_set: str) -> None:
+    if parameter_set.endswith(".toml"):
+        asked(Path(parameter_set))
 
 
 def _write(trace: Trace, stem: Path, animated: bool) -> list[Path]:

@@ -11,8 +11,9 @@ from rich import box
 from rich.console import JustifyMethod
 from rich.table import Table
 
+from ..contracts.own import text_of
 from ..loop.staircase import Step
-from ..model.variant import Variant, variant_text
+from ..model.variant import Variant
 from ..report.figures import staircase_figure
 from ..report.saving import save
 from ..writing import written
@@ -68,7 +69,7 @@ def _figure(value: float | None) -> str:
 def write_improved(output: Path, variant: Variant, ladder: Sequence[Step]) -> list[Path]:
     """The variant as TOML, and its staircase beside it as PNG."""
     with written(output) as beside:
-        beside.write_text(variant_text(variant), encoding="utf-8")
+        beside.write_text(text_of(variant), encoding="utf-8")
     picture = output.with_suffix(".png")
     with written(picture) as beside:
         save(staircase_figure([step.as_json() for step in ladder]), beside)

@@ -23,6 +23,7 @@ from .files import print_json, write_table
 from .group import console
 from .settings import parse
 from .terminal import announce
+from .trust import variant_option
 
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # times the speed asked for
 LOCUS = (0.25, 4.0, 200)  # from and to, times the speed asked for, and how many
@@ -41,7 +42,7 @@ def steady(
     radius: Annotated[float | None, typer.Option(help="R_c [m] instead of ΔF: > 0 to the right.")] = None,
     slip_limit: Annotated[float, typer.Option(min=0.001, max=90.0, help="Slip angle [deg] that a turn must not exceed.")] = 1.0,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
-    variant: Annotated[Path | None, typer.Option(metavar="TOML", help="Laws, effects and values.")] = None,
+    variant: Annotated[Path | None, variant_option("Laws, effects and values.")] = None,
     effects: Annotated[str | None, typer.Option(metavar="IDS", help="default, all, none, ids, or a folder.")] = None,
     equations: Annotated[str | None, typer.Option(metavar="KIND", help="extended, or paper: to the letter.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,

@@ -1,14 +1,19 @@
-"""Effects of a user's own: read from a folder, and held to the contracts before anything is done with them."""
+"""Effects of a user's own, from a folder or a variant's file: held to the contracts before anything is done with them."""
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import cache, partial
 from pathlib import Path
+from shlex import quote
 
-from ..errors import EffectError, ModelError
+from ..errors import EffectError, Failure, ModelError
 from ..model.effects import Sources, bundled, read, sources
-from ..model.stage import Effect
+from ..model.stage import Effect, Program
+from ..model.variant import Variant, programs_in, read_variant, variant_text
 from . import breaches
+from .trust import is_trusted, remember
 
 
 def load(folder: Path) -> dict[str, Effect]:
@@ -48,3 +53,42 @@ def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:
     if Path(word).is_dir():
         return catalogue(Path(word)), "default"
     return bundled(), word
+
+
+def variant_in(path: Path, known: Mapping[str, Effect] | None = None, *, trust: bool = False) -> Variant:
+    """The variant in a TOML file, of these effects (the bundled ones unless given) and of those that the file carries.
+
+    These are programs. They are run if this user trusts them, or where the caller says so by `trust`.
+
+    Raises Failure for programs that nobody trusts, EffectError for those that define no effect or break a contract, and
+    Failure or UsageError for other faults of the file.
+    """
+    return read_variant(Path(path), known, partial(_loaded, Path(path), trust))
+
+
+def _loaded(path: Path, trust: bool, programs: Mapping[str, Program]) -> dict[str, Effect]:
+    if not trust and not all(map(is_trusted, programs.values())):
+        raise Failure(
+            f"{carries(path, programs)}; read it there, and if you trust it, say so by `wheelchair trust {quote(str(path))}`, "
+            "or in Python by Variant.read(..., trust=True)"
+        )
+    return checked(tuple((program.file, program.text) for program in programs.values()))
+
+
+def carries(path: Path, programs: Mapping[str, Program]) -> str:
+    """The sentence that says so, without its full stop."""
+    names = " and ".join(programs)
+    what = f"effect {names}, a program that runs" if len(programs) == 1 else f"effects {names}, programs that run"
+    return f"{path} carries the {what} with your rights"
+
+
+def untrusted(path: Path) -> dict[str, Program]:
+    """The programs in a variant's file that this user does not trust yet, by effects' ids. Raises as `read_variant`."""
+    return {id: program for id, program in programs_in(path).items() if not is_trusted(program)}
+
+
+def text_of(variant: Variant) -> str:
+    """The variant as TOML. The programs in it have run here, so they are trusted on this machine from now on."""
+    with suppress(OSError):  # then the user is asked
+        remember(effect.program for effect in variant.active() if effect.program)
+    return variant_text(variant)

@@ -88,9 +88,10 @@ class Fleet:
             )
         about = {"folder": str(place), "campaign": place.name}
         try:
-            measured = windows(read(place, known_parameters()))
+            start = self.recipe.variant()
+            measured = windows(read(place, known_parameters(start.catalogue)))
             about["campaign"] = measured.name
-            variant, measured, fixed = applied(dict(self.settings), self.recipe.variant(), measured)
+            variant, measured, fixed = applied(dict(self.settings), start, measured)
             return {**about, **of_diagnosis(diagnose(measured, variant, library(), fixed=fixed))}
         except FileError as error:
             return {**about, "error": _first(error, place)}

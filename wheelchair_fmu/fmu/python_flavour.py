@@ -8,7 +8,6 @@ silently use each other's.
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 import sys
 import zipfile
@@ -66,15 +65,10 @@ def _dependencies() -> str:
 def _modules(face: Interface) -> dict[str, str]:
     """The model's files by their path in the package, and stepping.py beside them."""
     files = [PACKAGE / f"{name}.py" for name in ("quantities", "errors", "faults", "units", "unit_text")]
-    files += [f for f in (PACKAGE / "model").rglob("*.py") if f.name != "variant.py"]
+    files += [f for f in (PACKAGE / "model").rglob("*.py") if f.name not in ("variant.py", "carried.py")]
     files += [PACKAGE / "engine" / name for name in ENGINE]
     texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
-    for effect in face.model.effects:  # a user's own effects come along
-        if f"model/effects/{effect.id}.py" in texts:
-            continue
-        law = effect.contributions[0].law if effect.contributions else effect.rows[0].rate
-        file = Path(inspect.getfile(inspect.unwrap(law)))
-        texts[f"model/effects/{effect.id}.py"] = file.read_text(encoding="utf-8")
+    texts |= {f"model/effects/{e.id}.py": e.program.text for e in face.model.effects if e.program}  # a user's own come along
     texts["__init__.py"] = '"""The model of the FMU around it."""\n'
     texts["stepping.py"] = (FMU_SOURCES / "python" / "stepping.py").read_text(encoding="utf-8")
     return texts

@@ -79,10 +79,16 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
     out = []
     for i, name in enumerate(names):
         value, sd = found.values[name], float(problem.prior.sd[i])
-        near = CLOSE * (sd if np.isfinite(sd) else problem.scale[i])
-        at_bound = not problem.lower[i] + near < value < problem.upper[i] - near
-        out.append(Calibrated(likelihood.records[name], value, errors[name], float(problem.prior.mean[i]), sd, at_bound))
+        record, mean = likelihood.records[name], float(problem.prior.mean[i])
+        out.append(Calibrated(record, value, errors[name], mean, sd, at_bound(record, value, mean, sd)))
     return out
+
+
+def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:
+    """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?"""
+    reach = np.inf if record.name.startswith("effect.") else REACH * prior_sd
+    near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
+    return not max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
 
 
 def doubts(found: Sequence[Calibrated]) -> list[str]:

@@ -190,6 +190,15 @@ class Evidence:
         e = np.concatenate([e[np.isfinite(e)] for e in errors] or [np.empty(0)])
         return float(np.sqrt(e @ e / len(e))) if len(e) else float("nan")
 
+    def channel_rms(self) -> dict[str, float]:
+        """Whitened RMS error of each channel over all runs that have it; NaN where none has a reading."""
+        found: dict[str, list[np.ndarray]] = {}
+        for e in self.runs:
+            for i, channel in enumerate(e.channels):
+                found.setdefault(channel, []).append(e.e[np.isfinite(e.e[:, i]), i])
+        errors = {channel: np.concatenate(pieces) for channel, pieces in found.items()}
+        return {c: float(np.sqrt(e @ e / len(e))) if len(e) else float("nan") for c, e in errors.items()}
+
     def parts(self) -> Iterator[tuple[RunEvidence, np.ndarray, slice]]:
         """Each run, which of its innovations (n, nz) are finite, and where these stand in `r` and `S`."""
         at = 0

@@ -22,6 +22,8 @@ STEADY = 0.6  # an AR(1) coefficient of pushes below this may as well be noise t
 TRUSTED = 1.5  # a stated standard deviation within this factor of the data's own is kept,
 EVEN = 0.25  # share of the usual time over so many readings by which one may differ; more is a gap
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
+ENDLESS = 0.99  # AR(1) coefficient of what walks at random, as a chair on a rough floor does
+MOST = 0.995  # the largest that is looked at
 
 
 def noise_model_of(
@@ -39,7 +41,8 @@ def noise_model_of(
         else:
             sigma, phi = _fit_structure(*_structure(_residuals(evidence, channel)))
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
-        slow = phi > SLOW and ratio > 1 and (1 - phi) * ratio**2 < 1  # what is slow may as well be what the model lacks
+        # what is slow may as well be what the model lacks, and what never settles is
+        slow = phi > SLOW and ratio > 1 and ((1 - phi) * ratio**2 < 1 or phi >= ENDLESS)
         trusted = slow or 1 / TRUSTED < ratio < TRUSTED
         if phi > WHITE:
             # data tell σ² (1 − φ), the change from one sample to the next, far better than they tell either of the two
@@ -110,7 +113,7 @@ def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
 
     best = min(
         (
-            least_squares(off, (np.log(0.5 / (1 - phi ** k[0])), phi, -8.0), bounds=([-20, 0, -30], [20, 0.995, 5]))
+            least_squares(off, (np.log(0.5 / (1 - phi ** k[0])), phi, -8.0), bounds=([-20, 0, -30], [20, MOST, 5]))
             for phi in (0.05, 0.5, 0.9)
         ),
         key=lambda s: s.cost,

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from .. import __version__
+from ..provenance import code_fingerprint
 from .ranking import as_json
 from .verdict import Diagnosis
 
@@ -12,7 +14,7 @@ from .verdict import Diagnosis
 def story(d: Diagnosis) -> dict[str, Any]:
     """`as_json`, with what it takes to simulate it again: `calibrated` [name, ...], `noise` {sd, ar}, `models` [{step,
     values}] for steps of the staircase, the one where the search `begins`, and `values` of each refitted effect in the
-    ranking. Full names, SI units."""
+    ranking. Full names, SI units. `fingerprint` is the campaign's, `made_by` says by which code."""
     content, models = as_json(d), _models(d)
     refitted = {c.effect: c.fit.values for r in reversed((*d.rounds, *d.beside)) for c in r.candidates}
     for row in content["ranking"]:
@@ -24,6 +26,8 @@ def story(d: Diagnosis) -> dict[str, Any]:
         "calibrated": list(d.search.names(())),
         "begins": _beginning(d),
         "noise": {"sd": dict(noise_model.sd), "ar": dict(noise_model.ar)},
+        "fingerprint": d.search.factory.campaign.fingerprint,
+        "made_by": {"version": __version__, "code": code_fingerprint()},
         "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],
     }
 

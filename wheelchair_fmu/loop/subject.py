@@ -7,23 +7,25 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..campaign import Campaign
-from ..contracts.own import catalogue
+from ..contracts.own import catalogue, variant_in
 from ..model.effects import bundled
 from ..model.former import current
-from ..model.variant import LAWS, Variant, read_variant
+from ..model.stage import Effect
+from ..model.variant import LAWS, Variant
 from ..model.wheelchair import Choice
 
 
-def known_parameters() -> dict[str, tuple[float, float]]:
-    """Bounds, in SI units, of every parameter that a campaign may name."""
-    laws = (Variant(Choice(caster=law)).with_effects(bundled()) for law in LAWS["caster"])
+def known_parameters(catalogue: Mapping[str, Effect] | None = None) -> dict[str, tuple[float, float]]:
+    """Bounds, in SI units, of every parameter that a campaign may name, with these effects (the bundled ones unless given)."""
+    known = bundled() if catalogue is None else catalogue
+    laws = (Variant(Choice(caster=law), catalogue=known).with_effects(known) for law in LAWS["caster"])
     return {p.name: (p.lower, p.upper) for law in laws for p in law.parameters()}
 
 
 def chair(variant: Path | None, effects: Path | None) -> Variant:
-    """The variant in a file, or the default chair, with that catalogue."""
+    """The variant in a file, or the default chair, with that catalogue. Raises as `variant_in`."""
     known = catalogue(effects)
-    return read_variant(variant, known) if variant else Variant(catalogue=known)
+    return variant_in(variant, known) if variant else Variant(catalogue=known)
 
 
 def applied(

@@ -21,8 +21,9 @@ class Recipe:
     own: Sources = ()
 
     @classmethod
-    def of(cls, variant: Variant, own: Sources = ()) -> Self:
-        """The recipe of a variant, whose catalogue is the bundled one and these files'."""
+    def of(cls, variant: Variant) -> Self:
+        """The recipe of a variant; all of a user's effects in its catalogue go along, also those that are off."""
+        own = tuple((e.program.file, e.program.text) for e in variant.catalogue.values() if e.program)
         return cls(variant.choice, variant.effects, tuple(variant.values.items()), own)
 
     def variant(self) -> Variant:

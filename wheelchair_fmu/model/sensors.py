@@ -2,9 +2,42 @@
 
 from __future__ import annotations
 
-from ..quantities import M_S, M_S2, RAD, RAD_S, REAR, M
+from dataclasses import dataclass
+
+from ..quantities import M_S, M_S2, RAD, RAD_S, REAR, M, Output, Unit
 from .frames import to_room
-from .stage import define, stage
+from .stage import Law, Stage, define, stage
+
+
+@dataclass(frozen=True)
+class Reading:
+    """An instrument that reads one number in every model: a channel of campaigns, and the FMU's output `sensor.<name>`.
+
+    `law` is a plain function of symbols, `low` and `high` bound what is plausible, in `unit`. `mirror` is "-" for what turns
+    its sign in a mirror along the chair, as all to the right and clockwise does. `nominal` is a usual size.
+    """
+
+    name: str
+    unit: Unit
+    meaning: str
+    law: Law
+    low: float
+    high: float
+    mirror: str = "+"
+    nominal: float = 1.0
+    wrong_unit: str = ""  # the unit that is most often meant when the size is implausible
+
+    @property
+    def stage(self) -> Stage:
+        return Stage(self.law, (define(f"read_{self.name}", self.unit, self.meaning, self.mirror),))
+
+    @property
+    def output(self) -> Output:
+        name, symbol = f"sensor.{self.name}", f"read_{self.name}"
+        return Output(name, self.unit, self.meaning, self.mirror, symbol=symbol, nominal=self.nominal)
+
+
+READINGS: tuple[Reading, ...] = ()  # beside those of `sensors`; docs/your-own-channel.md adds one
 
 
 @stage(

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from hashlib import sha256
 from inspect import signature
 from typing import Any
 
@@ -109,6 +110,19 @@ class Alike:
 
 
 @dataclass(frozen=True)
+class Program:
+    """The file of an effect of a user's own: where it was read, and its text."""
+
+    file: str
+    text: str
+
+    @property
+    def sha256(self) -> str:
+        """Of the text in UTF-8, in hexadecimal digits."""
+        return sha256(self.text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
 class Effect:
     """One physical effect the paper leaves out: a few contributions and the parameters in them.
 
@@ -127,6 +141,7 @@ class Effect:
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
     absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
     alike: tuple[Alike, ...] = ()  # what it does that others do as well
+    program: Program | None = field(default=None, compare=False, repr=False)  # of a user's own, once it was read
 
     @cached_property
     def owned(self) -> tuple[Parameter, ...]:

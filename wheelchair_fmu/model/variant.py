@@ -11,13 +11,16 @@
     [values]                 # any parameter of the FMU, SI units; the rest keep their defaults
     "tyre.C_lambda" = 4900.0
     "effect.relaxation_length.sigma" = 0.12
+
+Effects of a user's own are in the file too, as programs with their digests, see `carried`.
 """
 
 from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -26,13 +29,13 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from ..errors import Failure, UsageError, unknown
+from ..errors import Failure, Note, UsageError, unknown
 from ..given import toml
 from ..quantities import Parameter
-from . import caster, tyre
+from . import carried, caster, tyre
 from .effects import bundled
 from .former import current
-from .stage import Effect
+from .stage import Effect, Program
 from .wheelchair import Choice, Model, assemble, base_parameters, serves
 
 LAWS = {
@@ -41,6 +44,7 @@ LAWS = {
     "equations": ("extended", "paper"),
 }
 NOTES = ("title", "for", "standard_errors", "origin", "tied")  # what else a file may say: whose values these are, and whence
+Load = Callable[[Mapping[str, Program]], Mapping[str, Effect]]  # runs programs, by effects' ids, once somebody trusts them
 
 
 @dataclass(frozen=True)
@@ -133,18 +137,46 @@ def number(records: Mapping[str, Parameter], name: str, value: float | str) -> f
     return result
 
 
-def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None) -> Variant:
-    """The variant in a TOML file. Raises Failure or UsageError that name the file and the fault."""
+def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None, load: Load | None = None) -> Variant:
+    """The variant in a TOML file; programs in it that the catalogue does not have are given to `load`.
+
+    Raises Failure or UsageError that name the file and the fault.
+    """
+    known, table = catalogue if catalogue is not None else bundled(), _content(path)
     try:
-        table = toml(Path(path).read_text(encoding="utf-8"))
+        if unread := _unread(carried.programs(table.pop(carried.TABLE, {}), path), known, path):
+            if load is None:
+                raise Failure(f"{path}: carries {', '.join(unread)}, and programs are not run here")
+            known = {**known, **load(unread)}
+        return _variant(table, known)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def programs_in(path: Path) -> dict[str, Program]:
+    """The programs that a variant's file carries, by effects' ids; none is run. Raises as `read_variant`."""
+    try:
+        return carried.programs(_content(path).get(carried.TABLE, {}), path)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        return toml(Path(path).read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise Failure(f"{path}: no such file; give a variant that `wheelchair add` wrote") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
-    try:
-        return _variant(table, catalogue if catalogue is not None else bundled())
-    except UsageError as error:
-        raise UsageError(f"{path}: {error}") from None
+
+
+def _unread(programs: Mapping[str, Program], catalogue: Mapping[str, Effect], path: Path) -> dict[str, Program]:
+    """Those that the catalogue does not have. What it has of the same name goes before; where that differs, a note says so."""
+    for id in programs.keys() & catalogue.keys():
+        own = catalogue[id].program
+        if own and own.text != programs[id].text:
+            warnings.warn(f"{path} carries another {id}; the one in {own.file} is taken", Note, stacklevel=2)
+    return {id: program for id, program in programs.items() if id not in catalogue}
 
 
 def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Variant:
@@ -155,6 +187,11 @@ def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Varian
     effects = laws.pop("effects", [])
     if not isinstance(effects, list) or not all(isinstance(e, str) for e in effects):
         raise UsageError(f'effects = {effects!r} in [laws] is no list of ids; write effects = ["relaxation_length"]')
+    for effect in effects:
+        if effect not in catalogue:
+            raise UsageError(
+                f"{unknown('effect', effect, catalogue)}; one of your own needs the folder of its file, by --effects"
+            )
     for kind in laws:
         if kind not in LAWS:
             raise unknown("law in [laws]", kind, (*LAWS, "effects"))
@@ -169,6 +206,7 @@ def _table(file: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def variant_text(variant: Variant) -> str:
-    """The variant as TOML that `read_variant` reads."""
+    """The variant as TOML that `read_variant` reads, with the programs of a user's effects that are on."""
     laws = {kind: getattr(variant.choice, kind) for kind in LAWS}
-    return tomli_w.dumps({"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values), **variant.notes})
+    told = {"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values), **variant.notes}
+    return tomli_w.dumps(told) + carried.text(variant.active())

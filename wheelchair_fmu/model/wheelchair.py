@@ -96,6 +96,7 @@ OUTPUTS = (
     Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw", nominal=0.5),
     Output("sensor.u", M_S, "forward speed as a tracking system reads it", symbol="read_u"),
     Output("sensor.v", M_S, "lateral speed as a tracking system reads it, to the right", "-", symbol="read_v", nominal=0.01),
+    *(reading.output for reading in sensors.READINGS),
 )
 
 REGIMES = {  # what to sort errors by: name -> result
@@ -161,7 +162,8 @@ def _states(choice: Choice) -> int:
 
 def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
     """The parameters of a model without effects."""
-    laws = (_law("tyre", tyre.LAWS, choice.tyre), _law("caster", caster.LAWS, choice.caster))
+    _law("tyre", tyre.LAWS, choice.tyre)
+    laws = (*tyre.LAWS.values(), _law("caster", caster.LAWS, choice.caster))  # one FMU holds all tyre laws
     extra = tuple(p for law in laws for p in law.parameters)
     return (*chassis.PARAMETERS, *common.PARAMETERS, *resistance.PARAMETERS, *extra)
 
@@ -199,6 +201,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.balance,
         chassis.motion,
         sensors.sensors,
+        *(reading.stage for reading in sensors.READINGS),
         chassis.results,
     )
 

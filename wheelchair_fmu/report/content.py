@@ -33,7 +33,7 @@ def content(
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
-    campaign = replace(campaign, runs=tuple(_in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
+    campaign = replace(campaign, runs=tuple(in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
     factory = ModelFactory(campaign, variant, fixed)
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], START, driven(campaign))
@@ -61,7 +61,7 @@ def content(
     }
 
 
-def _in_time(run: Run, sync: Mapping[str, Any]) -> Run:
+def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
     """The run with its pushes at the time that the diagnosis read them at, where the campaign has them at another."""
     late = sync.get(run.name, {}).get(PUSHES_CLOCK)
     return run if late is None or run.clocks else retimed(run, Late(late["offset"], 0.0))

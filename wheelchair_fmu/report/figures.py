@@ -34,7 +34,7 @@ def manoeuvre_figure(title: str, time: np.ndarray, columns: Mapping[str, np.ndar
     """Path, slip angles and radius of curvature of a manoeuvre, as in Figs. 12 to 19, and one result more.
 
     `time` is (n,) in s; `columns` hold (n,) each, SI units, by FMI name: chair.x, chair.y, slip.rl, slip.rr,
-    chair.curvature and `watch`, one of WATCHED. x (forward) points up and y to the right, with equal scales.
+    chair.curvature and `watch`, which WATCHED may have words for. x (forward) points up and y to the right, with equal scales.
     """
     figure = blank(10, 7)
     axes = figure.subplot_mosaic([["path", "slip"], ["path", "radius"], ["path", "watch"]], width_ratios=[1, 1.25])
@@ -45,7 +45,7 @@ def manoeuvre_figure(title: str, time: np.ndarray, columns: Mapping[str, np.ndar
     axes["slip"].set_ylabel("slip angle λ [deg]")
     axes["slip"].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, ncols=2)
     _radius(axes["radius"], time, columns["chair.curvature"])
-    label, factor = WATCHED[watch]
+    label, factor = WATCHED.get(watch, (f"{watch}, SI units", 1.0))
     axes["watch"].plot(time, factor * columns[watch], color=BLACK)
     axes["watch"].set_ylabel(label)
     axes["watch"].set_xlabel("time [s]")

@@ -12,13 +12,17 @@ from PIL import Image
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-STEADY: Any = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "path"}
+STEADY: Any = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "path", "pdf.fonttype": 42}  # letters of a PDF stay letters
 COLOURS = 32  # of a film
-UNDATED = {".svg": {"Date": None, "Creator": None}, ".png": {"Software": None}}
+UNDATED = {
+    ".svg": {"Date": None, "Creator": None},
+    ".png": {"Software": None},
+    ".pdf": dict.fromkeys(("CreationDate", "Creator", "Producer")),
+}
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as PNG or SVG, by the path's ending."""
+    """Write a figure as PNG, SVG or PDF with its fonts, by the path's ending."""
     from matplotlib import rc_context  # here, not above: see `canvas`
 
     with rc_context(STEADY):

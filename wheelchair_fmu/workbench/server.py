@@ -236,6 +236,7 @@ class Workbench:
 
     def _with(self, session: Session) -> list[str]:
         """The variant at hand and the effects of one's own, as options."""
+        session.trust_variant()
         own = ["--effects", "effects"] if session.own_effects() else []
         return ["--variant", session.variant_file.relative_to(session.folder).as_posix(), *own]
 

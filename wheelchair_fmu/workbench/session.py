@@ -18,6 +18,7 @@ import shutil
 import time
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO
@@ -28,11 +29,12 @@ from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
 from ..campaign.formats import open_recording
 from ..campaign.layout import relaid
-from ..contracts.own import checked
+from ..contracts.own import checked, text_of, variant_in
+from ..contracts.trust import remember
 from ..errors import CampaignError, EffectError, Failure, ModelError, UsageError, unknown
 from ..model.effects import bundled, sources
 from ..model.stage import Effect
-from ..model.variant import Variant, read_variant, variant_text
+from ..model.variant import Variant, programs_in, variant_text
 from ..writing import written
 from .bodies import refuse_unusual, too_deep
 from .history import broken, recovered
@@ -252,7 +254,7 @@ class Session:
         """One step more; what had been undone is forgotten."""
         steps = self._steps_so_far()
         file = self.variants / f"{len(steps)}-{uuid4().hex[:6]}.toml"
-        text = variant_text(variant) if isinstance(variant, Variant) else variant.read_text(encoding="utf-8")
+        text = text_of(variant) if isinstance(variant, Variant) else variant.read_text(encoding="utf-8")
         write(file, text.encode())
         self._append(steps, label, file.name, ladder)
 
@@ -324,7 +326,12 @@ class Session:
         return self.variants / str(history["steps"][history["at"]]["file"])
 
     def variant(self) -> Variant:
-        return read_variant(self.variant_file, self.catalogue())
+        return variant_in(self.variant_file, self.catalogue(), trust=True)  # which this session has written
+
+    def trust_variant(self) -> None:
+        """What this session has written may run in its jobs, also where the user's cache was emptied since."""
+        with suppress(OSError):  # then the job says it
+            remember(programs_in(self.variant_file).values())
 
     def variant_text(self) -> str:
         return self.variant_file.read_text(encoding="utf-8") if self.history()["steps"] else variant_text(Variant())

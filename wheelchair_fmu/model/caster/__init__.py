@@ -1,5 +1,8 @@
-"""Caster laws, of which a model has one: ideal, swivelling without side slip, or slipping."""
+"""Caster laws, of which a model has one: ideal, swivelling without side slip, slipping, and whatever laws stand beside these.
 
-from . import ideal, paper, slipping, swivelling
+A file has the record `LAW`, and its law's name.
+"""
 
-LAWS = {law.LAW.name: law.LAW for law in (ideal, swivelling, slipping, paper)}
+from ..lawful import laws, names
+
+LAWS = laws(__name__, names(__path__, first=("ideal", "swivelling", "slipping", "paper")))

@@ -7,6 +7,7 @@ import pkgutil
 import re
 import traceback
 from collections.abc import Container
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.util import decode_source
@@ -15,9 +16,9 @@ from types import ModuleType
 
 from ...errors import EffectError, ModelError
 from ...faults import Fault
-from ..stage import Effect
+from ..stage import Effect, Program
 
-Sources = tuple[tuple[str, bytes], ...]  # files by path, with their content
+Sources = tuple[tuple[str, bytes | str], ...]  # files by path, with their content, or their text where it was read before
 NAME = re.compile(r"[a-z][a-z0-9_]*")  # of an effect
 
 
@@ -79,25 +80,25 @@ def _misnamed(file: str, id: object, others: Container[str]) -> Fault | None:
     return Fault(file, None, None, f"its effect is called {id!r}{taken}", f"call it {stem!r} like its file")
 
 
-def _effect(file: str, content: bytes) -> Effect | Fault:
+def _effect(file: str, content: bytes | str) -> Effect | Fault:
     """What a file makes, a sibling of the bundled effects. It is a program, and may end in any way."""
     stem = Path(file).stem
     module = ModuleType(f"{__name__}.{stem}")
     module.__dict__.update(__file__=file, __package__=__name__)
     try:
         exec(compile(content, file, "exec"), module.__dict__)
-        lines = decode_source(content).splitlines(keepends=True)
+        text = content if isinstance(content, str) else decode_source(content)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit too, which would end the command without a word
         return _failed(file, error)
-    linecache.cache[file] = (len(content), None, lines, file)  # the text as it ran, for tracebacks and the kernels' cache
+    linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)  # as it ran, for tracebacks
     effect = module.__dict__.get("EFFECT")
     if effect is None:
         return Fault(file, None, None, "there is no record EFFECT in it", f'write EFFECT = Effect("{stem}", ...)')
     if not isinstance(effect, Effect):
         return Fault(file, None, None, f"EFFECT is of type {type(effect).__name__}", f'write EFFECT = Effect("{stem}", ...)')
-    return effect
+    return replace(effect, program=Program(file, text))
 
 
 def _failed(file: str, error: BaseException) -> Fault:

@@ -8,6 +8,7 @@ from ...quantities import BAR, M_S, N_M, N_M_RAD, N_RAD, ONE, RAD, REAR, M, N, P
 from ..chassis import per_wheel
 from ..smooth import direction, magnitude
 from ..stage import define, stage
+from . import NAMES
 
 RATED = 4.0  # bar, the pressure of Table 1
 REFERENCE = "Doria, Table 1: tyre A, 4 bar, 400 N, 4 km/h"
@@ -19,8 +20,8 @@ PARAMETERS = (
         "how the tyre's lateral force follows slip",
         default=1,
         lower=1,
-        upper=3,
-        choices=("linear", "dugoff", "magic_formula"),
+        upper=len(NAMES),
+        choices=NAMES,
         fixed=True,
         symbol="tyre_law",
     ),

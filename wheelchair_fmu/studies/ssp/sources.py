@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ...contracts.own import variant_in
 from ...errors import Failure, UsageError, unknown
 from ...fmu.parameter_set import ParameterSet, from_values, from_variant, reference
 from ...given import toml
 from ...model.stage import Effect
-from ...model.variant import number, read_variant
+from ...model.variant import number
 from ...quantities import Parameter
 from ...resources import SYSTEMS
 from ...surroundings import floor, pusher
@@ -73,7 +74,7 @@ def parameter_set(name: str, catalogue: Mapping[str, Effect] | None = None) -> t
     table = _load(path)
     component, title = str(table.get("for", "Chair")), str(table.get("title", ""))
     if component == "Chair":
-        return component, replace(from_variant(read_variant(path, catalogue), path.stem), description=title)
+        return component, replace(from_variant(variant_in(path, catalogue), path.stem), description=title)
     if component not in RECORDS:
         raise unknown(f"component in {path}", component, COMPONENTS)
     known = {p.name: p for p in RECORDS[component]}

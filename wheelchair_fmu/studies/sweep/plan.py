@@ -33,7 +33,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ...contracts.own import checked
+from ...contracts.own import checked, variant_in
 from ...errors import FileError, WheelchairError
 from ...faults import Fault, not_utf8, suggestion
 from ...given import toml
@@ -42,7 +42,7 @@ from ...model.effects import sources
 from ...model.former import former
 from ...model.recipe import Recipe
 from ...model.stage import Effect
-from ...model.variant import number, read_variant
+from ...model.variant import number
 from ...quantities import Parameter
 from .design import INDICES, METHODS, Axis, Design
 
@@ -232,6 +232,7 @@ class _Reader:
     def _axes(self, method: str, chairs: tuple[Chair, ...]) -> Iterator[Axis]:
         given = dict(_flat(self._table("parameters"), set(self._records((self.bare,), tuple(self.catalogue)))))
         records = self._records(chairs or (self.bare,), self._effects_of(given))
+        effects = {**self.catalogue, **{id: e for c in chairs for id, e in c.variant().catalogue.items()}}
         for name, value in given.items():
             key = f"parameters.{name}"
             if instead := dict(former([name])).get(name):
@@ -242,7 +243,7 @@ class _Reader:
                 self.fault(key, f"no parameter {name!r}", suggestion(name, records))
                 continue
             effect = name.split(".")[1] if name.startswith("effect.") else ""
-            if effect and self.catalogue[effect].delays_record:
+            if effect and effects[effect].delays_record:
                 self.fault(key, f"effect {effect!r} shifts recorded pushes and is no part of a chair", "leave it out")
                 continue
             try:
@@ -359,11 +360,11 @@ class _Reader:
                 self.fault(key, f"variant {label!r} comes twice", "give each its own name")
             labels.add(label)
             try:
-                variant = read_variant(self.path.parent / file, self.catalogue)
+                variant = variant_in(self.path.parent / file, self.catalogue)
             except WheelchairError as error:
                 self.refused(f"{key}.file", error)
             else:
-                yield replace(Chair.of(variant, self.bare.own), label=label)
+                yield replace(Chair.of(variant), label=label)
 
     def _campaign(self, sweep: Mapping[str, Any]) -> Path | None:
         if "campaign" not in sweep:

@@ -1,0 +1,28 @@
+"""docs/your-own-manoeuvre.md: its two files do what it says, and so does its table."""
+
+from __future__ import annotations
+
+import doctest
+
+import pytest
+
+from tests.pages import its_test_passes, page, run
+
+PAGE = "your-own-manoeuvre.md"
+
+
+def test_the_page_s_manoeuvre_passes_the_page_s_test(tmp_path):
+    its_test_passes(PAGE, tmp_path)
+
+
+@pytest.mark.nightly
+def test_it_is_known_by_name(tmp_path):
+    its_test_passes(PAGE, tmp_path)
+    lanes = ("-m", "wheelchair_fmu.cli.main", "simulate", "lane-change", "--period", "3")
+    assert "out/lane-change.csv" in run(tmp_path, *lanes)
+
+
+def test_a_table_is_enough():
+    test = doctest.DocTestParser().get_doctest(page(PAGE).replace("```", ""), {}, PAGE, PAGE, 0)
+    done = doctest.DocTestRunner().run(test)
+    assert done.attempted == 4 and not done.failed

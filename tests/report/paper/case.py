@@ -1,0 +1,31 @@
+"""The sample campaign's diagnosis, as `wheelchair diagnose examples/sample-campaign --json` wrote it, and changes of it."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.report.paper.case import Case, checked
+
+SAMPLE = Path(__file__).parents[3] / "examples" / "sample-campaign"
+TOLD = Path(__file__).parent / "diagnosis.json"
+DRAG = "rolling_resistance_asymmetry"
+SIZE = f"effect.{DRAG}.D"
+
+
+@cache
+def sample() -> Campaign:
+    return read(SAMPLE)
+
+
+def told(**more: Any) -> dict[str, Any]:
+    """The diagnosis with other values of some keys, of its own to be changed."""
+    return {**json.loads(TOLD.read_text(encoding="utf-8")), **more}
+
+
+def case_of(diagnosis: dict[str, Any] | None = None, campaign: Campaign | None = None) -> Case:
+    return checked(campaign or sample(), Variant(), diagnosis or told(), (), "d.json")
