@@ -1,8 +1,8 @@
 """The parts of a campaign's runs in which the chair rolls.
 
-About rest a chair holds on to the floor as long as it can and then lets go, so that a force too small to move it does nothing and
-one a little larger much: no slope tells what a force does that nobody recorded. Where such forces are asked for, runs begin when
-the chair rolls and end when it stands.
+About rest a chair holds on to the floor as long as it can and then lets go, so that a force too small to move it does nothing
+and one a little larger much: no slope tells what a force does that nobody recorded. Where such forces are asked for, runs begin
+when the chair rolls and end when it stands.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ SPEEDS = ("wheel_speed_l", "wheel_speed_r", "u")
 
 
 def moving(campaign: Campaign) -> Campaign:
-    """The campaign with each run cut to where its chair rolls, in several where it stood in between; a run that tells no speed, or
-    that never rolls for long, stays whole."""
+    """The campaign with each run cut to where its chair rolls, in several where it stood in between; a run that tells no speed,
+    or that never rolls for long, stays whole."""
     return replace(campaign, runs=tuple(part for run in campaign.runs for part in _parts(run)))
 
 

@@ -69,13 +69,13 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
 
 
 def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> tuple[Strength, Evidence]:
-    """How strong the forces are that a model needs at these values, and evidence of the fitted runs, where the chair rolls, about
-    the path that these forces lead to.
+    """How strong the forces are that a model needs at these values, and evidence of the fitted runs, where the chair rolls,
+    about the path that these forces lead to.
 
     A model that lacks much goes another way than the chair did, and slopes along that say little of how a force would bring it
     back. So forces are estimated, the model is led by them, and the strength is estimated anew from there.
     """
-    likelihood = likelihood.of(moving(likelihood.campaign))
+    likelihood = likelihood.led(moving(likelihood.campaign))
     likelihood.noise_model = replace(likelihood.noise_model, force=USUAL_FORCE, moment=USUAL_MOMENT)
     found = Strength(0.0, 0.0, 0.0)
     for _ in range(ROUNDS):

@@ -272,6 +272,7 @@ class Likelihood:
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
         self.paths: dict[str, np.ndarray] = {}
+        self._led_by_forces = False
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -350,7 +351,7 @@ class Likelihood:
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         e = self._one(run, values, by)
         for _ in range(rounds):
-            if self._disturbed:
+            if self._led_by_forces:
                 further = self._led(e, values, by)
                 if further is None:
                     break
@@ -519,10 +520,12 @@ class Likelihood:
         other.__dict__ = {**self.__dict__, "noise_model": noise_model}
         return other
 
-    def of(self, campaign: Campaign) -> Likelihood:
-        """The same model and noise on other runs of the chair, each from where its first samples say."""
+    def led(self, campaign: Campaign) -> Likelihood:
+        """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
+        path on which forces that nobody recorded lead it, once its start is tuned."""
         other = self.with_noise_model(self.noise_model)
         other.campaign, other.starts, other.paths = campaign, {r.name: other._prior(r) for r in campaign.runs}, {}
+        other._led_by_forces = True
         return other
 
 

@@ -103,14 +103,14 @@ def geometry(likelihood: Likelihood, found: Fit) -> dict[str, float]:
     return {**given, **likelihood.variant.values, **likelihood.campaign.known, **found.values}
 
 
-def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength) -> Unexplained:
-    """What a fitted model lacks, and what orders it."""
+def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength, evidence: Evidence) -> Unexplained:
+    """What a fitted model lacks, and what orders it, by `evidence` at its values."""
     chair = geometry(likelihood, found)
     weight, arm = chair["chair.m"] * chair["g"], chair["chair.b"]
     if not after.fall:
         return Unexplained(before, after, (), (), weight, arm)
-    forces = missing(found.evidence, after, chair["chair.t_r"])
-    by = orders(found.evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
+    forces = missing(evidence, after, chair["chair.t_r"])
+    by = orders(evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
     return Unexplained(before, after, tuple(by), tuple(forces), weight, arm)
 
 
