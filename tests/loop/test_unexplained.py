@@ -20,7 +20,7 @@ def left_of(campaign):
     likelihood = Likelihood(campaign, Variant())
     evidence = likelihood.evidence(campaign.fit, {}, ())
     needed = strength(evidence, T_R)
-    return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed)
+    return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed, evidence)
 
 
 def spring(run, without):

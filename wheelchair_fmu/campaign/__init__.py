@@ -11,6 +11,7 @@ from ..faults import Fault
 from .axes import to_sae
 from .channels import BY_NAME, CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
+from .moving import moving
 from .reading import Judged, check, fingerprint, judged, read
 from .recorded import Recorded
 from .records import Baseline, Campaign, Clock, Run
@@ -32,6 +33,7 @@ __all__ = [
     "covered",
     "fingerprint",
     "judged",
+    "moving",
     "pieces",
     "read",
     "read_smartwheel",

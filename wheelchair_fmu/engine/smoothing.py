@@ -39,7 +39,8 @@ def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) ->
         new = residual[i, z] - H @ x
         seen.append((H, back_H, new))
         gain = P @ back_H
-        x, P = x + gain @ new, P - gain @ PH.T
+        kept = np.eye(whole) - gain @ H
+        x, P = x + gain @ new, kept @ P @ kept.T  # which stays positive where readings are all but exact (Bucy and Joseph 1968)
     there = slice(nx + filter_.recorded, nx + nq)
     mean, sd = np.empty((n, nq - filter_.recorded)), np.empty((n, nq - filter_.recorded))
     back, Back = np.zeros(whole), np.zeros((whole, whole))

@@ -17,6 +17,7 @@ from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
+from ..engine.smoothing import smoothed
 from ..errors import SimulationError
 from ..model.frames import to_room, velocity_at
 from ..model.variant import Variant
@@ -37,6 +38,7 @@ ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
+STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where forces lead
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
 FIRST = 0.2  # s of samples that say where a run starts
@@ -83,6 +85,9 @@ class RunEvidence:
     measured: np.ndarray  # (n, nz), less offsets
     whitener: Marginal | Weighed
     offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
+    path: np.ndarray | None = None  # (n, 2) force and moment that nobody recorded, about which all is linearised; None: none
+    added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
+    driven: np.ndarray | None = None  # (n, nz) readings simulated with them
 
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
@@ -110,7 +115,17 @@ class RunEvidence:
 
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
-        return replace(self, S=none, start_S=none, results=np.empty((0, 0)))
+        return replace(self, S=none, start_S=none, results=np.empty((0, 0)), path=None, added=0.0, driven=None)
+
+    @property
+    def misfit(self) -> float:
+        """−2 log likelihood, but for a constant."""
+        return float(np.nansum(self.r**2)) + self.whitener.logdet
+
+    @property
+    def foretold(self) -> np.ndarray:
+        """(n, nz) readings without forces that nobody recorded, by slopes about where these lead."""
+        return self.predicted if self.driven is None else self.driven - self.added
 
     @cached_property
     def e(self) -> np.ndarray:
@@ -256,6 +271,8 @@ class Likelihood:
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
+        self.paths: dict[str, np.ndarray] = {}
+        self._led_by_forces = False
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -292,10 +309,11 @@ class Likelihood:
 
         def one(e: RunEvidence) -> RunEvidence:
             results, predicted = self._simulated(e.run, values, e.start)
+            driven = None if e.path is None else self._simulated(e.run, values, e.start, e.path)[1]
             measured = self._measured(e.run, values)
             assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
-            r = e.whitener((measured - predicted)[:, :, None], e.offset)[:, :, 0]
-            return replace(e, r=r, results=results, predicted=predicted, measured=measured)
+            there = replace(e, results=results, predicted=predicted, measured=measured, driven=driven)
+            return replace(there, r=e.whitener((measured - there.foretold)[:, :, None], e.offset)[:, :, 0])
 
         return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
 
@@ -319,9 +337,13 @@ class Likelihood:
         """The channels of a run, what was measured (n, nz), less the sensors' offsets, and what is simulated (n, nz)."""
         return self._channels(run), self._measured(run, values), self._simulated(run, values, start)[1]
 
-    def _simulated(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        """Results (n, ny) and readings (n, nz) of a run, without derivatives."""
+    def _simulated(
+        self, run: Run, values: Mapping[str, float], start: Mapping[str, float], path: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 2) acting."""
         given, w = self._given(run, values, start)
+        if path is not None:
+            w = self._driven(run, given, w, path)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
         predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
         return results, read(run, self._channels(run), predicted, start)
@@ -329,12 +351,50 @@ class Likelihood:
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         e = self._one(run, values, by)
         for _ in range(rounds):
+            if self._led_by_forces:
+                further = self._led(e, values, by)
+                if further is None:
+                    break
+                e = further
+                continue
             better, sd = self._better_start(e), e.uncertain
             if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
             e = self._one(run, values, by)
         return e
+
+    def _led(self, e: RunEvidence, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence | None:
+        """The run along a path that forces which nobody recorded lead it, as all readings have them: as much of the step there
+        as makes the readings likelier; None where none does."""
+        name, path = e.run.name, np.zeros((len(e.run.time), 2)) if e.path is None else e.path
+        step, better, before = followed(e) - path, self._better_start(e), self.starts[e.run.name]
+        for share in STEPS:
+            self.starts[name] = {n: before.get(n, 0.0) + share * (v - before.get(n, 0.0)) for n, v in better.items()}
+            self.paths[name] = path + share * step
+            try:
+                further = self._one(e.run, values, by)
+            except SimulationError:
+                continue
+            if further.misfit < e.misfit:
+                return further
+        self.starts[name] = before
+        if e.path is None:
+            del self.paths[name]
+        else:
+            self.paths[name] = e.path
+        return None
+
+    @property
+    def _disturbed(self) -> bool:
+        return self.noise_model.force > 0 or self.noise_model.moment > 0
+
+    def _driven(self, run: Run, given: np.ndarray, w: np.ndarray, path: np.ndarray) -> np.ndarray:
+        """Inputs (n, nw) with forces that nobody recorded, as pushes."""
+        pushes, out = pushes_of(run), w.copy()
+        as_push = disturbance(self.noise_model, len(pushes), given[self._tread]).as_push
+        out[:, [self._inputs.index(n) for n in pushes]] += path @ as_push.T
+        return out
 
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
         """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
@@ -350,24 +410,23 @@ class Likelihood:
         start = {**prior, **{n: v for n, v in found.items() if n in prior or n not in CASTERS}}
         given, w = self._given(run, values, start)
         columns = [n for n in (*by, *self.start_names) if n not in self._delays and n not in self.offsets]
-        simulated = self.sensitivities.run(run.time, w, given, columns, tolerance=TOLERANCE)
+        path = self.paths.get(run.name) if self._disturbed else None
+        acting = w if path is None else self._driven(run, given, w, path)
+        simulated = self.sensitivities.run(run.time, acting, given, columns, tolerance=TOLERANCE)
         measured = self._measured(run, values)
-        predicted = read(run, channels, simulated.readings[:, which], start)
+        driven = read(run, channels, simulated.readings[:, which], start)
         to_state = simulated.start[:, [columns.index(n) for n in self.start_names]]  # (nx, m)
         spread = to_state * [sd[n] for n in self.start_names]
         noise = self._noise(run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
-        unknown = (
-            disturbance(self.noise_model, len(pushes), given[self._tread])
-            if self.noise_model.force or self.noise_model.moment
-            else None
-        )
+        unknown = disturbance(self.noise_model, len(pushes), given[self._tread]) if self._disturbed else None
         filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
         constants = locals_of(run)
-        by_constant = [slope(c, run, channels, predicted, pushes, filter_) for c in constants]
+        by_constant = [slope(c, run, channels, driven, pushes, filter_) for c in constants]
+        added = filter_.response(path @ unknown.as_push.T) if unknown is not None and path is not None else 0.0
         k, m = len(by), len(self.start_names)
         signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
-        signals[:, :, 0] = measured - predicted
+        signals[:, :, 0] = measured - (driven - added)
         self._fill_columns(signals[:, :, 1 : 1 + k + m], run, simulated, w[:, there], by, columns, which, filter_)
         for j, column in enumerate(by_constant):
             signals[:, :, 1 + k + m + j] = column
@@ -377,9 +436,11 @@ class Likelihood:
         )
         white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
-        return RunEvidence(
-            run, channels, r[:, :, 0], S, start_S, start, simulated.results, predicted, measured, whitener, offset
-        )
+        of_run = run, channels, r[:, :, 0], S, start_S, start
+        if path is None:
+            return RunEvidence(*of_run, simulated.results, driven, measured, whitener, offset)
+        alone = self._simulated(run, values, start)
+        return RunEvidence(*of_run, *alone, measured, whitener, offset, path, added, driven)
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
         """What was measured (n, nz), less the sensors' offsets."""
@@ -459,6 +520,14 @@ class Likelihood:
         other.__dict__ = {**self.__dict__, "noise_model": noise_model}
         return other
 
+    def led(self, campaign: Campaign) -> Likelihood:
+        """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
+        path on which forces that nobody recorded lead it, once its start is tuned."""
+        other = self.with_noise_model(self.noise_model)
+        other.campaign, other.starts, other.paths = campaign, {r.name: other._prior(r) for r in campaign.runs}, {}
+        other._led_by_forces = True
+        return other
+
 
 def disturbance(noise_model: NoiseModel, pushes: int, t_r: float) -> Disturbance:
     """A force along the heading and a moment, as changes of the recorded pushes, of which the first two are on the left and
@@ -466,6 +535,13 @@ def disturbance(noise_model: NoiseModel, pushes: int, t_r: float) -> Disturbance
     as_push = np.zeros((pushes, 2))
     as_push[:2] = [[0.5, 1 / t_r], [0.5, -1 / t_r]]
     return Disturbance(np.array([noise_model.force, noise_model.moment]), np.full(2, FORGOTTEN), as_push)
+
+
+def followed(e: RunEvidence) -> np.ndarray:
+    """The force and moment (n, 2) that nobody recorded, as all readings of a run have them."""
+    assert isinstance(e.whitener, Marginal)
+    filter_ = e.whitener.whitener
+    return smoothed(filter_, e.measured - e.foretold, e.offset[: filter_.size[0]])[0]
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..campaign import Baseline, Clock, Run
 from ..engine.innovations import Whitener
+from ..errors import SimulationError
 
 STROKE = 0.03  # s, either side: slopes of a recorded push are taken over this, as over a sample they are mostly noise
 
@@ -139,6 +140,8 @@ class Marginal:
         none = np.zeros(whitener.noise.start.shape[0])
         self.L = whitener(signals, none, in_place=True)[:, :, 1:]
         flat = self.L.reshape(n * nz, -1)
+        if not np.isfinite(flat).all():
+            raise SimulationError("what a clock or a baseline would do grows beyond all numbers; try other parameters")
         size, directions = np.linalg.eigh(flat.T @ flat)
         root = np.sqrt(1 + np.maximum(size, 0.0))
         self._less = (directions / (root * (root + 1))) @ directions.T  # (1 − 1/√(1 + κ))/κ, also where κ is 0

@@ -103,14 +103,14 @@ def geometry(likelihood: Likelihood, found: Fit) -> dict[str, float]:
     return {**given, **likelihood.variant.values, **likelihood.campaign.known, **found.values}
 
 
-def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength) -> Unexplained:
-    """What a fitted model lacks, and what orders it."""
+def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength, evidence: Evidence) -> Unexplained:
+    """What a fitted model lacks, and what orders it, by `evidence` at its values."""
     chair = geometry(likelihood, found)
     weight, arm = chair["chair.m"] * chair["g"], chair["chair.b"]
     if not after.fall:
         return Unexplained(before, after, (), (), weight, arm)
-    forces = missing(found.evidence, after, chair["chair.t_r"])
-    by = orders(found.evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
+    forces = missing(evidence, after, chair["chair.t_r"])
+    by = orders(evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
     return Unexplained(before, after, tuple(by), tuple(forces), weight, arm)
 
 
@@ -119,7 +119,7 @@ def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]
 
     def one(e: RunEvidence) -> Missing:
         filter_, start = disturbed(e, strength.put_into(NoiseModel({})), t_r)
-        mean, sd = smoothed(filter_, e.measured - e.predicted, start)
+        mean, sd = smoothed(filter_, e.measured - e.foretold, start)
         both = {name: (mean[:, i], sd[:, i]) for i, name in enumerate(("force", "moment"))}
         return Missing(e.run.name, e.run.time, {n: m for n, (m, _) in both.items()}, {n: s for n, (_, s) in both.items()})
 

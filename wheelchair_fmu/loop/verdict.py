@@ -13,11 +13,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..campaign import Campaign, windows
+from ..errors import SimulationError
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .calibration import Calibrated, calibration, doubts
 from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, at_the_floor
-from .disturbance import Strength, strength
+from .disturbance import Strength, acting, strength
 from .experiment import Experiment, reveal, separate
 from .factory import CALIBRATED, MEASURED, ModelFactory
 from .fit import Fit
@@ -150,21 +151,35 @@ def diagnose(
 def _with_forces(found: Diagnosis, again: Callable[[NoiseModel], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
-    before = _strength(found, found.rounds[0].fit)
+    before, _ = _acting(found, (), found.rounds[0].fit)
     if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
-        return replace(found, unexplained=Unexplained(before, _strength(found, found.top), ()))
+        return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
     say("searching again, with forces that nobody recorded")
-    second = again(before.put_into(found.search.factory.noise_model))
-    after = _strength(second, second.top)
-    left = unexplained(second.search.factory.likelihood(second.included), second.top, before, after)
+    try:
+        second = again(before.put_into(found.search.factory.noise_model))
+    except SimulationError:  # forces so strong that they hide all that a model does
+        return replace(found, unexplained=_left(found, before))
+    left = _left(second, before)
     if left.orders or not left.like_a_floor:
         return replace(found, unexplained=left)
     with_forces = replace(second.ladder[1], name=FORCES)
     return replace(second, ladder=(*found.ladder[:2], with_forces, *second.ladder[2:]), unexplained=left)
 
 
-def _strength(found: Diagnosis, at: Fit) -> Strength:
-    return strength(at.evidence, geometry(found.search.factory.likelihood(), at)["chair.t_r"])
+def _left(found: Diagnosis, before: Strength) -> Unexplained:
+    """The force that the last model of a search lacks, where it lacked so much `before`, and what orders it."""
+    after, evidence = _acting(found, found.included, found.top)
+    return unexplained(found.search.factory.likelihood(found.included), found.top, before, after, evidence)
+
+
+def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength, Evidence]:
+    """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
+    term, which no likelihood of the search knows."""
+    likelihood = found.search.factory.likelihood(effects)
+    t_r = geometry(likelihood, at)["chair.t_r"]
+    if not set(at.names) <= set(likelihood.records):
+        return strength(at.evidence, t_r), at.evidence
+    return acting(likelihood, at.values, t_r)
 
 
 def _searched(

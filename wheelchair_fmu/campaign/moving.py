@@ -1,0 +1,70 @@
+"""The parts of a campaign's runs in which the chair rolls.
+
+About rest a chair holds on to the floor as long as it can and then lets go, so that a force too small to move it does nothing
+and one a little larger much: no slope tells what a force does that nobody recorded. Where such forces are asked for, runs begin
+when the chair rolls and end when it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from .records import Campaign, Run
+from .windows import between
+
+ROLLS, STANDS = 0.2, 0.1  # m/s: a chair rolls from the former on until it is slower than the latter
+SMOOTH = 0.1  # s over which a speed is taken
+LEAST = 2.0  # s: what rolls for less is left out
+SPEEDS = ("wheel_speed_l", "wheel_speed_r", "u")
+
+
+def moving(campaign: Campaign) -> Campaign:
+    """The campaign with each run cut to where its chair rolls, in several where it stood in between; a run that tells no speed,
+    or that never rolls for long, stays whole."""
+    return replace(campaign, runs=tuple(part for run in campaign.runs for part in _parts(run)))
+
+
+def _parts(run: Run) -> list[Run]:
+    speed = _speed(run)
+    if speed is None:
+        return [run]
+    whole = [(a, b) for a, b in _stretches(run.time, speed) if b - a >= LEAST]
+    if not whole or whole == [(run.time[0], run.time[-1])]:
+        return [run]
+    parts = [between(run, a, b) for a, b in whole]
+    return parts if len(parts) == 1 else [replace(p, name=f"{run.name}@{p.time[0]:.6g}s") for p in parts]
+
+
+def _speed(run: Run) -> np.ndarray | None:
+    """That of the faster wheel (n,), or of the chair, at all times."""
+    found = []
+    for name in (name for name in SPEEDS if name in run.channels):
+        good = np.isfinite(run.channels[name])
+        if good.sum() > 1:
+            found.append(np.abs(_smooth(run.time, run.time[good], run.channels[name][good])))
+    return np.max(found, axis=0) if found else None
+
+
+def _smooth(at: np.ndarray, time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Means (n,) over SMOOTH about each time of a series of its own times."""
+    area = np.concatenate(([0.0], np.cumsum(np.diff(time) * (values[1:] + values[:-1]) / 2)))
+    ends = [np.clip(at + side * SMOOTH / 2, time[0], time[-1]) for side in (1, -1)]
+    wide = ends[0] - ends[1]
+    mean = (np.interp(ends[0], time, area) - np.interp(ends[1], time, area)) / np.where(wide > 0, wide, 1.0)
+    return np.where(wide > 0, mean, np.interp(at, time, values))
+
+
+def _stretches(time: np.ndarray, speed: np.ndarray) -> Iterator[tuple[float, float]]:
+    """From when to when the chair rolls."""
+    begun: float | None = None
+    for t, v in zip(time, speed, strict=True):
+        if begun is None and v > ROLLS:
+            begun = float(t)
+        elif begun is not None and v < STANDS:
+            yield begun, float(t)
+            begun = None
+    if begun is not None:
+        yield begun, float(time[-1])
