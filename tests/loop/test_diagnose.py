@@ -23,7 +23,7 @@ from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.staircase import Step
 from wheelchair_fmu.loop.statistics import sandwich, size_seen
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
-from wheelchair_fmu.model.generic import library, terms
+from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
 
 DRAG = "effect.rolling_resistance_asymmetry.D"
@@ -171,19 +171,6 @@ def test_look_alikes_are_tied_where_nothing_tells_them_apart():
     assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
     assert 1 <= found.next_experiment["repeats"] <= 20
     assert set(found.effects) == {"aerodynamic_drag", "rolling_resistance_speed"}
-
-
-def test_what_no_effect_explains_is_outside_with_a_proposal(tmp_path):
-    """A spring that pulls the casters straight is in nobody's catalogue; the term found brings the error to the floor."""
-    found = diagnose(measured("open-09-outside"), generic=library())
-    assert found.verdict == "outside" and found.proposal is not None
-    assert found.proposal.effect == "generic_M_w_spring"
-    assert found.ladder[-1].heldout < 1.05
-    file = tmp_path / "caster_spring.py"
-    file.write_text(terms()[found.proposal.effect].file("caster_spring"), encoding="utf-8")
-    from wheelchair_fmu.contracts.own import load
-
-    assert load(tmp_path)["caster_spring"].parameters[0].unit.name == "N.m"
 
 
 def test_nothing_hidden_nothing_found(tmp_path):
