@@ -1,14 +1,18 @@
-"""What several tests need: a chair with effects, places to evaluate it at, settings of a campaign, who is whose child."""
+"""What several tests need: a chair with effects, places to evaluate it at, settings of a campaign, who is whose child, files
+that are made once."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
+from filelock import FileLock
 
 from wheelchair_fmu.contracts import places
 from wheelchair_fmu.contracts.places import Place
@@ -65,6 +69,21 @@ def tracked(folder: Path) -> Path:
     file = folder / "campaign.toml"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("[noise]", "[noise]\nx = 0.004\ny = 0.004\nyaw = 0.004\n#", 1), encoding="utf-8")
+    return folder
+
+
+def shared(folders: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """A folder that `make` has filled, once for all workers of pytest-xdist. Nobody is to change it."""
+    root = folders.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        root = root.parent
+    folder, whole = root / name, root / f"{name}.whole"
+    with FileLock(root / f"{name}.lock"):
+        if not whole.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            whole.touch()
     return folder
 
 

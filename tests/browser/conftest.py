@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from tests.kit import shared
 from wheelchair_fmu.cli.main import app
 
 ROOT = Path(__file__).parents[2]
@@ -24,6 +25,12 @@ OPTIONS = [
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
+]
+LOOKS = [  # schemes and widths; two show each of both
+    ("light", 1280),
+    ("dark", 390),
+    pytest.param("dark", 1280, marks=pytest.mark.nightly),
+    pytest.param("light", 390, marks=pytest.mark.nightly),
 ]
 PATIENCE = 60_000  # ms; what takes long on a busy machine is no fault
 
@@ -42,7 +49,7 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="session")
 def report_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return report_of(SAMPLE, tmp_path_factory.mktemp("report") / "report.html")
+    return shared(tmp_path_factory, "report", lambda folder: report_of(SAMPLE, folder / "report.html")) / "report.html"
 
 
 def report_of(campaign: Path, file: Path, diagnosis: Path = DIAGNOSIS) -> Path:
@@ -55,7 +62,7 @@ def report_of(campaign: Path, file: Path, diagnosis: Path = DIAGNOSIS) -> Path:
 class Reader:
     """Somebody with the report open, from disk, with the network off; every complaint of the page is kept."""
 
-    def __init__(self, browser: Any, file: Path, width: int = 1280, scheme: str = "light"):
+    def __init__(self, browser: Any, file: Path, width: int = 1280, scheme: str = "light", end: str = ""):
         self.context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True)
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
@@ -63,7 +70,7 @@ class Reader:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("console", self._listen)
         self.page.on("request", lambda r: r.url.startswith("http") and self.complaints.append(f"asked for {r.url}"))
-        self.page.goto(file.as_uri())
+        self.page.goto(file.as_uri() + end)
         self.settle()
 
     def _listen(self, message: Any) -> None:
@@ -95,6 +102,14 @@ class Reader:
 
 @pytest.fixture
 def reader(browser: Any, report_file: Path) -> Iterator[Reader]:
+    opened = Reader(browser, report_file)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="module")
+def open_report(browser: Any, report_file: Path) -> Iterator[Reader]:
+    """For who changes nothing but values, all of them, or nothing."""
     opened = Reader(browser, report_file)
     yield opened
     opened.close()

@@ -15,7 +15,7 @@ import pytest
 from tests.browser.conftest import PATIENCE, ROOT, SAMPLE
 
 pytest.importorskip("uvicorn", reason="the workbench's libraries are not installed")
-RUNS = ("coast-down", "slalom-quick", "steady-left", "steady-right", "straight-strokes", "holdout-slalom", "holdout-strokes")
+RUNS = ("coast-down", "random-steps", "slalom-quick", "holdout-random")  # which show the effect, and are soon diagnosed
 LONG = 300_000  # ms for a diagnosis, models compiled for the first time, on a busy machine
 
 

@@ -91,6 +91,7 @@ def test_only_what_has_changed_is_diagnosed_again(garage, diagnosed, tmp_path):
     assert not Fleet(then.places, settings=(("chair.m", "81"),)).known(out)
 
 
+@pytest.mark.nightly
 def test_a_dask_cluster_gives_the_same_rows(garage, diagnosed, tmp_path):
     LocalCluster = pytest.importorskip("distributed").LocalCluster
     job, out = Fleet(folders([garage])), tmp_path / "out.parquet"

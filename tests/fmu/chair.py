@@ -21,6 +21,7 @@ from fmpy.model_description import ModelDescription
 from wheelchair_fmu.engine import compiler
 
 DISCARD, ERROR = 2, 3
+FEW = "gyro_scale,wheel_inertia"  # effects of an FMU that is soon compiled
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from tests.kit import shared
 from wheelchair_fmu.engine import compiler
-from wheelchair_fmu.fmu.build import build
+from wheelchair_fmu.fmu.build import VERSIONS, build, build_each
 from wheelchair_fmu.fmu.native import headers
 
-from .chair import Unpacked
+from .chair import FEW, Unpacked
 
 
 @pytest.fixture(scope="session")
@@ -19,33 +21,53 @@ def workshop(tmp_path_factory) -> Path:
     return tmp_path_factory.mktemp("fmus")
 
 
-def _built(workshop: Path, name: str, **options) -> Unpacked:
-    return Unpacked.of(build(target=workshop / f"{name}.fmu", **options), workshop / name)
+@pytest.fixture(scope="session")
+def built(tmp_path_factory, workshop) -> Callable[..., Unpacked]:
+    """`built(name, version, **options)`: an FMU, of which one compilation makes the archives of both versions."""
+
+    def unpacked(name: str, version: str, **options) -> Unpacked:
+        def make(folder: Path) -> None:
+            build_each({v: folder / f"{v}.fmu" for v in VERSIONS}, **options)
+
+        return Unpacked.of(shared(tmp_path_factory, f"fmu-{name}", make) / f"{version}.fmu", workshop / f"{name}{version}")
+
+    return unpacked
 
 
 @pytest.fixture(scope="session")
-def native(workshop) -> Unpacked:
-    return _built(workshop, "native")
+def native(built) -> Unpacked:
+    return built("native", "2")
 
 
 @pytest.fixture(scope="session")
-def everything(workshop) -> Unpacked:
-    return _built(workshop, "everything", effects="all")
+def native3(built) -> Unpacked:
+    return built("native", "3")
 
 
 @pytest.fixture(scope="session")
-def native3(workshop) -> Unpacked:
-    return _built(workshop, "native3", fmi="3")
+def everything(built) -> Unpacked:
+    return built("everything", "2", effects="all")
 
 
 @pytest.fixture(scope="session")
-def everything3(workshop) -> Unpacked:
-    return _built(workshop, "everything3", effects="all", fmi="3")
+def everything3(built) -> Unpacked:
+    return built("everything", "3", effects="all")
+
+
+@pytest.fixture(scope="session")
+def few(built) -> Unpacked:
+    """With two effects: for who compiles the sources again, which takes half as long as those of `native`."""
+    return built("few", "2", effects=FEW)
+
+
+@pytest.fixture(scope="session")
+def few3(built) -> Unpacked:
+    return built("few", "3", effects=FEW)
 
 
 @pytest.fixture(scope="session")
 def in_python(workshop) -> Unpacked:
-    return _built(workshop, "in_python", flavour="python")
+    return Unpacked.of(build(target=workshop / "in_python.fmu", flavour="python"), workshop / "in_python")
 
 
 @pytest.fixture(scope="session")

@@ -21,25 +21,11 @@ NIGHTLY_SEEDS = int(os.environ.get("FUZZ_SEEDS", "20000"))
 SANITIZERS = "address,undefined"
 
 
-@pytest.fixture(scope="module")
-def fuzz(native, native3, workshop):
-    """The fuzzer compiled together with the FMU's sources: `fuzz(first seed, seeds, sanitized)` runs it."""
-
-    def run(first: int, seeds: int, sanitized: bool = False, under: tuple[str, ...] = ()) -> str:
-        flags = ["-O1", f"-fsanitize={SANITIZERS}", "-fno-sanitize-recover=all"] if sanitized else ["-O2"]
-        program = _fuzzer(native, native3, workshop / f"fuzz-{sanitized}", [*compiler.command(), *flags])
-        done = subprocess.run([*under, str(program), *_facts(native), str(first), str(seeds)], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr[-4000:]
-        return done.stdout
-
-    return run
-
-
 def _fuzzer(native: Unpacked, native3: Unpacked, program: Path, command: list[str]) -> Path:
     """fuzz.c and the FMU's sources in one program, by this compiler with these flags."""
     if not program.exists():
         units = [str(archive.folder / "sources" / "all.c") for archive in (native, native3)]
-        words = [*command, "-std=gnu11", "-g", f"-I{headers()}", f"-I{native.folder / 'sources'}"]
+        words = [*command, "-std=gnu11", "-g1", f"-I{headers()}", f"-I{native.folder / 'sources'}"]
         words += [str(HERE / "fuzz.c"), *units, "-o", str(program), "-lm"]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode and ("san" in done.stderr or "fuzzer" in done.stderr):
@@ -54,21 +40,37 @@ def _facts(native: Unpacked) -> list[str]:
     return [d.guid, str(len(d.modelVariables)), str(d.numberOfContinuousStates)]
 
 
-def test_random_calls_crash_nothing(fuzz):
-    sentences, taken, refusals = map(int, fuzz(1, 60).split()[::2])
+def _fuzzed(program: Path, facts: list[str], seeds: int, under: tuple[str, ...] = ()) -> str:
+    """What the fuzzer prints at the end of lives from these seeds."""
+    done = subprocess.run([*under, str(program), *facts, "1", str(seeds)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-4000:]
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    ("archives", "level"), [(("few", "few3"), "-O0"), pytest.param(("native", "native3"), "-O2", marks=pytest.mark.nightly)]
+)
+def test_random_calls_crash_nothing(archives, level, request, workshop):
+    """The calls take no time, but compiling them does."""
+    two, three = (request.getfixturevalue(a) for a in archives)
+    program = _fuzzer(two, three, workshop / f"fuzz-{archives[0]}", [*compiler.command(), level])
+    sentences, taken, refusals = map(int, _fuzzed(program, _facts(two), 200).split()[::2])
     assert sentences > 1000  # that many refusals had a reason
     assert taken > 10 and refusals > 100  # of states that were forged
 
 
 @pytest.mark.nightly
-def test_random_calls_are_sound_under_sanitizers(fuzz):
-    fuzz(1, NIGHTLY_SEEDS, sanitized=True)
+def test_random_calls_are_sound_under_sanitizers(native, native3, workshop):
+    flags = ["-O1", f"-fsanitize={SANITIZERS}", "-fno-sanitize-recover=all"]
+    program = _fuzzer(native, native3, workshop / "fuzz-sanitized", [*compiler.command(), *flags])
+    _fuzzed(program, _facts(native), NIGHTLY_SEEDS)
 
 
 @pytest.mark.nightly
 @pytest.mark.skipif(not shutil.which("valgrind"), reason="no valgrind: `apt-get install valgrind`")
-def test_random_calls_are_sound_under_valgrind(fuzz):
-    fuzz(1, 30, under=("valgrind", "--quiet", "--error-exitcode=99", "--leak-check=full"))
+def test_random_calls_are_sound_under_valgrind(native, native3, workshop):
+    program = _fuzzer(native, native3, workshop / "fuzz-valgrind", [*compiler.command(), "-O2"])
+    _fuzzed(program, _facts(native), 30, under=("valgrind", "--quiet", "--error-exitcode=99", "--leak-check=full"))
 
 
 @pytest.mark.nightly

@@ -25,7 +25,7 @@ from wheelchair_fmu.model.stage import Effect
 from wheelchair_fmu.model.variant import Variant, variant_text
 from wheelchair_fmu.quantities import ONE, Parameter
 
-from .chair import Unpacked, chair
+from .chair import FEW, Unpacked, chair
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,7 +36,14 @@ def test_fmpy_finds_no_fault(flavour, request):
 
 
 @pytest.mark.parametrize(
-    ("flavour", "options"), [("native", {}), ("native3", {"fmi": "3"}), ("in_python", {"flavour": "python"})]
+    ("flavour", "options"),
+    [
+        pytest.param("native", {}, marks=pytest.mark.nightly),
+        pytest.param("native3", {"fmi": "3"}, marks=pytest.mark.nightly),
+        ("few", {"effects": FEW}),
+        ("few3", {"effects": FEW, "fmi": "3"}),
+        ("in_python", {"flavour": "python"}),
+    ],
 )
 def test_two_builds_are_the_same_bytes(flavour, options, request, tmp_path):
     first = request.getfixturevalue(flavour).path
@@ -44,14 +51,14 @@ def test_two_builds_are_the_same_bytes(flavour, options, request, tmp_path):
     assert first.read_bytes() == again.read_bytes()
 
 
-def test_its_date_is_the_one_it_is_given(native3, tmp_path, monkeypatch):
+def test_its_date_is_the_one_it_is_given(few3, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    dated = build(target=tmp_path / "dated.fmu", fmi="3")
+    dated = build(target=tmp_path / "dated.fmu", effects=FEW, fmi="3")
     with zipfile.ZipFile(dated) as z:
         assert {entry.date_time for entry in z.infolist()} == {(2023, 11, 14, 22, 13, 20)}
         description = z.read("modelDescription.xml").decode()
     assert 'generationDateAndTime="2023-11-14T22:13:20Z"' in description
-    undated = (native3.folder / "modelDescription.xml").read_text(encoding="utf-8")
+    undated = (few3.folder / "modelDescription.xml").read_text(encoding="utf-8")
     assert description.replace(' generationDateAndTime="2023-11-14T22:13:20Z"', "") == undated  # the token, too
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
     with pytest.raises(BuildError, match="SOURCE_DATE_EPOCH = 'yesterday' is no number of seconds"):
@@ -70,9 +77,18 @@ def test_exports_nothing_but_fmi_and_needs_nothing_but_libc(native):
     assert not {name for name in asked if re.search("lock|thread|sem_|errno", name)}
 
 
-@pytest.mark.parametrize("version", ["2", "3"])
-def test_compiles_without_a_warning_and_shows_fmi_only(version, native, native3, tmp_path):
-    unit = {"2": native, "3": native3}[version].folder / "sources" / "all.c"
+@pytest.mark.parametrize(
+    "archive",
+    [
+        "few",
+        "few3",
+        pytest.param("everything", marks=pytest.mark.nightly),
+        pytest.param("everything3", marks=pytest.mark.nightly),
+    ],
+)
+def test_compiles_without_a_warning_and_shows_fmi_only(archive, request, tmp_path):
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    unit, version = unpacked.folder / "sources" / "all.c", unpacked.description.fmiVersion[0]
     _compile(
         "-std=c11",
         "-O1",
@@ -90,9 +106,9 @@ def test_compiles_without_a_warning_and_shows_fmi_only(version, native, native3,
     assert len(exported) > 40 and all(re.fullmatch(rf"\S+ T fmi{version}\w+", line) for line in exported)
 
 
-def test_two_source_fmus_can_be_linked_into_one_program(native3, everything3, tmp_path):
+def test_two_source_fmus_can_be_linked_into_one_program(few3, native3, tmp_path):
     objects, words, expected = [], ["50"], []
-    for prefix, archive, push in (("First_", native3, 10.0), ("Second_", everything3, 30.0)):
+    for prefix, archive, push in (("First_", few3, 10.0), ("Second_", native3, 30.0)):
         objects.append(str(tmp_path / f"{prefix}.o"))
         _compile("-c", f"-DFMI3_FUNCTION_PREFIX={prefix}", str(archive.folder / "sources" / "all.c"), "-o", objects[-1])
         words += [archive.description.guid, *(str(archive.reference(n)) for n in ("push.F_rl", "chair.psi"))]
@@ -274,17 +290,22 @@ def test_nothing_half_written_where_it_cannot_be(tmp_path):
 
 
 @pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not installed: `pip install ziglang`")
-def test_builds_with_zig_instead_of_a_system_compiler(tmp_path, native):
-    code = "from pathlib import Path; from wheelchair_fmu.fmu.build import build; import sys; build(target=Path(sys.argv[1]))"
+@pytest.mark.parametrize(("archive", "effects"), [("few", FEW), pytest.param("native", "default", marks=pytest.mark.nightly)])
+def test_builds_with_zig_instead_of_a_system_compiler(archive, effects, request, tmp_path):
+    unpacked: Unpacked = request.getfixturevalue(archive)
+    code = (
+        "import sys; from pathlib import Path; from wheelchair_fmu.fmu.build import build; "
+        "build(target=Path(sys.argv[1]), effects=sys.argv[2])"
+    )
     done = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "zig.fmu")],
+        [sys.executable, "-c", code, str(tmp_path / "zig.fmu"), effects],
         capture_output=True,
         text=True,
         cwd=ROOT,
         env=_environment(CC=f"{sys.executable} -m ziglang cc"),
     )
     assert done.returncode == 0, done.stderr
-    with chair(Unpacked.of(tmp_path / "zig.fmu", tmp_path / "zig")) as by_zig, chair(native) as by_cc:
+    with chair(Unpacked.of(tmp_path / "zig.fmu", tmp_path / "zig")) as by_zig, chair(unpacked) as by_cc:
         results = [c.start({"push.F_rl": 20.0}).step(0.01, 100).outputs() for c in (by_zig, by_cc)]
     assert results[0] == pytest.approx(results[1], rel=1e-12, abs=1e-12)
 

@@ -166,9 +166,9 @@ def test_its_sources_compile_as_the_build_description_says(archive, request, tmp
 
 
 @pytest.mark.skipif(platform.machine().lower() not in ("x86_64", "amd64"), reason="asks an x86-64 compiler for -mfma")
-def test_its_sources_keep_a_compiler_from_fusing_multiplications(native3, tmp_path):
+def test_its_sources_keep_a_compiler_from_fusing_multiplications(few3, tmp_path):
     """A processor that can round a·b + c once gets the same digits as one that cannot."""
-    unit, text = native3.folder / "sources" / "all.c", {}
+    unit, text = few3.folder / "sources" / "all.c", {}
     for name in ("all.c", "fused.c"):
         source = unit.with_name(name)
         if name == "fused.c":

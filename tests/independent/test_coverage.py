@@ -10,7 +10,7 @@ from benchmarks.diagnosis.trial import trial
 from benchmarks.independent.hidden import EFFECTS
 
 
-@pytest.mark.parametrize("effect", ["gyro_bias", "wheel_radius_error"])
+@pytest.mark.parametrize("effect", [pytest.param("gyro_bias", marks=pytest.mark.nightly), "wheel_radius_error"])
 def test_intervals_hold_what_was_hidden(effect):
     """Profile likelihood and block bootstrap, where both simulators mean the same by a parameter; seed 1 of the benchmark."""
     found = trial(Case("effect", (effect,), 3.0, seed=1), with_baselines=False)

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
 
 ROOT = Path(__file__).parents[2]
 MEASUREMENTS = ROOT.parent / "shared" / "measurements"
@@ -15,6 +17,14 @@ MEASUREMENTS = ROOT.parent / "shared" / "measurements"
 @pytest.fixture(scope="session")
 def sample() -> Campaign:
     return read(ROOT / "examples" / "sample-campaign")
+
+
+def among(*effects: str):
+    """For tests of `chair`: one whose catalogue has these effects alone, and at night one with the whole catalogue, of which a
+    search takes several times as long."""
+    few = Variant(catalogue={effect: bundled()[effect] for effect in effects})
+    whole = pytest.param(Variant(), id="whole catalogue", marks=pytest.mark.nightly)
+    return pytest.mark.parametrize("chair", [pytest.param(few, id="few effects"), whole])
 
 
 def measured(name: str) -> Campaign:

@@ -54,13 +54,6 @@ def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
     assert abs(toed.fit.values[toe]) < 3 * standard_errors(toed.fit)[toe]
 
 
-def test_who_watches_is_told_the_whole_staircase(sample):
-    """Every time: steps before the last change when the noise is estimated anew."""
-    seen = []
-    found = diagnose(sample, stepped=seen.append)
-    assert [len(ladder) for ladder in seen] == [2, 3] and seen[-1] == found.ladder
-
-
 def test_the_proposed_runs_break_the_tie(tmp_path):
     """Two drags look alike at low speed; coast-downs from 2.5 m/s, made by another author's chair, decide. The mass is known
     exactly, as with noise four times as large an uncertain one leaves more than two in the tie."""

@@ -108,7 +108,7 @@ def held(rho: float) -> tuple[float, float]:
     return float(np.mean(by_errors)), float(np.mean(told))
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.3, 0.9])
+@pytest.mark.parametrize("rho", [0.0, pytest.param(0.3, marks=pytest.mark.nightly), 0.9])
 def test_standard_errors_hold_the_truth_in_95_of_100(rho):
     assert 0.93 <= held(rho)[0] <= 0.97
 
@@ -144,8 +144,12 @@ def differing(runs: int, replications: int, uneven: bool):
         yield found, np.abs(values(found) - true)
 
 
-@pytest.mark.parametrize("uneven", [False, True], ids=["alike", "uneven"])
-@pytest.mark.parametrize("runs", [4, 6, 10])
+AT_NIGHT = [
+    pytest.param(runs, uneven, marks=pytest.mark.nightly) for runs, uneven in ((4, True), (6, False), (10, False), (10, True))
+]
+
+
+@pytest.mark.parametrize(("runs", "uneven"), [(4, False), (6, True), *AT_NIGHT])
 def test_runs_that_have_a_parameter_elsewhere_make_an_interval_as_wide_as_that_asks_for(runs, uneven):
     inside = [[o < half_width(found, i) for i, o in enumerate(off)] for found, off in differing(runs, 600, uneven)]
     assert 0.93 <= np.mean(inside) <= 0.97, np.mean(inside)
@@ -243,7 +247,7 @@ def judged(search, kind: str, measured, slopes, tests: int = 1):
     return search.judge(base, None, found, None, effect, own, tests)
 
 
-@pytest.mark.parametrize("kind", EFFECTS)
+@pytest.mark.parametrize("kind", ["one-sided", "two parameters", pytest.param("two-sided", marks=pytest.mark.nightly)])
 def test_of_a_hundred_effects_that_are_not_there_five_are_significant(search, kind):
     one_sided, k = kind == "one-sided", len(EFFECTS[kind][1])
     found = [judged(search, kind, *null).p < 0.05 for null in nulls(k, 0.0, 2000, one_sided)]
@@ -265,7 +269,15 @@ def test_of_a_hundred_catalogues_without_a_missing_effect_five_have_a_significan
     assert 0.025 <= len(rejected) / 1000 <= 0.06, len(rejected) / 1000
 
 
-@pytest.mark.parametrize(("kind", "rho"), [("one-sided", 0.0), ("two-sided", 0.0), ("two parameters", 0.0), ("two-sided", 0.9)])
+@pytest.mark.parametrize(
+    ("kind", "rho"),
+    [
+        ("one-sided", 0.0),
+        ("two-sided", 0.0),
+        ("two parameters", 0.0),
+        pytest.param("two-sided", 0.9, marks=pytest.mark.nightly),
+    ],
+)
 def test_the_screens_score_test_has_the_level_it_says(kind, rho):
     """Of a parameter that may only be positive, all of it on that side."""
     k, one_sided = len(EFFECTS[kind][1]), kind == "one-sided"

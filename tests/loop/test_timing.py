@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.loop.conftest import among
 from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.preflight import begin, retime_by_slopes, settle_clocks
@@ -68,9 +69,9 @@ SHIFTS = [
 ]
 
 
-def same_verdict(sample, name, seconds):
+def same_verdict(sample, name, seconds, chair=None):
     """The shift that `diagnose` says, None if none; the verdict is as without it."""
-    found = diagnose(with_shift(sample, name, seconds))
+    found = diagnose(with_shift(sample, name, seconds), chair)
     assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)
     assert set(found.search.clocks) <= {name}
     return found.search.clocks[name]["pushes"].seconds if found.search.clocks else None
@@ -83,7 +84,8 @@ def test_the_verdict_is_the_same_and_the_shift_is_told(sample, name, seconds):
     assert told == pytest.approx(seconds, abs=0.01) or (told is None and seconds < 0.05)
 
 
+@among("rolling_resistance_asymmetry", "push_force_delay", "gyro_bias", "camber_misalignment")
 @pytest.mark.parametrize(("name", "seconds"), [("straight-strokes", 0.3), ("steady-right", 0.1), ("slalom-quick", 0.02)])
-def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds):
+def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair):
     """Strokes that are all alike, a turn that hides its shift behind the missing effect, and a slalom whose shift bends C_λ."""
-    assert same_verdict(sample, name, seconds) == pytest.approx(seconds, abs=0.01)
+    assert same_verdict(sample, name, seconds, chair) == pytest.approx(seconds, abs=0.01)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.fmu.chair import Unpacked
+from tests.kit import shared
 from wheelchair_fmu.fmu.companions import Recording, build_floor, build_pusher
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.archives import fmu_of
@@ -23,8 +24,8 @@ def workshop(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def slalom(workshop) -> Path:
-    return build("slalom", workshop / "slalom.ssp")
+def slalom(tmp_path_factory) -> Path:
+    return shared(tmp_path_factory, "slalom", lambda folder: build("slalom", folder / "slalom.ssp")) / "slalom.ssp"
 
 
 @pytest.fixture(scope="session")

@@ -91,6 +91,7 @@ def build_each(
     for version in targets:
         if version not in VERSIONS:
             raise unknown("version of FMI", version, VERSIONS)
+    package.moment()  # before a compiler is at work
     grown = with_chosen_effects(variant or Variant(), effects)
     if equations:
         grown = replace(grown, choice=replace(grown.choice, equations=equations))

@@ -178,6 +178,7 @@ def wait_for_parts(out, n, process):
         time.sleep(0.02)
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="SIGKILL is POSIX")
 def test_killed_outright_and_run_again(tmp_path):
     job, out = job_of(tmp_path, LONG), tmp_path / "out.parquet"
@@ -196,6 +197,7 @@ def test_killed_outright_and_run_again(tmp_path):
     assert len(chairs) == job.plan.runs and not chairs.duplicated().any() and is_done(job, out)
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="SIGKILL is POSIX")
 def test_a_dask_cluster_with_a_worker_killed_does_the_same(tmp_path):
     LocalCluster = pytest.importorskip("distributed").LocalCluster
