@@ -9,6 +9,7 @@ import pytest
 
 from wheelchair_fmu.campaign import Baseline, Clock
 from wheelchair_fmu.engine.innovations import Noise, Whitener
+from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.loop.fit import fit
 from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.local import Marginal
@@ -113,3 +114,10 @@ def test_a_run_whose_start_is_known_may_have_an_uncertain_clock(recorded):
     fixed = replace(run, set=known, channels=moved, clocks=(GYRO,))
     (e,) = likelihood.evidence([fixed], {}, (), tune_start=3).runs
     assert e.start["clock.gyro"] == pytest.approx(0.03, abs=0.002)
+
+
+def test_slopes_beyond_all_numbers_are_said_and_no_fault_of_the_program(sample):
+    """As where a model is linearised about a motion that no chair makes."""
+    (e, *_) = Likelihood(sample, Variant()).evidence(sample.fit[:1], {}, ()).runs
+    with pytest.raises(SimulationError, match="grows beyond all numbers"):
+        Marginal(e.whitener.whitener, np.full((*e.r.shape, 1), np.inf))
