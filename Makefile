@@ -9,7 +9,7 @@ BIN := $(VENV)/bin
 help:
 	@echo "make setup   a virtual environment in $(VENV) with everything to run and test"
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
-	@echo "make test    all tests"
+	@echo "make test    the tests, but for those of make nightly"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/quantities.md"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
@@ -20,7 +20,7 @@ help:
 	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
 	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
-	@echo "make nightly     what takes up to an hour: every platform, importers, fuzzing, kills and damage, a few hidden truths, matrix"
+	@echo "make nightly     what takes an hour or more: further cases, every platform, importers, fuzzing, kills and damage, a few hidden truths, matrix"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready

@@ -37,8 +37,9 @@ def test_what_is_odd_is_marked_and_said(tmp_path):
     cells = rows[500].split(",")
     cells[rows[0].split(",").index("yaw_rate [rad/s]")] = "9.0"
     file.write_text("\n".join([*rows[:500], ",".join(cells), *rows[501:]]), encoding="utf-8")
-    toml = (campaign / "campaign.toml").read_text(encoding="utf-8")
-    (campaign / "campaign.toml").write_text(toml.replace("m = 80.0", "mm = 80.0"), encoding="utf-8")
+    head, *runs = (campaign / "campaign.toml").read_text(encoding="utf-8").replace("m = 80.0", "mm = 80.0").split("[[run]]")
+    few = [run for run in runs if "slalom-slow" in run or "coast-down" in run]  # each takes a second to draw
+    (campaign / "campaign.toml").write_text("[[run]]".join([head, *few]), encoding="utf-8")
     done = check(campaign, "--plot", "-o", tmp_path / "out")
     assert done.exit_code == 1 and "chair.mm" in done.stdout
     page = (tmp_path / "out" / "preview.html").read_text(encoding="utf-8")
