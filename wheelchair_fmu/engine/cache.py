@@ -124,7 +124,7 @@ def effect_key(effect: Effect) -> str:
     said = [(law.expression, law.arguments) for law in laws if isinstance(law, ExpressionLaw)]
     codes = [law.__code__ for law in laws if not isinstance(law, ExpressionLaw)]
     files = {c.co_filename: "".join(linecache.getlines(c.co_filename)) for c in codes}
-    if effect.program:  # as it ran; another file of that name may have been read since
+    if effect.program and codes:  # as it ran; another file of that name may have been read since
         files[effect.program.file] = effect.program.text
     words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]] + said)
     targets = repr([(c.to, c.factor) for c in effect.contributions])
