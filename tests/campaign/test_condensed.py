@@ -87,3 +87,8 @@ def test_gaps_stay_gaps(rng):
     after = condensed(a_campaign(run)).runs[0]
     found = np.isfinite(after.channels["wheel_speed_l"])
     assert not found[(after.time > 2.0 + SPAN) & (after.time < 3.0 - SPAN)].any() and found.sum() > 200
+
+
+def test_a_moment_of_a_recording_stays_as_it_is(rng):
+    moment = a_campaign(a_run(rng, rate=1000.0, seconds=0.012))
+    assert condensed(moment) is moment

@@ -13,10 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from .records import Baseline, Campaign, Run
+from .series import integral
 
 SPAN = 0.02  # s. Over it a frequency f is damped by (2π f SPAN)²/24: 1 % at 4 Hz, where hands and trunks hardly move
 DENSE = 150.0  # rows a second, above which a run is condensed
 SLOW = 1.5  # samples in a span, below which a series stays as it is
+FEWEST = 10  # spans; a shorter run stays as it is
 MOSTLY = 0.75  # of the usual number of samples in a span, from which on there is a mean of them
 
 
@@ -26,20 +28,22 @@ def condensed(campaign: Campaign) -> Campaign:
     It says so in `thinned`. Pushes stay straight lines between rows and keep their momentum; the noise of their records is by
     their own samples (see `Run.input_steps`), and stays what it was.
     """
-    fast = {run.name for run in campaign.runs if _density(run.time) > DENSE}
+    fast = sum(map(_is_fast, campaign.runs))
     if not fast or campaign.thinned:
         return campaign
-    runs = tuple(_condensed(run) if run.name in fast else run for run in campaign.runs)
+    runs = tuple(_condensed(run) if _is_fast(run) else run for run in campaign.runs)
     noise = {name: sd / float(np.sqrt(_samples_in_a_mean(campaign, name))) for name, sd in campaign.noise.items()}
     said = (
-        f"the search looks at means over {1000 * SPAN:g} ms of {len(fast)} runs with more than {DENSE:g} rows a second; "
+        f"the search looks at means over {1000 * SPAN:g} ms of {fast} runs with more than {DENSE:g} rows a second; "
         "`wheelchair compare` looks at every sample"
     )
     return replace(campaign, runs=runs, noise=noise, thinned=said)
 
 
-def _density(time: np.ndarray) -> float:
-    return (len(time) - 1) / float(time[-1] - time[0])
+def _is_fast(run: Run) -> bool:
+    """Has it more rows a second than a search needs, and enough spans to be a run of their means?"""
+    seconds = float(run.time[-1] - run.time[0])
+    return len(run.time) - 1 > DENSE * seconds and seconds > FEWEST * SPAN
 
 
 def _step(run: Run, series: np.ndarray) -> float:
@@ -51,9 +55,7 @@ def _step(run: Run, series: np.ndarray) -> float:
 def _samples_in_a_mean(campaign: Campaign, channel: str) -> float:
     """Of a channel, by the run that has fewest; 1 for what stays as it is."""
     counts = [
-        SPAN / _step(run, run.channels[channel]) if _density(run.time) > DENSE else 1.0
-        for run in campaign.runs
-        if channel in run.channels
+        SPAN / _step(run, run.channels[channel]) if _is_fast(run) else 1.0 for run in campaign.runs if channel in run.channels
     ]
     fewest = min(counts, default=1.0)
     return fewest if fewest > SLOW else 1.0
@@ -77,7 +79,7 @@ def _condensed(run: Run) -> Run:
             channels[c][at] = _means(run.time, series, edges)
 
     def driven(series: np.ndarray) -> np.ndarray:
-        return np.interp(time, middles, _mean_of_line(run.time, series, edges))
+        return np.interp(time, middles, np.diff(integral(run.time, series, edges)) / SPAN)
 
     usual = float(np.median(np.diff(run.time)))
     return replace(
@@ -92,16 +94,6 @@ def _condensed(run: Run) -> Run:
 
 def _baseline(baseline: Baseline, driven: Callable[[np.ndarray], np.ndarray]) -> Baseline:
     return replace(baseline, shapes=np.stack([driven(shape) for shape in baseline.shapes.T], axis=1))
-
-
-def _mean_of_line(time: np.ndarray, series: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Mean (m,) over each span of a series (n,) that is a straight line between its samples."""
-    area = np.concatenate(([0.0], np.cumsum(np.diff(time) * (series[1:] + series[:-1]) / 2)))
-    i = np.clip(np.searchsorted(time, edges, side="right") - 1, 0, len(time) - 2)
-    along = edges - time[i]
-    slope = (series[i + 1] - series[i]) / (time[i + 1] - time[i])
-    whole = area[i] + along * (series[i] + slope * along / 2)  # a parabola between two samples
-    return np.asarray(np.diff(whole) / np.diff(edges))
 
 
 def _means(time: np.ndarray, series: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from .records import Campaign, Run
-from .windows import between
+from .series import integral
+from .windows import between, part
 
 ROLLS, STANDS = 0.2, 0.1  # m/s: a chair rolls from the former on until it is slower than the latter
 SMOOTH = 0.1  # s over which a speed is taken
@@ -34,8 +35,7 @@ def _parts(run: Run) -> list[Run]:
     whole = [(a, b) for a, b in _stretches(run.time, speed) if b - a >= LEAST]
     if not whole or whole == [(run.time[0], run.time[-1])]:
         return [run]
-    parts = [between(run, a, b) for a, b in whole]
-    return parts if len(parts) == 1 else [replace(p, name=f"{run.name}@{p.time[0]:.6g}s") for p in parts]
+    return [between(run, *whole[0])] if len(whole) == 1 else [part(run, *ends) for ends in whole]
 
 
 def _speed(run: Run) -> np.ndarray | None:
@@ -50,11 +50,10 @@ def _speed(run: Run) -> np.ndarray | None:
 
 def _smooth(at: np.ndarray, time: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Means (n,) over SMOOTH about each time of a series of its own times."""
-    area = np.concatenate(([0.0], np.cumsum(np.diff(time) * (values[1:] + values[:-1]) / 2)))
-    ends = [np.clip(at + side * SMOOTH / 2, time[0], time[-1]) for side in (1, -1)]
-    wide = ends[0] - ends[1]
-    mean = (np.interp(ends[0], time, area) - np.interp(ends[1], time, area)) / np.where(wide > 0, wide, 1.0)
-    return np.where(wide > 0, mean, np.interp(at, time, values))
+    ends = [np.clip(at + side * SMOOTH / 2, time[0], time[-1]) for side in (-1, 1)]
+    wide = ends[1] - ends[0]
+    first, last = (integral(time, values, end) for end in ends)
+    return np.where(wide > 0, (last - first) / np.where(wide > 0, wide, 1.0), np.interp(at, time, values))
 
 
 def _stretches(time: np.ndarray, speed: np.ndarray) -> Iterator[tuple[float, float]]:

@@ -98,3 +98,13 @@ def without(series: np.ndarray, places: Sequence[int] | np.ndarray) -> np.ndarra
     rest = series.copy()
     rest[places] = np.nan
     return rest
+
+
+def integral(time: np.ndarray, series: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Of a series (n,) that is a straight line between its samples, from the first one to each of the times `at` (m,)
+    among them."""
+    area = np.concatenate(([0.0], np.cumsum(np.diff(time) * (series[1:] + series[:-1]) / 2)))
+    i = np.clip(np.searchsorted(time, at, side="right") - 1, 0, len(time) - 2)
+    along = at - time[i]
+    slope = (series[i + 1] - series[i]) / (time[i + 1] - time[i])
+    return np.asarray(area[i] + along * (series[i] + slope * along / 2))

@@ -69,8 +69,13 @@ def covered(run: Run, late: float) -> Run:
 
 def between(run: Run, first: float, last: float) -> Run:
     """The run from `first` to `last` (s), as far as it goes; whole where that would leave next to nothing."""
+    return replace(part(run, first, last), name=run.name)
+
+
+def part(run: Run, first: float, last: float) -> Run:
+    """The same as one of several, with a name that says where it begins."""
     start, stop = np.searchsorted(run.time, [first - 1e-9, last + 1e-9])
-    return replace(_cut(run, int(start), int(stop)), name=run.name) if stop - start >= FIRST else run
+    return _cut(run, int(start), int(stop)) if stop - start >= FIRST else run
 
 
 def _cells(run: Run, seconds: float) -> list[Cell]:

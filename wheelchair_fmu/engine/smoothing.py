@@ -24,35 +24,31 @@ def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) ->
     first[:nx, :nx] = a["start_cov"]
     first[range(nx, whole), range(nx, whole)] = np.concatenate((a["input_sd"][0], a["sd"])) ** 2
     x, P = np.concatenate((start_mean, np.zeros(nq + nz))), first
-    before: list[tuple[np.ndarray, np.ndarray]] = []
-    seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # H (m, size), Hᵀ S⁻¹ and what is new, of m readings
-    own = np.eye(nz)
+    before: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # x and P that were expected, and the transition F to there
+    seen: list[tuple[np.ndarray, ...]] = []  # of m readings H (m, size), Hᵀ S⁻¹, what is new, and what they leave of an error
+    own, one, F = np.eye(nz), np.eye(whole), np.eye(whole)
     for i in range(n):
         if i:
             F, Q = _step(a, i - 1, nx, nq, nz)
             x, P = F @ x, F @ P @ F.T + Q
-        before.append((x, P))
+        before.append((x, P, F))
         z = np.nonzero(a["present"][i])[0]
         H = np.concatenate((a["H"][i, z], a["D"][i, z], own[z]), axis=1)
-        PH = P @ H.T
-        back_H = np.linalg.solve(H @ PH, H).T if len(z) else H.T
+        back_H = np.linalg.solve(H @ P @ H.T, H).T if len(z) else H.T
         new = residual[i, z] - H @ x
-        seen.append((H, back_H, new))
         gain = P @ back_H
-        kept = np.eye(whole) - gain @ H
+        kept = one - gain @ H
+        seen.append((H, back_H, new, kept))
         x, P = x + gain @ new, kept @ P @ kept.T  # which stays positive where readings are all but exact (Bucy and Joseph 1968)
     there = slice(nx + filter_.recorded, nx + nq)
     mean, sd = np.empty((n, nq - filter_.recorded)), np.empty((n, nq - filter_.recorded))
     back, Back = np.zeros(whole), np.zeros((whole, whole))
     for i in range(n - 1, -1, -1):
-        (x, P), (H, back_H, new) = before[i], seen[i]
-        kept = np.eye(whole) - P @ back_H @ H
+        (x, P, F), (H, back_H, new, kept) = before[i], seen[i]
         back, Back = kept.T @ back - back_H @ new, kept.T @ Back @ kept + back_H @ H
         mean[i] = (x - P @ back)[there]
-        sd[i] = np.sqrt(np.maximum(np.diag(P - P @ Back @ P)[there], 0.0))
-        if i:
-            F, _ = _step(a, i - 1, nx, nq, nz)
-            back, Back = F.T @ back, F.T @ Back @ F
+        sd[i] = np.sqrt(np.maximum(np.diag(P[there, there] - P[there] @ Back @ P[:, there]), 0.0))
+        back, Back = F.T @ back, F.T @ Back @ F
     return mean, sd
 
 
