@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.likelihood import NoiseModel
+from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
 from wheelchair_fmu.loop.noise import noise_model_of
+from wheelchair_fmu.model.variant import Variant
+
+from .forces import ridden
 
 
 def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
@@ -94,3 +98,14 @@ def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
     step = float(np.median(np.diff(time[places])))
     assert noise_model.ar.get("yaw_rate", 0.0) == pytest.approx(phi ** (step / 0.01), abs=0.03)
     assert bool(notes) == (stated != 0.006)
+
+
+def test_a_chair_that_bumps_make_walk_at_random_is_no_noise_of_its_sensors(sample):
+    """Each bump is over within a sample, and its momentum stays: speeds differ from the model's by a random walk."""
+    fine = {**sample.noise, "wheel_speed_l": 8e-4, "wheel_speed_r": 8e-4}
+    rng = np.random.default_rng(4)
+    bumpy = ridden(replace(sample, noise=fine), rng, lambda run, without: (rng.normal(0, 160, len(run.time)), 0 * run.time))
+    likelihood = Likelihood(bumpy, Variant())
+    found, notes = noise_model_of(likelihood.evidence(bumpy.fit, {}, ()), fine, likelihood.noise_model)
+    for name in ("wheel_speed_l", "wheel_speed_r"):
+        assert found.sd[name] == fine[name] and not [note for note in notes if note.startswith(name)]
