@@ -1,11 +1,13 @@
 """Hypothesis asks what is true, not how long a busy machine takes to say so. Workers of pytest-xdist take whole files, so that
 what a file's tests share is made once."""
 
+import os
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+os.environ["WHEELCHAIR_CONFIG"] = os.devnull  # laws, channels and formats of whoever runs the tests stay out of them
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")
 TOGETHER = "tests/api"  # a folder whose files share a diagnosis

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
+import zipfile
+
 import pytest
 
-from tests.pages import its_test_passes, run
+from tests.pages import attempt, its_test_passes, run, with_example
 
 PAGE = "your-own-law.md"
 
@@ -20,9 +23,33 @@ def test_the_fmu_has_it(tmp_path):
     assert "out/slalom.csv" in run(tmp_path, *slalom)
 
 
-def test_a_file_without_its_law_is_told(tmp_path):
-    from wheelchair_fmu.errors import ModelError
-    from wheelchair_fmu.model.lawful import laws
+@pytest.mark.nightly
+def test_the_python_fmu_has_it_where_nobody_else_does(tmp_path):
+    with_example(PAGE, tmp_path)
+    run(tmp_path, "-m", "wheelchair_fmu.cli.main", "build", "--flavour", "python", "-o", "own.fmu")
+    with zipfile.ZipFile(tmp_path / "own.fmu") as archive:
+        assert any(name.endswith("model/tyre/brush.py") for name in archive.namelist())
+    shutil.rmtree(tmp_path / "config")
+    drive = (
+        "from fmpy import simulate_fmu; "
+        "print(simulate_fmu('own.fmu', start_values={'tyre.law': 4, 'start.u': 1.0}, stop_time=0.1))"
+    )
+    assert "nan" not in run(tmp_path, "-c", drive)
 
-    with pytest.raises(ModelError, match=r'no law \'common\' in it; write LAW = Alternative\("common", ...\)'):
-        laws("wheelchair_fmu.model.tyre", ["common"])
+
+def test_every_file_that_is_no_law_is_told_in_a_sentence(tmp_path):
+    laws = tmp_path / "config" / "laws" / "tyre"
+    laws.mkdir(parents=True)
+    (laws / "empty.py").write_text("")
+    (laws / "_notes.py").write_text("this is no Python")
+    (laws / "broken.py").write_text("\n1 / 0\n")
+    done = attempt(tmp_path, "-m", "wheelchair_fmu.cli.main", "effects", "list")
+    told = done.stderr.splitlines()
+    assert done.returncode == 1 and len(told) == 2, done.stderr
+    assert "broken.py:2: cannot be read: ZeroDivisionError: division by zero; mend this line, or move the file away" in told[0]
+    assert 'no Alternative("empty", ...) in it; write LAW = Alternative("empty", ...)' in told[1]
+    (laws / "dugoff.py").write_text("")
+    done = attempt(tmp_path, "-m", "wheelchair_fmu.cli.main", "effects", "list")
+    assert (
+        done.returncode == 1 and "there is a bundled 'dugoff' already; give the file and its record another name" in done.stderr
+    )

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 
-from ..model.sensors import READINGS, Reading
+from ..model.readings import READINGS
+from ..model.sensors import Reading
 from ..quantities import M_S, M_S2, N_M, N_S, ONE, RAD, RAD_S, M, N, S, Unit
 
 

@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..children import side_by_side
+from ..configuration import OF_MODELS, digest
 from ..errors import BuildError
 from ..model.expression import ExpressionLaw
 from ..model.stage import Effect
@@ -110,11 +111,11 @@ def _toolchain() -> str:
 
 @cache
 def sources() -> str:
-    """What all generated code depends on: this package's equations, and CasADi."""
+    """What all generated code depends on: this package's equations, a user's own, and CasADi."""
     files = sorted([*(PACKAGE / "model").rglob("*.py"), *(PACKAGE / "engine").rglob("*.[pch]*"), PACKAGE / "quantities.py"])
     files = [f for f in files if "__pycache__" not in f.parts]
     texts = hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{texts} {version('casadi')}"
+    return f"{texts} {digest(*OF_MODELS)} {version('casadi')}"
 
 
 def effect_key(effect: Effect) -> str:

@@ -20,6 +20,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from uuid import UUID
 
+from .. import configuration
+from ..configuration import OF_MODELS
 from ..errors import BuildError
 from ..model.variant import LAWS
 from ..resources import FMU_SOURCES
@@ -30,6 +32,13 @@ NAME = "WheelchairPython"
 PACKAGE = Path(__file__).parents[1]
 PLACEHOLDER = "wheelchair_package"  # what slave.py calls the package before it has its name
 NEEDED = ("casadi", "numpy")  # as slave.py asks for them
+PACKAGES = {"laws/tyre": "tyre", "laws/caster": "caster", "channels": "readings"}  # of a user's own files
+NOTHING_OF_THE_HOST_S = '''"""A user's own laws and channels are in this FMU already."""
+
+
+def places(kind):
+    return []
+'''
 ENGINE = ("__init__.py", "kernel.py", "lu.py", "rodas.py")
 
 
@@ -69,9 +78,17 @@ def _modules(face: Interface) -> dict[str, str]:
     files += [PACKAGE / "engine" / name for name in ENGINE]
     texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
     texts |= {f"model/effects/{e.id}.py": e.program.text for e in face.model.effects if e.program}  # a user's own come along
+    texts |= {_place_of(name): file.read_text(encoding="utf-8") for name, file in configuration.files(*OF_MODELS).items()}
+    texts["configuration.py"] = NOTHING_OF_THE_HOST_S
     texts["__init__.py"] = '"""The model of the FMU around it."""\n'
     texts["stepping.py"] = (FMU_SOURCES / "python" / "stepping.py").read_text(encoding="utf-8")
     return texts
+
+
+def _place_of(name: str) -> str:
+    """Where a user's own file lies in the package: "model/tyre/brush.py" for "laws/tyre/brush.py"."""
+    kind, _, file = name.rpartition("/")
+    return f"model/{PACKAGES[kind]}/{file}"
 
 
 def _token(face: Interface, modules: dict[str, str]) -> str:

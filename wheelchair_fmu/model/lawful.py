@@ -1,28 +1,82 @@
-"""Laws that exclude each other, found as the files of a folder."""
+"""Laws that exclude each other, and whatever else is found as the files of a folder, one record in each.
+
+A package whose files these are adds a user's own folder to its `__path__`: a file there is read as if it lay beside the others.
+"""
 
 from __future__ import annotations
 
 import pkgutil
-from collections.abc import Iterable
+import re
+import traceback
+from collections.abc import Iterable, MutableSequence
 from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 from ..errors import ModelError
 from .stage import Alternative
 
+NAME = re.compile(r"[a-z][a-z0-9_]*")
 
-def names(folder: Iterable[str], first: tuple[str, ...], but: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """The laws in a package's folder by the names of their files: those that come `first`, then all others but these."""
-    others = sorted({module.name for module in pkgutil.iter_modules(folder)} - {*first, *but})
-    return (*first, *others)
+
+def names(folder: MutableSequence[str], first: tuple[str, ...] = (), but: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """The files in a package's folders by their names: those that come `first`, then the bundled, then a user's own.
+
+    Raises ModelError for files of a user's own whose name is taken, or is none.
+    """
+    found = ((module.name, Path(place)) for place in folder[1:] for module in pkgutil.iter_modules([place]))
+    own = {name: place / f"{name}.py" for name, place in found if not name.startswith("_")}
+    bundled = {module.name for module in pkgutil.iter_modules(folder[:1])}
+    if strange := [file for name, file in own.items() if name in bundled or not NAME.fullmatch(name)]:
+        raise ModelError("\n".join(f"{file}: {_why_not(file.stem, bundled)}" for file in strange))
+    return (*first, *sorted(bundled - {*first, *but}), *own)
+
+
+def _why_not(name: str, bundled: Iterable[str]) -> str:
+    if name in bundled:
+        return f"there is a bundled {name!r} already; give the file and its record another name"
+    return f"{name!r} is no name here; use small letters, digits and underscores, like my_law"
+
+
+def records(package: str, names: Iterable[str], called: str, kind: type, example: str) -> dict[str, Any]:
+    """The records in a package's files, by the files' names; each is `called` so there.
+
+    Raises ModelError for all files that cannot be read, have no record of this kind, or one with another name.
+    """
+    found, faults = {}, []
+    for name in names:
+        try:
+            found[name] = _record(f"{package}.{name}", name, called, kind, example)
+        except ModelError as error:
+            faults.append(str(error))
+    if faults:
+        raise ModelError("\n".join(faults))
+    return found
+
+
+def _record(module: str, name: str, called: str, kind: type, example: str) -> Any:
+    try:
+        record = getattr(import_module(module), called, None)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # a user's own file is a program, and may end in any way
+        raise ModelError(_failed(module, error)) from error
+    if not isinstance(record, kind) or getattr(record, "name", name) != name:
+        raise ModelError(f"{module}: no {example.format(name)} in it; write {called} = {example.format(name)}")
+    return record
+
+
+def _failed(module: str, error: BaseException) -> str:
+    """One sentence for whatever a file raised, with the last of its lines that took part."""
+    end = module.rpartition(".")[2] + ".py"
+    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).name == end]
+    place = f"{error.filename}:{error.lineno}" if isinstance(error, SyntaxError) else ""
+    place = place or (f"{lines[-1].filename}:{lines[-1].lineno}" if lines else module)
+    told = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
+    said = f"{type(error).__name__}: {told}".removesuffix(": ")
+    return f"{place}: cannot be read: {said}; mend this line, or move the file away"
 
 
 def laws(package: str, names: Iterable[str]) -> dict[str, Alternative]:
-    """The records of laws by name. Raises ModelError for a file without one, or one with another name."""
-    return {name: _law(f"{package}.{name}", name) for name in names}
-
-
-def _law(module: str, name: str) -> Alternative:
-    law = getattr(import_module(module), "LAW", None)
-    if not isinstance(law, Alternative) or law.name != name:
-        raise ModelError(f'{module}: no law {name!r} in it; write LAW = Alternative("{name}", ...)')
-    return law
+    """The laws by name. Raises ModelError as `records`."""
+    return records(package, names, "LAW", Alternative, 'Alternative("{}", ...)')

@@ -37,9 +37,6 @@ class Reading:
         return Output(name, self.unit, self.meaning, self.mirror, symbol=symbol, nominal=self.nominal)
 
 
-READINGS: tuple[Reading, ...] = ()  # beside those of `sensors`; docs/your-own-channel.md adds one
-
-
 @stage(
     define("read_wheel_speed", M_S, "wheel speeds, angular speed times rolling radius", "+swap", REAR),
     define("read_yaw_rate", RAD_S, "yaw rate", "-"),

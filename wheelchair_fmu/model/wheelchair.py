@@ -16,6 +16,7 @@ import casadi as cs
 from ..errors import ModelError, unknown
 from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
 from . import caster, chassis, resistance, sensors, tyre
+from .readings import READINGS
 from .stage import Alternative, Effect, Law, Row, Stage, reads
 from .tyre import common
 
@@ -96,7 +97,7 @@ OUTPUTS = (
     Output("sensor.yaw", RAD, "yaw angle as a tracking system reads it", "-", symbol="read_yaw", nominal=0.5),
     Output("sensor.u", M_S, "forward speed as a tracking system reads it", symbol="read_u"),
     Output("sensor.v", M_S, "lateral speed as a tracking system reads it, to the right", "-", symbol="read_v", nominal=0.01),
-    *(reading.output for reading in sensors.READINGS),
+    *(reading.output for reading in READINGS),
 )
 
 REGIMES = {  # what to sort errors by: name -> result
@@ -201,7 +202,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.balance,
         chassis.motion,
         sensors.sensors,
-        *(reading.stage for reading in sensors.READINGS),
+        *(reading.stage for reading in READINGS),
         chassis.results,
     )
 

@@ -8,8 +8,7 @@ from importlib import import_module, metadata
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
-import platformdirs
-
+from ...configuration import FORMATS, folder
 from ...faults import WARNING, Fault
 from ._record import Format, Option
 
@@ -27,7 +26,7 @@ def bundled() -> dict[str, Format]:
 
 def user_folder() -> Path:
     """Where a user's own formats lie, one file each."""
-    return Path(platformdirs.user_config_dir("wheelchair-fmu")) / "formats"
+    return folder(FORMATS)
 
 
 @cache

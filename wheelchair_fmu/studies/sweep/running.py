@@ -13,6 +13,7 @@ import pyarrow as pa
 
 from ... import __version__
 from ...chunks import ERROR
+from ...configuration import MANOEUVRES, digest
 from ...engine.cache import sources
 from ...errors import WheelchairError
 from ...handling.manoeuvres import Manoeuvre
@@ -41,7 +42,7 @@ class Job:
     @cached_property
     def fingerprint(self) -> str:
         """Two jobs with the same one have the same result."""
-        words = (__version__, sources(), str(self.chunk), repr(self.plan), self.engine, self.measured)
+        words = (__version__, sources(), digest(MANOEUVRES), str(self.chunk), repr(self.plan), self.engine, self.measured)
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
     @property

@@ -3,6 +3,8 @@
 The paper holds the forward speed and gives only the difference of the two forces on the rear wheels,
 F_rl − F_rr = 2ΔF; here F_rl = +ΔF and F_rr = −ΔF, positive to the right, and the total push that holds
 the speed is a result. The other manoeuvres go at free speed, by whole forces on each wheel.
+
+A file here, or in the folder `manoeuvres` of a user's configuration, is one more: a function `MANOEUVRE` of its options.
 """
 
 from __future__ import annotations
@@ -11,11 +13,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from math import isfinite
+from types import FunctionType
 
 import numpy as np
 
-from ..errors import UsageError, unknown
-from ..model.chassis import PUSH_LIMIT
+from ...configuration import MANOEUVRES as OWN
+from ...configuration import places
+from ...errors import UsageError, unknown
+from ...model.chassis import PUSH_LIMIT
+from ...model.lawful import names, records
 
 INTERVAL = 0.01  # s between samples
 MOST_SAMPLES = 1_000_000
@@ -46,10 +52,10 @@ def steady_turn(speed: float = 1.0, delta_force: float = 10.0, time: float = 10.
 
     Figs. 12, 15 and 18. The paper's text gives the speed, 1 m/s; ΔF = 10 N is chosen here.
     """
-    _positive("--speed", speed, "m/s", TOP_SPEED)
-    t = _samples(time)
+    positive("--speed", speed, "m/s", TOP_SPEED)
+    t = samples(time)
     title = f"steady turn at {speed:g} m/s, ΔF = {delta_force:g} N"
-    return Manoeuvre("steady-turn", title, _held(speed), t, _pair(delta_force + 0 * t), "push.total_needed")
+    return Manoeuvre("steady-turn", title, held(speed), t, pair(delta_force + 0 * t), "push.total_needed")
 
 
 def slalom(speed: float = 1.0, delta_force: float = 10.0, period: float = 4.0, time: float = 12.0) -> Manoeuvre:
@@ -57,16 +63,16 @@ def slalom(speed: float = 1.0, delta_force: float = 10.0, period: float = 4.0, t
 
     Figs. 13, 14, 16, 17 and 19. Neither ΔF nor T stands in the paper's text: ΔF = 10 N and T = 4 s are chosen here.
     """
-    _positive("--speed", speed, "m/s", TOP_SPEED)
-    _positive("--period", period, "s")
+    positive("--speed", speed, "m/s", TOP_SPEED)
+    positive("--period", period, "s")
     if period < 10 * INTERVAL:
         raise UsageError(
             f"--period {period:g} s is shorter than ten samples of {INTERVAL:g} s; give at least {10 * INTERVAL:g} s"
         )
-    t = _samples(time)
+    t = samples(time)
     title = f"slalom at {speed:g} m/s, ΔF = {delta_force:g} N, T = {period:g} s"
     wave = delta_force * np.cos(2 * np.pi * t / period)
-    return Manoeuvre("slalom", title, _held(speed), t, _pair(wave), "push.total_needed")
+    return Manoeuvre("slalom", title, held(speed), t, pair(wave), "push.total_needed")
 
 
 def coast_down(speed: float = 1.0, time: float = 10.0) -> Manoeuvre:
@@ -75,19 +81,19 @@ def coast_down(speed: float = 1.0, time: float = 10.0) -> Manoeuvre:
         raise UsageError(
             f"--speed {speed:g} m/s: a coast-down starts in motion; give a speed of at most {TOP_SPEED:g} m/s, not zero"
         )
-    t = _samples(time)
-    return Manoeuvre("coast-down", f"coast-down from {speed:g} m/s", _free(speed), t, _pair(0 * t), "chair.u")
+    t = samples(time)
+    return Manoeuvre("coast-down", f"coast-down from {speed:g} m/s", free(speed), t, pair(0 * t), "chair.u")
 
 
 def start_stop(time: float = 14.0) -> Manoeuvre:
     """From rest: three pushes, coasting, pulls back until the chair reverses, a push against it, and the brakes."""
-    t = _samples(time)
+    t = samples(time)
     pushes = sum(_stroke(t, k * BEAT) for k in range(3))
     pulls = sum(_stroke(t, 5.0 + k * BEAT) for k in range(4))
     force = PUSH * (pushes - pulls + 0.6 * _stroke(t, 10.0))
     brake = np.interp(t, (11.0, 11.5), (0.0, 1.0))
     inputs = {"push.F_rl": force, "push.F_rr": force, "brake.rl": brake, "brake.rr": brake}
-    return Manoeuvre("start-stop", "start, coast, reverse and stop", _free(0.0), t, inputs, "chair.u")
+    return Manoeuvre("start-stop", "start, coast, reverse and stop", free(0.0), t, inputs, "chair.u")
 
 
 def spin(delta_force: float = 12.0, time: float = 10.0) -> Manoeuvre:
@@ -96,10 +102,10 @@ def spin(delta_force: float = 12.0, time: float = 10.0) -> Manoeuvre:
     Not in the paper; ΔF = 12 N is chosen. Much more and the chair leaves the spot: its CM lies before the axle and is thrown
     outward against no more than the rolling resistance.
     """
-    t = _samples(time)
+    t = samples(time)
     turns = np.interp(t, (0.0, 0.2, 2.8, 3.2, 7.8, 8.2), (0.0, 1.0, 1.0, -1.0, -1.0, 0.0))
     return Manoeuvre(
-        "spin", f"spin on the spot, ΔF = {delta_force:g} N", _free(0.0), t, _pair(delta_force * turns), "chair.psi_dot"
+        "spin", f"spin on the spot, ΔF = {delta_force:g} N", free(0.0), t, pair(delta_force * turns), "chair.psi_dot"
     )
 
 
@@ -109,7 +115,7 @@ MANOEUVRES: dict[str, Callable[..., Manoeuvre]] = {
     "coast-down": coast_down,
     "start-stop": start_stop,
     "spin": spin,
-}
+}  # and at the end of this file those of files
 
 
 def manoeuvre(name: str, **options: float | None) -> Manoeuvre:
@@ -135,29 +141,32 @@ def _option(key: str) -> str:
     return "--" + key.replace("_", "-")
 
 
-def _positive(option: str, value: float, unit: str, most: float = 1e6) -> None:
+def positive(option: str, value: float, unit: str, most: float = 1e6) -> None:
+    """Raises UsageError for a value that is not above 0, or above `most`."""
     if not 0 < value <= most:
         raise UsageError(f"{option} {value:g} {unit} is impossible here; give a number above 0, at most {most:g} {unit}")
 
 
-def _samples(time: float) -> np.ndarray:
+def samples(time: float) -> np.ndarray:
     """0 to `time` in steps of INTERVAL; a rest shorter than that is left out."""
-    _positive("--time", time, "s", MOST_SAMPLES * INTERVAL)
+    positive("--time", time, "s", MOST_SAMPLES * INTERVAL)
     n = int(time / INTERVAL + 1e-9)
     if n < 2:
         raise UsageError(f"--time {time:g} s is shorter than two samples of {INTERVAL:g} s; give at least {2 * INTERVAL:g} s")
     return np.arange(n + 1) * INTERVAL
 
 
-def _held(speed: float) -> dict[str, float | str]:
+def held(speed: float) -> dict[str, float | str]:
+    """The values of a manoeuvre at this speed [m/s], prescribed."""
     return {"speed.mode": "prescribed", "speed.u": speed, "start.u": speed}
 
 
-def _free(speed: float) -> dict[str, float | str]:
+def free(speed: float) -> dict[str, float | str]:
+    """The values of a manoeuvre that starts with this speed [m/s]."""
     return {"speed.mode": "free", "start.u": speed}
 
 
-def _pair(delta: np.ndarray) -> dict[str, np.ndarray]:
+def pair(delta: np.ndarray) -> dict[str, np.ndarray]:
     """F_rl = +ΔF and F_rr = −ΔF turn the chair to the right."""
     return {"push.F_rl": delta, "push.F_rr": -delta}
 
@@ -166,3 +175,8 @@ def _stroke(t: np.ndarray, start: float) -> np.ndarray:
     """Half a sine from `start`, of height 1: one push."""
     phase = (t - start) / STROKE
     return np.where((phase > 0) & (phase < 1), np.sin(np.pi * phase), 0.0)
+
+
+__path__ += places(OWN)
+_FILES = records(__name__, names(__path__), "MANOEUVRE", FunctionType, "{}")
+MANOEUVRES.update({name.replace("_", "-"): make for name, make in _FILES.items()})
