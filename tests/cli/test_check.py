@@ -9,6 +9,7 @@ from pathlib import Path
 from PIL import Image
 from typer.testing import CliRunner
 
+from tests.kit import with_settings
 from wheelchair_fmu.cli.main import app
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
@@ -45,3 +46,9 @@ def test_what_is_odd_is_marked_and_said(tmp_path):
     page = (tmp_path / "out" / "preview.html").read_text(encoding="utf-8")
     assert "a &lt;b&gt; campaign" in page and "<b>" not in page
     assert '<li class="error">' in page and "yaw_rate reads 9 rad/s" in page
+
+
+def test_clocks_are_found_also_where_a_campaign_gives_a_size_to_an_effect_of_ones_own(tmp_path):
+    place = with_settings(SAMPLE, tmp_path / "campaign", {"coast-down": '{ "effect.mine.q" = 2.0 }'})
+    told = CliRunner().invoke(app, ["sync", str(place), "--dry-run", "-o", str(tmp_path)])
+    assert told.exit_code == 0 and "every run has one clock" in told.output

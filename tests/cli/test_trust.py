@@ -70,6 +70,17 @@ def test_nor_does_a_plan_or_a_parameter_set(theirs):
     assert ASKED in wheelchair("ssp", "parameters", theirs, "-o", theirs.with_suffix(".ssv")).output
 
 
+def test_a_person_who_sweeps_is_asked_about_each_variant_of_the_plan(theirs, monkeypatch):
+    plan, seen = theirs.parent / "plan.toml", []
+    twice = '[[variant]]\nfile = "theirs.toml"\n' * 2 + '[[variant]]\nname = "no file"\n'
+    plan.write_text(f'{twice}[[manoeuvre]]\nname = "spin"\n', encoding="utf-8")
+    monkeypatch.setattr("wheelchair_fmu.cli.sweep.asked", seen.append)
+    assert ASKED in wheelchair("sweep", plan, "-o", plan.with_suffix(".parquet")).output
+    assert seen == [theirs]
+    plan.write_text("[[variant]\n", encoding="utf-8")
+    assert wheelchair("sweep", plan, "-o", plan.with_suffix(".parquet")).exit_code == 1 and seen == [theirs]
+
+
 def test_once_trusted_a_variant_needs_no_further_option(theirs):
     done = wheelchair("trust", theirs)
     assert done.exit_code == 0 and done.output.startswith("mine is trusted (sha256 ")

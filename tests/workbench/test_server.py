@@ -7,9 +7,11 @@ from io import BytesIO
 from math import radians, tanh
 from os import utime
 from pathlib import Path
+from shutil import rmtree
 
 import pytest
 
+from tests.kit import with_settings
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
@@ -145,6 +147,15 @@ def test_an_effect_of_ones_own_joins_the_catalogue(client):
         answer = client.post(f"{client.base}/effects", json={**effect, "id": "other", **change})
         assert answer.status_code == 400
         assert why in answer.json()["error"]
+
+
+def test_a_campaign_may_give_a_size_to_an_effect_of_ones_own(client, bench):
+    session = Session(bench.root, client.base.rpartition("/")[2])
+    rmtree(session.campaign, ignore_errors=True)
+    with_settings(SAMPLE, session.campaign, {"coast-down": '{ "effect.rubbing.q" = 2.0 }'})
+    assert any("effect.rubbing.q" in fault["text"] for fault in bench.told(session)["faults"])
+    effect = {"id": "rubbing", "title": "it rubs", "to": "F_x", "expression": "-q * u", "size": 0.5, "lower": 0.0, "upper": 9.0}
+    assert client.post(f"{client.base}/effects", json=effect).json()["faults"] == []
 
 
 def test_an_effect_keeps_its_numbers_units(client, bench):

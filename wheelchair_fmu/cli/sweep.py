@@ -20,11 +20,13 @@ from ..loop.likelihood import Likelihood
 from ..loop.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
 from ..studies.sweep.indices import indices
+from ..studies.sweep.plan import variant_files
 from ..studies.sweep.yardstick import Yardstick
 from ..writing import written
 from .chunked import Address, Workers, done_with_a_bar, pool_of
 from .group import console
 from .terminal import announce
+from .trust import asked
 
 
 def register(app: typer.Typer) -> None:
@@ -45,6 +47,8 @@ def run(
     pool = pool_of(address, workers)
     if output.suffix != ".parquet":
         raise UsageError(f"-o {output}: the table is Parquet; give a name that ends in .parquet")
+    for file in variant_files(plan):
+        asked(file)
     planned = read_plan(plan, effects)
     _needs_salib(planned)
     job = _job(planned, engine)

@@ -185,7 +185,7 @@ class Workbench:
     def told(self, session: Session) -> dict[str, Any]:
         report = session.folder / "report.html"
         own = session.own_effects()
-        faults, noise = session.judged(self.bounds)
+        faults, noise = session.judged(known_parameters({**bundled(), **own}) if own else self.bounds)
         return {
             "campaign": session.content(),
             "files": session.files(),

@@ -110,6 +110,16 @@ def read_plan(path: Path, effects: Path | None = None) -> Plan:
     return plan
 
 
+def variant_files(path: Path) -> list[Path]:
+    """The variants that a plan names; none where it cannot be read, which `read_plan` says."""
+    try:
+        entries = toml(path.read_text(encoding="utf-8-sig")).get("variant", [])
+    except (OSError, ValueError):
+        return []
+    named = (entry.get("file") for entry in entries if isinstance(entry, dict)) if isinstance(entries, list) else ()
+    return [path.parent / file for file in dict.fromkeys(named) if isinstance(file, str)]
+
+
 @dataclass
 class _Reader:
     path: Path
