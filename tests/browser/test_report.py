@@ -194,7 +194,9 @@ def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize("figure", ["staircase", "where", "overlay", "path", "regimes", "forest", "physical"])
+@pytest.mark.parametrize(
+    "figure", ["staircase", "where", "overlay", "path", "regimes", "forest", "physical", "profiles", "joint"]
+)
 def test_every_figure_can_be_published(open_report, figure, tmp_path):
     """On white, as wide as it says, with its campaign, and a table that is whole."""
     for kind, start in STARTS.items():

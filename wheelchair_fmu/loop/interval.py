@@ -7,7 +7,7 @@ parameter elsewhere each: no model is exact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 
 import numpy as np
@@ -72,23 +72,32 @@ def half_width(found: Fit, at: int) -> float:
 
 def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], float]:
     """The misfit by one parameter, the others where that lets them be."""
-    problem, S = Problem(likelihood, found.names), found.evidence.S
-    others = np.arange(len(found.names)) != at
-    A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
-    inverse = np.linalg.pinv(A[np.ix_(others, others)], hermitian=True)
+    misfit = profile(likelihood, found, (at,))
+    return lambda value: misfit((value,))
 
-    def misfit(value: float) -> float:
+
+def profile(
+    likelihood: Likelihood, found: Fit, at: Sequence[int], corrections: int = CORRECTIONS
+) -> Callable[[Sequence[float]], float]:
+    """The misfit (−2 log likelihood and prior) by some parameters of a fit, the others where these let them be; infinity where
+    the model cannot be simulated. The others follow by slopes, which `corrections` - 1 further steps improve."""
+    problem, S = Problem(likelihood, found.names), found.evidence.S
+    chosen = np.isin(np.arange(len(found.names)), at)
+    A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
+    inverse, where = np.linalg.pinv(A[np.ix_(~chosen, ~chosen)], hermitian=True), list(at)
+
+    def misfit(values: Sequence[float]) -> float:
         theta, lowest = best.copy(), np.inf
-        theta[at] = value
-        theta[others] -= inverse @ A[others, at] * (value - best[at])
-        for _ in range(CORRECTIONS):
-            theta[others] = np.clip(theta, problem.lower, problem.upper)[others]
+        theta[where] = values
+        theta[~chosen] -= inverse @ A[np.ix_(~chosen, where)] @ (np.asarray(values) - best[where])
+        for _ in range(corrections):
+            theta[~chosen] = np.clip(theta, problem.lower, problem.upper)[~chosen]
             try:
                 there = likelihood.resimulated(found.evidence, problem.values(theta))
             except SimulationError:
                 break
             lowest = min(lowest, problem.misfit(there, theta))
-            theta[others] += inverse @ problem.gradient(S, there.r, theta)[others]
+            theta[~chosen] += inverse @ problem.gradient(S, there.r, theta)[~chosen]
         return lowest
 
     return misfit

@@ -13,6 +13,7 @@ from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
 from ..loop.factory import ModelFactory
+from ..loop.landscape import landscape
 from ..loop.likelihood import SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
@@ -35,12 +36,14 @@ def content(
     """
     campaign = replace(campaign, runs=tuple(in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
     factory = ModelFactory(campaign, variant, fixed)
+    factory.noise_model = colour
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], START, driven(campaign))
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
         "diagnosis": diagnosis,
+        "landscape": landscape(factory, diagnosis),
         "runs": [_run(r, campaign) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},

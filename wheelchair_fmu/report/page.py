@@ -26,6 +26,7 @@ MODULES = (
     "figures",
     "forest",
     "heat",
+    "landscape",
     "lines",
     "mini",
     "motion",

@@ -5,6 +5,7 @@ import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { forest, pair, panels } from "page/forest";
 import { Heat, heat } from "page/heat";
+import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
@@ -25,6 +26,7 @@ export class Figures {
     const tied = this.tied();
     if (tied) this.add("pair", "Why these cannot be told apart", tied);
     else byId("pair").remove();
+    this.landscape();
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
     if (missing) this.add("missing", `What is missing: ${missing.words}`, this.lacking(missing));
@@ -91,6 +93,39 @@ export class Figures {
       draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
       columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "bound"].map((k) => [k, rows.map((r) => r[k])])),
       caption: () => `What calibration made of the values that the campaign gives; zero is the value given and the band one standard deviation of it.${rows.some((r) => r.bound) ? ` At a bound: ${rows.filter((r) => r.bound).map((r) => r.name).join(", ")}.` : ""}`,
+    };
+  }
+
+  /** How the likelihood falls off about the estimates, of each size and of two rivals together. */
+  landscape() {
+    const { landscape: told } = this.campaign, curves = told?.profiles ?? [], joint = told?.pair;
+    byId("profiles").hidden = !curves.length;
+    byId("joint").hidden = !joint;
+    if (curves.length) this.add("profiles", "How sure each size is", this.profiled(curves));
+    if (joint) this.add("joint", "Two rivals together", this.joined(joint));
+  }
+
+  sizeOf(name) {
+    const effect = this.campaign.effects.find((e) => e.parameters.some((p) => p.name === name)), record = effect.parameters.find((p) => p.name === name);
+    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${name.split(".").at(-1).replaceAll("_", " ")}` : "") };
+  }
+
+  profiled(curves) {
+    const all = curves.map((c) => { const { record, name } = this.sizeOf(c.parameter), { factor, unit } = display(record); return { label: `${name} [${unitText(unit) || "1"}]`, xs: c.values.map((v) => v * factor), ys: c.heights, estimate: c.estimate * factor }; });
+    return {
+      draw: (width, look) => profiles(width, look, all, curves[0].level),
+      columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "fall of twice the log likelihood": all.flatMap((p) => p.ys) }),
+      caption: () => "How much worse the model fits (twice the fall of the log likelihood, allowing for residuals that last) where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
+    };
+  }
+
+  joined(joint) {
+    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta) };
+    const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
+    return {
+      draw: (width, look) => together(width, look, drawn),
+      columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "fall of twice the log likelihood": cells.map((c) => c[2]) }),
+      caption: () => `Where both sizes lie when they are fitted together, in the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; a line that meets both zero lines is a tie. Within the shading neither would matter.`,
     };
   }
 

@@ -1,0 +1,56 @@
+// The likelihood about the estimates: by each size alone, and by the sizes of two rivals together.
+
+import { canvas, course, line, short, svg, text, tick, ticks } from "page/draw";
+
+const HIGH = 190;
+
+/** Curves of heights over sizes: [{label, xs, ys, estimate}], with the level below which 95 % lie; three abreast at most. */
+export function profiles(width, look, all, level) {
+  const abreast = Math.max(1, Math.min(all.length, 3, Math.floor(width / 240))), wide = width / abreast, most = 2.4 * level, drawn = [];
+  all.forEach((p, n) => {
+    const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 62;
+    const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - Math.min(v, most) / most);
+    for (const v of ticks(0, most, 4)) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
+    for (const v of ticks(from, to, w / 80)) drawn.push(text(across(v), y0 + hh + 16, tick(v), look.faint, "middle", { "font-size": 11 }));
+    drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w / 2, down(level) - 5, "95 %", look.faint, "middle", { "font-size": 11 }));
+    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))), look.accent, { "stroke-width": 2 }));
+    drawn.push(text(x0 + w / 2, y0 + hh + 34, short(p.label, Math.floor(wide / 6.8)), look.ink, "middle"));
+  });
+  return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
+}
+
+/** Where a height crosses `level` in the cells of a grid, as pieces [[x, y], [x, y]] between places of the grid. */
+export function contour(heights, about, level) {
+  const pieces = [], there = (v) => (v === null ? 1e9 : v);
+  for (let j = 0; j + 1 < about.length; j++)
+    for (let i = 0; i + 1 < about.length; i++) {
+      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => [about[a], about[b], there(heights[b][a])]), cut = [];
+      corners.forEach(([x, y, v], k) => {
+        const [ox, oy, other] = corners[(k + 1) % 4];
+        if (v < level === other < level) return;
+        const part = (Math.sqrt(level) - Math.sqrt(Math.max(v, 0))) / (Math.sqrt(Math.max(other, 0)) - Math.sqrt(Math.max(v, 0))); // of a parabola, straight
+        cut.push([x + part * (ox - x), y + part * (oy - y)]);
+      });
+      for (let k = 0; k + 1 < cut.length; k += 2) pieces.push([cut[k], cut[k + 1]]);
+    }
+  return pieces;
+}
+
+/** Two sizes together: contours of 50 and 95 % about the best, and either size alone on its axis. `pair` is the landscape's
+ *  with `names` and `deltas`; both axes are in the smallest sizes that would matter. */
+export function together(width, look, pair) {
+  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, about, heights, deltas } = pair;
+  const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
+  const lines = [[1.386, "4 3"], [pair.level, null]].map(([level, dash]) => [contour(heights, about, level).map((piece) => piece.map(at)), dash]);
+  const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat())], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
+  const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
+  const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];
+  drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
+  for (const v of ticks(...xs, w / 70)) drawn.push(line(across(v), top, across(v), top + hh, v === 0 ? look.faint : look.line), text(across(v), top + hh + 16, tick(v), look.faint, "middle"));
+  for (const v of ticks(...ys, hh / 45)) drawn.push(line(left, down(v), left + w, down(v), v === 0 ? look.faint : look.line), text(left - 7, down(v) + 4, tick(v), look.faint, "end"));
+  for (const [pieces, dash] of lines) for (const [[a, b], [c, d]] of pieces) drawn.push(line(across(a), down(b), across(c), down(d), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
+  const [a, b] = at([0, 0]);
+  drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
+  drawn.push(text(left + w / 2, top + hh + 36, short(pair.names[0], Math.floor(w / 6.8)), look.ink, "middle"), text(0, 0, short(pair.names[1], Math.floor(hh / 6.8)), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
+  return canvas(width, top + hh + 46, drawn);
+}
