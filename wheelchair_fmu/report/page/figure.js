@@ -50,7 +50,7 @@ export class Figure {
     const columns = this.says.columns(), names = Object.keys(columns), length = Math.max(...names.map((n) => columns[n].length));
     const every = Math.max(1, Math.ceil(length / ROWS)), shown = Array.from({ length: Math.ceil(length / every) }, (_, i) => i * every);
     this.numbers.replaceChildren(this.numbers.firstElementChild, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": `Numbers of ${this.says.title}` },
-      h("table", {}, h("caption", {}, every > 1 ? `Every ${every}th row; the CSV has all` : this.says.title),
+      h("table", {}, h("caption", {}, every > 1 ? `One row in ${every}; the CSV has all` : this.says.title),
         h("thead", {}, h("tr", {}, names.map((n) => h("th", { scope: "col" }, n)))),
         h("tbody", {}, shown.map((i) => h("tr", {}, names.map((n) => h("td", {}, printed(columns[n][i])))))))));
   }

@@ -125,7 +125,7 @@ export class Figures {
     return {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "fall of twice the log likelihood": cells.map((c) => c[2]) }),
-      caption: () => `Where both sizes lie when they are fitted together, in the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; a line that meets both zero lines is a tie. Within the shading neither would matter.`,
+      caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter.`,
     };
   }
 

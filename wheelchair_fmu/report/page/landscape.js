@@ -2,7 +2,7 @@
 
 import { canvas, course, line, short, svg, text, tick, ticks } from "page/draw";
 
-const HIGH = 190;
+const HIGH = 230;
 
 /** Curves of heights over sizes: [{label, xs, ys, estimate}], with the level below which 95 % lie; three abreast at most. */
 export function profiles(width, look, all, level) {
@@ -12,7 +12,7 @@ export function profiles(width, look, all, level) {
     const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - Math.min(v, most) / most);
     for (const v of ticks(0, most, 4)) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
     for (const v of ticks(from, to, w / 80)) drawn.push(text(across(v), y0 + hh + 16, tick(v), look.faint, "middle", { "font-size": 11 }));
-    drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w / 2, down(level) - 5, "95 %", look.faint, "middle", { "font-size": 11 }));
+    drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
     drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))), look.accent, { "stroke-width": 2 }));
     drawn.push(text(x0 + w / 2, y0 + hh + 34, short(p.label, Math.floor(wide / 6.8)), look.ink, "middle"));
   });
