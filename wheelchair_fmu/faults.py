@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -52,6 +53,15 @@ def run_fault(
 ) -> Fault:
     """A fault in a recording."""
     return Fault(file, line, column, fact, cure, severity, in_run=True)
+
+
+def raised(file: str, error: BaseException) -> tuple[str, int | None, str]:
+    """Where a program's file failed, in the last of its lines that took part, and what it said, on one line."""
+    if isinstance(error, SyntaxError):
+        return error.filename or file, error.lineno, f"{type(error).__name__}: {error.msg}"
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    said = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
+    return file, lines[-1] if lines else None, said
 
 
 def not_utf8(file: str, raw: bytes, error: UnicodeDecodeError) -> Fault:

@@ -12,7 +12,7 @@ import pandas as pd
 from ..contracts.own import catalogue, catalogue_of, text_of, variant_in
 from ..fmu.build import with_chosen_effects
 from ..model import variant as records
-from ..model.variant import LAWS
+from ..model.variant import LAWS, effects_in
 from ..writing import written
 
 Values = Mapping[str, float | str]
@@ -152,5 +152,4 @@ def chair_of(
     start = plain(variant, own)
     if equations:
         start = replace(start, choice=replace(start.choice, equations=equations))
-    named = dict.fromkeys(name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
-    return with_chosen_effects(start, named).with_values(values), chosen
+    return with_chosen_effects(start, effects_in(values)).with_values(values), chosen

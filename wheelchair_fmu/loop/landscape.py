@@ -13,6 +13,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..errors import SimulationError
+from ..model.variant import effects_in
 from .chance import value_beyond
 from .factory import ModelFactory
 from .fit import Fit, fit
@@ -32,12 +33,12 @@ def landscape(factory: ModelFactory, told: Mapping[str, Any]) -> dict[str, Any]:
 
     A profile has `parameter`, `estimate`, `values` (SI) and their `heights`, and `level`, below which 95 % lie. A pair has
     `effects` and `parameters` of two rivals, `best` (2,), `axes` (2, 2), whose columns are the two directions of the grid in
-    SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, and `level`. None where the last
-    model cannot be simulated. Heights are None there too.
+    SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, and `middle`,
+    below which 50 % lie. There are neither where the last model cannot be simulated; a height is None where no model can be.
     """
     effects, values = [e for e in told["effects"] if e in factory.catalogue], told["models"][-1]["values"]
     names = [n for n in factory.calibrated if n in values] + [n for n in values if n.startswith("effect.")]
-    likelihood = factory.likelihood([n.split(".")[1] for n in names if n.startswith("effect.")])
+    likelihood = factory.likelihood(effects_in(names))
     names = [n for n in names if n in likelihood.records]
     own = [n for e in effects for n in factory.parameters(e) if n in names]
     if not own:
@@ -56,8 +57,11 @@ def _profile(likelihood: Likelihood, found: Fit, name: str) -> dict[str, Any]:
     heights = np.array(parallel_map(lambda v: misfit((v,)), values)) - found.misfit
     shrunk = _above(heights * _robust(found, at))
     return {
-        **{"parameter": name, "estimate": found.values[name], "values": values.tolist()},
-        **{"heights": [finite(float(h)) for h in shrunk], "level": value_beyond(1 - LEVEL, 1)},
+        "parameter": name,
+        "estimate": found.values[name],
+        "values": values.tolist(),
+        "heights": [finite(float(h)) for h in shrunk],
+        "level": value_beyond(1 - LEVEL, 1),
     }
 
 
@@ -76,20 +80,17 @@ def _pair(factory: ModelFactory, told: Mapping[str, Any], effects: Sequence[str]
     one, other = _rivals(factory, told, effects)
     if other is None:
         return None
-    likelihood = factory.likelihood([*{n.split(".")[1] for n in base.names if n.startswith("effect.")}, other])
+    likelihood = factory.likelihood((*effects_in(base.names), other))
     pair = (factory.parameters(one)[0], factory.parameters(other)[0])
     found = fit(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
     at = [found.names.index(n) for n in pair]
-    best, scale = (
-        np.array([found.values[n] for n in pair]),
-        np.array([likelihood.records[n].smallest_interesting for n in pair]),
-    )
+    records = [likelihood.records[n] for n in pair]
+    best, scale = np.array([found.values[n] for n in pair]), np.array([r.smallest_interesting for r in records])
     shrunk = min(_robust(found, i) for i in at)
     size, axes = np.linalg.eigh(found.covariance[np.ix_(at, at)] / np.outer(scale, scale) / shrunk)
     axes = scale[:, None] * axes * np.sqrt(size)
     misfit = profile(likelihood, found, at, corrections=1)
     grid = [best + axes @ (u, v) for v in ABOUT for u in ABOUT]
-    records = [likelihood.records[n] for n in pair]
 
     def height(point: np.ndarray) -> float:
         inside = all(r.lower <= v <= r.upper for r, v in zip(records, point, strict=True))
@@ -97,16 +98,20 @@ def _pair(factory: ModelFactory, told: Mapping[str, Any], effects: Sequence[str]
 
     heights = _above(np.array(parallel_map(height, grid)))
     return {
-        **{"effects": [one, other], "parameters": list(pair)},
-        **{"best": best.tolist(), "axes": axes.tolist(), "about": ABOUT.tolist()},
+        "effects": [one, other],
+        "parameters": list(pair),
+        "best": best.tolist(),
+        "axes": axes.tolist(),
+        "about": ABOUT.tolist(),
         "heights": [[finite(float(h)) for h in row] for row in heights.reshape(len(ABOUT), -1)],
         "level": value_beyond(1 - LEVEL, 2),
+        "middle": value_beyond(0.5, 2),
     }
 
 
 def _rivals(factory: ModelFactory, told: Mapping[str, Any], effects: Sequence[str]) -> tuple[str, str | None]:
     """An effect of the model, and the one that it is told from least well."""
-    model = {n.split(".")[1] for n in told["models"][-1]["values"] if n.startswith("effect.")}
+    model = set(effects_in(told["models"][-1]["values"]))
     for group in told["ties"]:
         if len(group) > 1 and set(group) & model and set(group) <= factory.catalogue.keys():
             one = next(e for e in group if e in model)

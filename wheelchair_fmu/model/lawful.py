@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import pkgutil
 import re
-import traceback
 from collections.abc import Iterable, MutableSequence
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from ..errors import ModelError
+from ..faults import raised
 from .stage import Alternative
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -67,14 +68,11 @@ def _record(module: str, name: str, called: str, kind: type, example: str) -> An
 
 
 def _failed(module: str, error: BaseException) -> str:
-    """One sentence for whatever a file raised, with the last of its lines that took part."""
-    end = module.rpartition(".")[2] + ".py"
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).name == end]
-    place = f"{error.filename}:{error.lineno}" if isinstance(error, SyntaxError) else ""
-    place = place or (f"{lines[-1].filename}:{lines[-1].lineno}" if lines else module)
-    told = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
-    said = f"{type(error).__name__}: {told}".removesuffix(": ")
-    return f"{place}: cannot be read: {said}; mend this line, or move the file away"
+    """One sentence for whatever a file raised."""
+    spec = find_spec(module)
+    place, line, said = raised(spec.origin or module if spec else module, error)
+    at = f"{place}:{line}" if line else place
+    return f"{at}: cannot be read: {said}; mend this line, or move the file away"
 
 
 def laws(package: str, names: Iterable[str]) -> dict[str, Alternative]:

@@ -47,6 +47,11 @@ NOTES = ("title", "for", "standard_errors", "origin", "tied")  # what else a fil
 Load = Callable[[Mapping[str, Program]], Mapping[str, Effect]]  # runs programs, by effects' ids, once somebody trusts them
 
 
+def effects_in(names: Iterable[str]) -> tuple[str, ...]:
+    """The ids of the effects that parameters named so belong to, each once."""
+    return tuple(dict.fromkeys(n.split(".")[1] for n in names if n.startswith("effect.") and n.count(".") > 1))
+
+
 @dataclass(frozen=True)
 class Variant:
     """Laws, effects by id, values by parameter name (SI units), and free notes on where they come from."""
@@ -82,12 +87,7 @@ class Variant:
         Raises UsageError for an unknown name, a number out of bounds or a word that is no choice.
         """
         values = current(values, self.values)
-        on = [
-            e
-            for e in (name.split(".")[1] for name in values if name.startswith("effect.") and name.count(".") > 1)
-            if e not in self.effects
-        ]
-        grown = self.with_effects(dict.fromkeys(on))
+        grown = self.with_effects(e for e in effects_in(values) if e not in self.effects)
         records = {p.name: p for p in grown.parameters()}
         numbers = {name: number(records, name, value) for name, value in values.items()}
         choice = grown.choice

@@ -5,7 +5,6 @@ from __future__ import annotations
 import linecache
 import pkgutil
 import re
-import traceback
 from collections.abc import Container
 from dataclasses import replace
 from functools import cache
@@ -15,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from ...errors import EffectError, ModelError
-from ...faults import Fault
+from ...faults import Fault, raised
 from ..stage import Effect, Program
 
 Sources = tuple[tuple[str, bytes | str], ...]  # files by path, with their content, or their text where it was read before
@@ -102,16 +101,8 @@ def _effect(file: str, content: bytes | str) -> Effect | Fault:
 
 
 def _failed(file: str, error: BaseException) -> Fault:
-    """One sentence for whatever a file raised, with the last of its lines that took part."""
-    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
-    line = error.lineno if isinstance(error, SyntaxError) else lines[-1] if lines else None
+    """One sentence for whatever a file raised."""
+    place, line, said = raised(file, error)
     if isinstance(error, SystemExit):
-        return Fault(file, line, None, "it ends the program instead of defining an effect", "leave out exit() and sys.exit()")
-    told = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
-    return Fault(
-        file,
-        line,
-        None,
-        f"cannot be read as an effect: {type(error).__name__}: {told}".removesuffix(": "),
-        "mend this line, or move the file away",
-    )
+        return Fault(place, line, None, "it ends the program instead of defining an effect", "leave out exit() and sys.exit()")
+    return Fault(place, line, None, f"cannot be read as an effect: {said}", "mend this line, or move the file away")

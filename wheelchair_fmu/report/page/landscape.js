@@ -41,7 +41,7 @@ export function contour(heights, about, level) {
 export function together(width, look, pair) {
   const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, about, heights, deltas } = pair;
   const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
-  const lines = [[1.386, "4 3"], [pair.level, null]].map(([level, dash]) => [contour(heights, about, level).map((piece) => piece.map(at)), dash]);
+  const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [contour(heights, about, level).map((piece) => piece.map(at)), dash]);
   const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat())], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
   const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
   const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];

@@ -42,7 +42,7 @@ from ...model.effects import sources
 from ...model.former import former
 from ...model.recipe import Recipe
 from ...model.stage import Effect
-from ...model.variant import number
+from ...model.variant import effects_in, number
 from ...quantities import Parameter
 from .design import INDICES, METHODS, Axis, Design
 
@@ -266,8 +266,7 @@ class _Reader:
 
     def _effects_of(self, names: Iterable[str]) -> tuple[str, ...]:
         """The effects in the catalogue that parameters named so belong to."""
-        words = dict.fromkeys(name.split(".")[1] for name in names if name.startswith("effect.") and name.count(".") > 1)
-        return tuple(word for word in words if word in self.catalogue)
+        return tuple(effect for effect in effects_in(names) if effect in self.catalogue)
 
     def _records(self, chairs: tuple[Chair, ...], effects: tuple[str, ...]) -> dict[str, Parameter]:
         """Every parameter that all of the chairs have, or can have by an effect; with these `effects` on."""
