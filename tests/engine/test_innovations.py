@@ -91,11 +91,45 @@ def test_a_disturbance_is_smoothed_as_all_readings_have_it():
     V += sum(sd**2 * response.T @ lag @ response for sd, response in zip(unknown.sd, by, strict=True))
     keep = present.ravel()
     solve = np.linalg.inv(V[np.ix_(keep, keep)])
-    mean, sd = smoothed(Whitener(run, [0, 1], noise, present, disturbance=unknown), signal, np.array([0.3, -0.2]))
+    filter_, start = Whitener(run, [0, 1], noise, present, disturbance=unknown), np.array([0.3, -0.2])
+    mean, sd = smoothed(filter_, signal, start)
+    np.testing.assert_allclose(filter_.smoothed(filter_(signal[:, :, None], start)[:, :, 0]), mean, rtol=1e-7, atol=1e-9)
     for d in (0, 1):
         cross = unknown.sd[d] ** 2 * lag @ by[d][:, keep]
         np.testing.assert_allclose(mean[:, d], cross @ solve @ (signal.ravel() - offset)[keep], rtol=1e-7, atol=1e-9)
         np.testing.assert_allclose(sd[:, d] ** 2, unknown.sd[d] ** 2 - np.diag(cross @ solve @ cross.T), rtol=1e-6)
+
+
+def test_two_disturbances_that_one_white_noise_drives_go_through_the_filter_as_a_process_of_second_order():
+    """Against the covariance in full: of x₁ and x₂ a time t apart it is ρ e^(−t/T) of the one that comes later."""
+    rng = np.random.default_rng(8)
+    n, nx, nq, nz, times = 10, 2, 2, 2, np.array([0.04, 0.1])
+    run = drawn(rng, n, nx, nz, 0.4)
+    noise = Noise(np.array([0.3, 0.5]), np.full(nq, 0.5), np.array([0.2, 0.4]), np.array([0.0, 0.6]), np.diag([0.1, 0.2]) ** 2)
+    signal, present, rho = rng.normal(size=(n, nz)), np.ones((n, nz), bool), 2 * np.sqrt(times.prod()) / times.sum()
+    common = np.array([[1.0, rho], [rho, 1.0]])
+    unknown = Disturbance(np.array([2.0, 1.5]), times, np.array([[0.5, -0.4], [0.5, -0.4]]), common)
+    V, _ = dense(run, [0, 1], noise, n, nx, nq, nz, np.zeros(2))
+    apart = np.subtract.outer(run.time, run.time)
+    H, D = run.by_state, run.by_push[:, :, :nq]
+    pushed = np.array([[respond(run, ("push", i, q), H, D, n, nx, nq) for i in range(n)] for q in (0, 1)])
+    by = [np.tensordot(unknown.as_push[:, d], pushed, axes=1) for d in (0, 1)]
+
+    def together(a, b):
+        later = np.where(apart >= 0, times[a], times[b])
+        return common[a, b] * unknown.sd[a] * unknown.sd[b] * np.exp(-np.abs(apart) / later)
+
+    V += sum(by[a].T @ together(a, b) @ by[b] for a in (0, 1) for b in (0, 1))
+    filter_ = Whitener(run, [0, 1], noise, present, disturbance=unknown)
+    white = filter_(signal[:, :, None], np.zeros(2))[:, :, 0]
+    assert white.ravel() @ white.ravel() == pytest.approx(signal.ravel() @ np.linalg.solve(V, signal.ravel()), rel=1e-8)
+    assert filter_.logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
+    mean, _ = smoothed(filter_, signal, np.zeros(2))
+    solved = np.linalg.solve(V, signal.ravel())
+    for d in (0, 1):
+        cross = sum(together(d, other) @ by[other] for other in (0, 1))
+        np.testing.assert_allclose(mean[:, d], cross @ solved, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(filter_.smoothed(white), mean, rtol=1e-7, atol=1e-9)
 
 
 def dense(run, which, noise, n, nx, nq, nz, mean):

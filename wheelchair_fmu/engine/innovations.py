@@ -26,7 +26,7 @@ class _Filter(ctypes.Structure):
         *((name, ctypes.c_int) for name in ("nx", "nq", "nz")),
         *(
             (name, ctypes.c_void_p)
-            for name in ("A", "B", "C", "H", "D", "input_sd", "input_phi", "sd", "phi", "start_cov", "present")
+            for name in ("A", "B", "C", "H", "D", "input_sd", "input_phi", "sd", "phi", "start_cov", "present", "common")
         ),
     )
 
@@ -50,11 +50,14 @@ class Noise:
 @dataclass(frozen=True)
 class Disturbance:
     """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
-    over which it is forgotten. `as_push` (nq, d) says as what change of the recorded pushes one unit of each acts."""
+    over which it is forgotten. `as_push` (nq, d) says as what change of the recorded pushes one unit of each acts, `common`
+    (d, d) how they are correlated at one moment: two that one white noise drives have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each
+    is on its own."""
 
     sd: np.ndarray
     lasting: np.ndarray
     as_push: np.ndarray
+    common: np.ndarray | None = None
 
 
 @cache
@@ -103,6 +106,7 @@ class Whitener:
             "sd": noise.readings,
             "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
             "start_cov": noise.start,
+            "common": np.eye(nq),
         }
         self.arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
         self.arrays["present"] = np.ascontiguousarray(present, np.int8)
@@ -130,6 +134,8 @@ class Whitener:
         further["input_sd"] = np.tile(unknown.sd, (len(self.time), 1))
         further["input_phi"] = np.exp(-np.diff(self.time)[:, None] / unknown.lasting)
         both = {name: np.concatenate((recorded[name], further[name]), axis=-1) for name in recorded}
+        both["common"] = np.eye(self.recorded + len(unknown.sd))
+        both["common"][self.recorded :, self.recorded :] = np.eye(len(unknown.sd)) if unknown.common is None else unknown.common
         self.arrays |= {name: np.ascontiguousarray(a) for name, a in both.items()}
         self.size = (self.size[0], self.recorded + len(unknown.sd), self.size[2])
         if sum(self.size) > MOST:
@@ -176,6 +182,15 @@ class Whitener:
         pushed[:, : self.recorded] = change
         _library().wc_respond(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(pushed), _of(out))
         return out
+
+    def smoothed(self, innovations: np.ndarray) -> np.ndarray:
+        """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""
+        told = np.ascontiguousarray(np.nan_to_num(innovations), float)
+        noise = np.empty((len(told), self.size[1]))
+        _library().wc_smooth(
+            ctypes.byref(self._filter), ctypes.c_long(len(told)), _of(self._gain), _of(self._scale), _of(told), _of(noise)
+        )
+        return noise[:, self.recorded :]
 
     @cached_property
     def spread(self) -> np.ndarray:

@@ -22,7 +22,8 @@ def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) ->
     whole = nx + nq + nz
     first = np.zeros((whole, whole))
     first[:nx, :nx] = a["start_cov"]
-    first[range(nx, whole), range(nx, whole)] = np.concatenate((a["input_sd"][0], a["sd"])) ** 2
+    first[nx : nx + nq, nx : nx + nq] = a["common"] * np.outer(a["input_sd"][0], a["input_sd"][0])
+    first[range(nx + nq, whole), range(nx + nq, whole)] = a["sd"] ** 2
     x, P = np.concatenate((start_mean, np.zeros(nq + nz))), first
     before: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # x and P that were expected, and the transition F to there
     seen: list[tuple[np.ndarray, ...]] = []  # of m readings H (m, size), Hᵀ S⁻¹, what is new, and what they leave of an error
@@ -60,6 +61,7 @@ def _step(a: dict[str, np.ndarray], i: int, nx: int, nq: int, nz: int) -> tuple[
     F[:nx, nx : nx + nq] = a["B"][i] + a["C"][i] * phi
     F[range(nx, whole), range(nx, whole)] = np.concatenate((phi, a["phi"][i]))
     G = np.concatenate((a["C"][i], np.eye(nq), np.zeros((nz, nq))))
-    Q = (G * ((1 - phi**2) * a["input_sd"][i + 1] ** 2)) @ G.T
+    sd = a["input_sd"][i + 1]
+    Q = G @ (a["common"] * (1 - np.outer(phi, phi)) * np.outer(sd, sd)) @ G.T
     Q[range(nx + nq, whole), range(nx + nq, whole)] += (1 - a["phi"][i] ** 2) * a["sd"] ** 2
     return F, Q

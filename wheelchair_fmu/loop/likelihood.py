@@ -17,7 +17,6 @@ from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
-from ..engine.smoothing import smoothed
 from ..errors import SimulationError
 from ..model.frames import to_room, velocity_at
 from ..model.variant import Variant
@@ -541,7 +540,7 @@ def followed(e: RunEvidence) -> np.ndarray:
     """The force and moment (n, 2) that nobody recorded, as all readings of a run have them."""
     assert isinstance(e.whitener, Marginal)
     filter_ = e.whitener.whitener
-    return smoothed(filter_, e.measured - e.foretold, e.offset[: filter_.size[0]])[0]
+    return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:

@@ -30,6 +30,7 @@ typedef struct {
     const double *sd, *phi;             /* nz, n-1 x nz: the same of each reading */
     const double *start_cov;  /* nx x nx */
     char *present;            /* n x nz: 0 in a gap */
+    const double *common;     /* nq x nq: how inputs' noise at one moment is correlated; NULL: each is on its own */
 } filter;
 
 static inline void add_row(int m, double factor, const double *restrict from, double *restrict to) {
@@ -60,6 +61,18 @@ static void transpose(int n, const double *from, double *to) {
     }
 }
 
+static inline double common(const filter *f, int q, int p) { return f->common ? f->common[q * f->nq + p] : q == p; }
+
+/* Adds to P, at sample i+1, what inputs q and p bring that have this covariance. */
+static void fresh(const filter *f, long i, int q, int p, double covariance, double *P) {
+    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
+    double G[MOST] = {0};
+    for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + p];
+    G[nx + p] = 1;
+    for (int r = 0; r < nx; r++) add_row(nx + nq, covariance * f->C[(i * nx + r) * nq + q], G, P + r * n);
+    add_row(nx + nq, covariance, G, P + (nx + q) * n);
+}
+
 /* P at sample i+1 from P at i. */
 static void predict(const filter *f, long i, double *P) {
     int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
@@ -68,11 +81,12 @@ static void predict(const filter *f, long i, double *P) {
     transpose(n, T, U);
     carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
     for (int q = 0; q < nq; q++) { /* fresh noise of the inputs at i+1 */
-        double G[MOST] = {0}, phi = f->input_phi[i * nq + q], sd = f->input_sd[(i + 1) * nq + q];
-        double variance = (1 - phi * phi) * sd * sd;
-        for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + q];
-        G[nx + q] = 1;
-        for (int r = 0; r < nx + nq; r++) add_row(nx + nq, variance * G[r], G, P + r * n);
+        for (int p = 0; p < nq; p++) {
+            double factor = common(f, q, p);
+            if (factor == 0) continue;
+            const double *phi = f->input_phi + i * nq, *sd = f->input_sd + (i + 1) * nq;
+            fresh(f, i, q, p, factor * (1 - phi[q] * phi[p]) * sd[q] * sd[p], P);
+        }
     }
     for (int z = 0; z < f->nz; z++) {
         int k = nx + nq + z;
@@ -85,7 +99,9 @@ static void begin(const filter *f, double *P) {
     int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
     memset(P, 0, sizeof(double) * (size_t)(n * n));
     for (int r = 0; r < nx; r++) memcpy(P + r * n, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
-    for (int q = 0; q < nq; q++) P[(nx + q) * (n + 1)] = f->input_sd[q] * f->input_sd[q];
+    for (int q = 0; q < nq; q++) {
+        for (int p = 0; p < nq; p++) P[(nx + q) * n + nx + p] = common(f, q, p) * f->input_sd[q] * f->input_sd[p];
+    }
     for (int z = 0; z < f->nz; z++) P[(nx + nq + z) * (n + 1)] = f->sd[z] * f->sd[z];
 }
 
@@ -181,6 +197,62 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
                double *signals, double *work) {
     if (m == 1) whiten(f, n, gain, scale, start_mean, 1, signals, work); /* what is most asked for: compiled without loops */
     else whiten(f, n, gain, scale, start_mean, m, signals, work);
+}
+
+/* to = Fᵀ from: what a change of s at sample i does to what `from` is of at i+1. */
+static void carry_back(const filter *f, long i, const double *from, double *to) {
+    int nx = f->nx, nq = f->nq, nz = f->nz;
+    memset(to, 0, sizeof(double) * (size_t)(nx + nq + nz));
+    for (int r = 0; r < nx; r++) add_row(nx, from[r], f->A + (i * nx + r) * nx, to);
+    for (int q = 0; q < nq; q++) {
+        double phi = f->input_phi[i * nq + q];
+        to[nx + q] = phi * from[nx + q];
+        for (int r = 0; r < nx; r++) {
+            long at = (i * nx + r) * nq + q;
+            to[nx + q] += (f->B[at] + f->C[at] * phi) * from[r];
+        }
+    }
+    for (int z = 0; z < nz; z++) to[nx + nq + z] = f->phi[i * nz + z] * from[nx + nq + z];
+}
+
+/* noise: n x nq, that of the inputs as all readings have it, from their innovations (n x nz, 0 in gaps) by wc_design's gains.
+ *
+ * What all readings from sample i on say of s there comes back as a vector b: of s = s⁻ + P⁻ b no covariance but that of fresh
+ * noise is needed, as s(i+1) = F s(i) + Q b(i+1) (Koopman 1993, "Disturbance smoother for state space models"). */
+void wc_smooth(const filter *f, long n, const double *gain, const double *scale, const double *innovations, double *noise) {
+    int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
+    double b[MOST] = {0}, before[MOST];
+    for (long i = n - 1; i >= 0; i--) {
+        for (int z = nz - 1; z >= 0; z--) {
+            long at = i * nz + z;
+            if (!f->present[at]) continue;
+            double told = innovations[at] * scale[at];
+            for (int r = 0; r < size; r++) told -= gain[at * size + r] * b[r];
+            add_row(nx, told, f->H + at * nx, b);
+            add_row(nq, told, f->D + at * nq, b + nx);
+            b[nx + nq + z] += told;
+        }
+        for (int q = 0; q < nq; q++) {
+            double of_fresh = b[nx + q];
+            for (int r = 0; i && r < nx; r++) of_fresh += f->C[((i - 1) * nx + r) * nq + q] * b[r];
+            noise[i * nq + q] = of_fresh;
+        }
+        if (!i) break;
+        carry_back(f, i - 1, b, before);
+        memcpy(b, before, sizeof(double) * (size_t)size);
+    }
+    for (long i = 0; i < n; i++) {
+        double *now = noise + i * nq, fresh_now[MOST];
+        const double *sd = f->input_sd + i * nq, *phi = f->input_phi + (i - 1) * nq;
+        for (int q = 0; q < nq; q++) {
+            fresh_now[q] = 0;
+            for (int p = 0; p < nq; p++) {
+                double factor = common(f, q, p) * sd[q] * sd[p];
+                if (factor != 0) fresh_now[q] += factor * (i ? 1 - phi[q] * phi[p] : 1) * now[p];
+            }
+        }
+        for (int q = 0; q < nq; q++) now[q] = fresh_now[q] + (i ? phi[q] * (now - nq)[q] : 0);
+    }
 }
 
 /* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */

@@ -125,7 +125,7 @@ class Kernel {
     const arrays = [system.A, system.B, system.C, system.H, system.D, noise.push_sd, noise.push_ar, noise.sd, noise.ar, startCov];
     const flags = this.doubles(Math.ceil(present.length / 8));
     new Uint8Array(this.wasm.memory.buffer, flags, present.length).set(present);
-    return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags]), flags);
+    return act(this.words([nx, nq, nz, ...arrays.map((a) => this.put(a)), flags, 0]), flags); // 0: the pushes' noises are each on their own
   }
 }
 
