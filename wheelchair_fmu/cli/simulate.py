@@ -87,4 +87,4 @@ def _table(numbers: list[KeyNumber]) -> Table:
 def _digits(value: float) -> str:
     if isnan(value):
         return ""
-    return "straight" if isinf(value) else f"{value:.4f}"
+    return "straight" if isinf(value) else f"{round(value, 4) + 0.0:.4f}"  # + 0.0 takes the sign off what is nothing
