@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from difflib import get_close_matches
 from math import isinf, isnan
 from pathlib import Path
 from typing import Annotated
@@ -51,7 +52,7 @@ def simulate(
 ) -> None:
     """Put the chair through a manoeuvre of the paper, or into standstill, spin and reverse; or through one of your own, whose
     options are those of its function."""
-    course = manoeuvre(name, speed=speed, delta_force=delta_force, period=period, time=time, **_further(name, ctx.args))
+    course = manoeuvre(name, speed=speed, delta_force=delta_force, period=period, time=time, **_further(name, ctx))
     given = parse(settings or ())
     if fmu and (variant or effects or equations):
         raise UsageError("--fmu gives a finished FMU; leave out --variant, --effects and --equations, or --fmu")
@@ -64,15 +65,20 @@ def simulate(
     console().print(_table(key_numbers(result.columns, held=held)))
 
 
-def _further(name: str, words: Iterable[str]) -> dict[str, float]:
+def _further(name: str, ctx: typer.Context) -> dict[str, float]:
     """Options that a manoeuvre of a user's own has beside the usual ones, given as --width 0.9 or --width=0.9."""
-    given, rest = {}, list(words)
+    given, rest = {}, list(ctx.args)
+    usual = [option for parameter in ctx.command.params for option in parameter.opts]
     while rest:
         option, equals, value = rest.pop(0).partition("=")
         if not option.startswith("--"):
             raise UsageError(f"{option!r} is no option; an option of {name} is written as --period 4")
         key = option.removeprefix("--").replace("-", "_")
-        refuse_unknown(name, [key])
+        try:
+            refuse_unknown(name, [key])
+        except UsageError as error:
+            close = get_close_matches(option, usual, n=1, cutoff=0.7)
+            raise UsageError(f"no option {option}; did you mean {close[0]}?") if close else error from None
         value = value if equals else rest.pop(0) if rest else ""
         try:
             given[key] = float(value)
