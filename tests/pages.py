@@ -1,15 +1,21 @@
-"""Pages whose example is a file of a user's configuration and its test: both go into a folder, and the test is run there."""
+"""Pages of docs/ as a reader follows them: files of a configuration with their tests, and commands with what they print."""
 
 from __future__ import annotations
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
+from typer.testing import CliRunner
+
+from wheelchair_fmu.cli.main import app
+
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"`([\w/]+\.py)`:\n\n```python\n(.*?)```", re.DOTALL)
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 PARTS = ("laws", "channels", "manoeuvres")  # of a configuration
 
 
@@ -48,3 +54,59 @@ def its_test_passes(name: str, folder: Path) -> None:
     test = with_example(name, folder)
     told = run(folder, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(test))
     assert " passed" in told, told
+
+
+def shown_commands(name: str) -> list[tuple[str, str]]:
+    """Each command that a page shows behind "$ ", with what stands below it up to the next one."""
+    blocks = re.findall(r"^```(?:console)?\n(\$ .*?)^```", page(name), re.DOTALL | re.MULTILINE)
+    entries = (entry for block in blocks for entry in block[2:].split("\n$ "))
+    return [(command.split("   #")[0].strip(), shown) for command, _, shown in (e.partition("\n") for e in entries)]
+
+
+def told_by(command: str, folder: Path) -> str:
+    """What a command of a page prints, in the folder; figures are not waited for."""
+    words = [word for word in shlex.split(command) if word != "--show-plot"]
+    if words[0] == "wheelchair":
+        return CliRunner().invoke(app, words[1:], catch_exceptions=False).output
+    if words[0] == "python":
+        words = [sys.executable, str(ROOT / words[1]), *words[2:]]
+    programs = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, "PATH": programs})
+    assert done.returncode == 0, (command, done.stdout, done.stderr)
+    return done.stdout
+
+
+def agrees(shown: str, told: str) -> list[str]:
+    """The lines that a page shows and a command did not print, in this order; numbers may differ by rounding."""
+    rest, lost = told.splitlines(), []
+    for line in filter(None, (text.strip() for text in shown.splitlines())):
+        if line == "...":
+            continue
+        at = next((i for i, other in enumerate(rest) if _alike(line, other)), None)
+        if at is None:
+            lost.append(line)
+        else:
+            rest = rest[at + 1 :]
+    return lost
+
+
+def _alike(shown: str, told: str) -> bool:
+    """Word by word; a line that ends in "..." is a beginning. Bars that only show a number's size are no words."""
+    here, there = shown.split(), [w for w in told.split() if not set(w) <= set("█▏▎▍▌▋▊▉")]
+    if here and here[-1] == "...":
+        here, there = here[:-1], there[: len(here) - 1]
+    return len(here) == len(there) and all(map(_same, here, there))
+
+
+def _same(shown: str, told: str) -> bool:
+    if shown == told or set(shown) == set(told) == {"─"}:
+        return True
+    numbers = [NUMBER.findall(word) for word in (shown, told)]
+    if NUMBER.sub("0", shown) != NUMBER.sub("0", told) or not numbers[0]:
+        return False
+    return all(abs(float(a) - float(b)) <= 1.5 * _last_place(a) + 0.005 * abs(float(a)) for a, b in zip(*numbers, strict=True))
+
+
+def _last_place(number: str) -> float:
+    digits, _, power = number.partition("e")
+    return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))

@@ -80,3 +80,45 @@ def test_what_an_fmu_cannot_have_is_refused(campaign, tmp_path):
     with pytest.raises(wc.UsageError, match="no effect 'relaxation'"):
         campaign.export(tmp_path, fit=["relaxation"])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.nightly
+def test_petab_finds_no_error_in_its_tables(problem):
+    """By petab's own rules, for all but the model, which is an FMU here; runs that are held out are no part of the fit."""
+    pytest.importorskip("petab", reason="needs petab 0.8 or newer: pip install petab scipy")
+    import yaml
+    from petab.v2 import core, lint
+
+    class Entities:
+        """What petab asks of a model: which entities it has."""
+
+        model_id, type_id = "chair", "fmu"
+        names = frozenset(r["modelEntityId"] for r in rows(problem / "mapping.tsv"))
+
+        def has_entity_with_id(self, id: str) -> bool:
+            return id in self.names
+
+        symbol_allowed_in_observable_formula = has_entity_with_id
+
+        def get_parameter_ids(self) -> list[str]:
+            return sorted(self.names)
+
+        get_valid_parameters_for_parameter_table = get_valid_ids_for_condition_table = get_parameter_ids
+
+        def get_free_parameter_ids_with_values(self) -> list[tuple[str, float]]:
+            return [(name, 0.0) for name in sorted(self.names)]
+
+        def is_valid(self) -> bool:
+            return True
+
+        def is_state_variable(self, _: str) -> bool:
+            return False
+
+    config = core.ProblemConfig(**yaml.safe_load((problem / "problem.yaml").read_text(encoding="utf-8")), base_path=problem)
+    kinds = ("condition", "experiment", "observable", "measurement", "parameter", "mapping")
+    files = {kind: str(next(problem.glob(f"{kind}*.tsv"))) for kind in kinds}
+    tables = {f"{kind}_tables": [getattr(core, f"{kind.title()}Table").from_tsv(file)] for kind, file in files.items()}
+    whole = core.Problem(models=[Entities()], config=config, **tables)
+    found = [issue for task in lint.default_validation_tasks if (issue := task.run(whole)) is not None]
+    assert [str(issue.message) for issue in found if issue.level >= lint.ValidationIssueSeverity.ERROR] == []
+    assert all("not used in the measurements" in str(issue.message) for issue in found)

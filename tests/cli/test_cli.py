@@ -127,7 +127,8 @@ def test_leaving_the_models_range_is_said_on_stderr(tmp_path):
         (["slalom", "--variant", "none.toml"], 1, "none.toml: no such file"),
         (["slalom", "--fmu", "none.fmu"], 1, "none.fmu: no such file; build one with `wheelchair build`"),
         (["start-stop", "--equations", "paper", "--effects", "none"], 1, "the equations give NaN or infinity"),
-        (["slalom", "--colour", "red"], 2, "No such option"),
+        (["slalom", "--varient", "x.toml"], 2, "no option --varient; did you mean --variant?"),
+        (["slalom", "--colour", "red"], 2, "slalom has no --colour; it takes --speed, --delta-force, --period, --time"),
     ],
 )
 def test_bad_input_gets_one_sentence_and_writes_nothing(tmp_path, words, code, sentence):

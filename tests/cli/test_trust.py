@@ -83,7 +83,7 @@ def test_a_person_who_sweeps_is_asked_about_each_variant_of_the_plan(theirs, mon
 
 def test_once_trusted_a_variant_needs_no_further_option(theirs):
     done = wheelchair("trust", theirs)
-    assert done.exit_code == 0 and done.output.startswith("mine is trusted (sha256 ")
+    assert done.exit_code == 0 and done.output.startswith("effect mine is trusted (sha256 ")
     assert wheelchair("ssp", "parameters", theirs, "-o", theirs.with_suffix(".ssv")).exit_code == 0
     assert 'name="effect.mine.q"' in theirs.with_suffix(".ssv").read_text(encoding="utf-8")
     shown = json.loads(wheelchair("effects", "show", "mine", "--variant", theirs, "--json").output)
@@ -104,7 +104,7 @@ def test_a_plan_may_vary_what_all_its_variants_carry(theirs):
 
 def test_there_must_be_something_to_trust(tmp_path):
     (tmp_path / "plain.toml").write_text("", encoding="utf-8")
-    assert "carries no effects of anybody's own" in wheelchair("trust", tmp_path / "plain.toml").output
+    assert "carries no effects or laws of anybody's own" in wheelchair("trust", tmp_path / "plain.toml").output
     assert "no such file" in wheelchair("trust", tmp_path / "none.toml").output
 
 

@@ -36,7 +36,7 @@ def test_a_variant_from_elsewhere_is_refused_in_one_sentence_until_it_is_trusted
     with pytest.raises(Failure) as told:
         variant_in(file)
     assert str(told.value).startswith(f"{file} carries the effect mine, a program that runs with your rights; read it there")
-    assert list(untrusted(file)) == ["mine"]
+    assert list(untrusted(file)) == ["effect mine"]
     remember(programs_in(file).values())
     assert variant_in(file).effects == ("mine",) and untrusted(file) == {}
 
@@ -50,7 +50,7 @@ def test_trust_is_in_the_text_and_not_in_the_file(tmp_path):
 def test_who_reads_it_may_say_so_for_this_once(tmp_path):
     file = written(tmp_path, GOOD)
     assert variant_in(file, trust=True).effects == ("mine",)
-    assert list(untrusted(file)) == ["mine"]
+    assert list(untrusted(file)) == ["effect mine"]
 
 
 def test_what_was_written_here_has_run_here(tmp_path):
@@ -67,7 +67,7 @@ def test_trusted_programs_keep_the_contracts_too(tmp_path):
 def test_a_fault_of_the_program_is_told_with_the_variant_s_name(tmp_path):
     file = written(tmp_path, f"{GOOD}\n")
     broken = f"{GOOD}raise ValueError('no')\n"
-    digests = [chair(f"{GOOD}\n").active()[0].program.sha256, type(programs_in(file)["mine"])("", broken).sha256]
+    digests = [chair(f"{GOOD}\n").active()[0].program.sha256, type(programs_in(file)["effect mine"])("", broken).sha256]
     text = file.read_text(encoding="utf-8").replace(f"{GOOD}\n", broken).replace(*digests)
     file.write_text(text, encoding="utf-8")
     with pytest.raises(EffectError, match=r"better.toml/mine.py line \d+: cannot be read as an effect: ValueError: no"):

@@ -24,7 +24,7 @@ def chair_with(source: str) -> Variant:
 
 
 def load(programs):
-    return defined(tuple((p.file, p.text) for p in programs.values()))
+    return defined(tuple((p.file, p.text) for p in programs.effects.values()))
 
 
 def test_a_variant_without_own_effects_is_written_as_ever():
@@ -43,7 +43,7 @@ def test_a_program_is_read_as_it_was_written(tmp_path, end):
     source = f"{SOURCE}\n# {end}" if end == "'" else SOURCE.rstrip("\n") + "\n" + end
     file, chair = tmp_path / "better.toml", chair_with(source)
     file.write_text(variant_text(chair), encoding="utf-8")
-    assert programs_in(file)["my_drag"].text == source
+    assert programs_in(file)["effect my_drag"].text == source
     again = read_variant(file, load=load)
     assert again == chair and again.catalogue["my_drag"].program == Program(f"{file}/my_drag.py", source)
     assert variant_text(again) == variant_text(chair)
@@ -71,7 +71,7 @@ def test_what_was_not_written_so_is_refused(table, says):
 
 def test_no_program_is_run_unless_somebody_loads_it(tmp_path):
     (tmp_path / "better.toml").write_text(variant_text(chair_with(SOURCE)), encoding="utf-8")
-    with pytest.raises(Failure, match="carries my_drag, and programs are not run here"):
+    with pytest.raises(Failure, match="carries the effect my_drag, and programs are not run here"):
         read_variant(tmp_path / "better.toml")
 
 

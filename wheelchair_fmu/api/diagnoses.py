@@ -57,7 +57,11 @@ def diagnose(
     ('missing', ('rolling_resistance_asymmetry',))
     """
     start = plain(variant, own_effects)
-    given = campaign._record if isinstance(campaign, Campaign) else measured.read(campaign, known_parameters(start.catalogue))
+    given = (
+        campaign._record
+        if isinstance(campaign, Campaign)
+        else measured.read(campaign, known_parameters(start.catalogue, start.choice))
+    )
     chair, known, fixed = applied(values or {}, start, given)
     known = measured.windows(known)
     found, told = searched(known, chair, fixed, progress or (lambda words: None))

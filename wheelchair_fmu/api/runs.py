@@ -30,11 +30,13 @@ def simulate(
     effects: str | Sequence[str] = "default",
     equations: str | None = None,
     fmu: str | Path | None = None,
+    **options: float,
 ) -> pd.DataFrame:
     """Put the chair through a manoeuvre, as an FMU, and return all inputs and outputs over time.
 
     `course` is a manoeuvre ("steady-turn", "slalom", "coast-down", "start-stop", "spin"), of which `speed` [m/s], `delta_force`
-    [N] (F_rl − F_rr = 2ΔF, positive turns right), `period` [s] and `time` [s] may be given; or a frame of inputs by FMI name
+    [N] (F_rl − F_rr = 2ΔF, positive turns right), `period` [s] and `time` [s] may be given, and `options` of one of
+    your own; or a frame of inputs by FMI name
     (`push.F_rl` [N], `push.F_rr`, …; linear between samples, the rest at their start values) over an index of times [s].
     `values` are FMI parameters by name, SI units. `variant` and `effects` are as in `build`; or `fmu` is a finished FMU 2.0.
 
@@ -53,10 +55,9 @@ def simulate(
     [0.0, 0.06, 0.11]
     """
     if isinstance(course, str):
-        options = {"speed": speed, "delta_force": delta_force, "period": period, "time": time}
-        chosen = manoeuvre(course, **options)
+        chosen = manoeuvre(course, speed=speed, delta_force=delta_force, period=period, time=time, **options)
     else:
-        chosen = _recorded(course, speed=speed, delta_force=delta_force, period=period, time=time)
+        chosen = _recorded(course, speed=speed, delta_force=delta_force, period=period, time=time, **options)
     result, _ = driven(chosen, variant, values or {}, effects, equations, fmu)
     for words in result.warnings:
         warnings.warn(words, RuntimeWarning, stacklevel=2)

@@ -16,6 +16,7 @@ from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, judged, rea
 from ..contracts.own import catalogue
 from ..faults import ERROR
 from ..loop.subject import known_parameters
+from ..model.choice import Choice
 from ..model.stage import Effect
 from ..report import preview
 from ..report.saving import save
@@ -30,12 +31,12 @@ def register(app: typer.Typer) -> None:
     app.command()(check)
 
 
-def measurements(folder: Path, catalogue: Mapping[str, Effect] | None = None) -> Campaign:
-    """A campaign without errors, which may name parameters of these effects; what `check` would warn of is said on stderr.
+def measurements(folder: Path, catalogue: Mapping[str, Effect] | None = None, choice: Choice = Choice()) -> Campaign:
+    """A campaign without errors, which may name parameters of these effects and laws; warnings go to stderr.
 
     Raises CampaignError with all its faults.
     """
-    campaign = read(folder, known_parameters(catalogue))
+    campaign = read(folder, known_parameters(catalogue, choice))
     for fault in campaign.warnings[:MOST]:
         console(stderr=True).print(str(fault))
     if len(campaign.warnings) > MOST:

@@ -35,9 +35,10 @@ COMMANDS = {
     "improve": "Diagnose and add, until nothing is missing.",
     "report": "Write one page with the verdict, its evidence, and the model.",
     "export": "Write the problem of a fit, for other programs to solve.",
-    "trust": "Let the effects in a variant from elsewhere run.",
+    "trust": "Let the effects and laws in a variant from elsewhere run.",
     "workbench": "Do all of this in a browser, from recordings dropped in.",
     "effects": "The physical effects that the chair can have.",
+    "laws": "The tyre laws and caster laws that the chair can have.",
     "quantities": "What the equations speak of, for laws of your own.",
     "ssp": "Systems of FMUs: the chair with a pusher and a floor.",
 }

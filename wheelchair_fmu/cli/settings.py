@@ -34,4 +34,4 @@ def subject(
 ) -> tuple[Variant, Campaign, tuple[str, ...]]:
     """What a command of the loop is about, by its options: the chair, the measurements, and the names that --set fixes."""
     start = chair(variant, effects)
-    return applied(parse(settings or ()), start, measurements(campaign, start.catalogue))
+    return applied(parse(settings or ()), start, measurements(campaign, start.catalogue, start.choice))

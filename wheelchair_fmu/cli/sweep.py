@@ -95,7 +95,8 @@ def _needs_salib(plan: Plan) -> None:
 def _job(plan: Plan, engine: str) -> Job:
     if plan.campaign is None:
         return Job(plan, engine)
-    measured = read(plan.campaign, known_parameters(plan.chairs[0].variant().catalogue))
+    first = plan.chairs[0].variant()
+    measured = read(plan.campaign, known_parameters(first.catalogue, first.choice))
     plan = replace(plan, chairs=tuple(chair.with_effects(measured.effects) for chair in plan.chairs))
     yardsticks = {}
     with console(stderr=True).status("reading the campaign"):

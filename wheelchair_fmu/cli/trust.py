@@ -21,13 +21,13 @@ def register(app: typer.Typer) -> None:
 
 
 def trust(file: Annotated[Path, typer.Argument(metavar="TOML", help="A variant that you have read.")]) -> None:
-    """Let the effects in a variant from elsewhere run on this machine, with your rights; read them in the file first."""
+    """Let the effects and laws in a variant from elsewhere run here, with your rights; read them in the file first."""
     programs = programs_in(file)
     if not programs:
-        raise UsageError(f"{file}: carries no effects of anybody's own, so there is nothing to trust")
+        raise UsageError(f"{file}: carries no effects or laws of anybody's own, so there is nothing to trust")
     remember(programs.values())
-    for id, program in programs.items():
-        announce(f"{id} is trusted (sha256 {program.sha256})")
+    for what, program in programs.items():
+        announce(f"{what} is trusted (sha256 {program.sha256})")
 
 
 def variant_option(help: str) -> typer.models.OptionInfo:

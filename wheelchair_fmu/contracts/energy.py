@@ -64,6 +64,17 @@ class Energy:
                     return [_breach(on, f"{where} {symbol} is {least:.3g}", "let no drag go below zero")]
         return []
 
+    def of_casters(self, rng: np.random.Generator, times: int = 60) -> list[Breach]:
+        """The first moment in which the casters alone drive the chair, which the rear axle's resistance may hide."""
+        for i in range(times):
+            kind = list(KINDS)[i % len(KINDS)]
+            place, left = self._settler(self._anywhere(kind, (), rng, free=False))
+            parts = self._of_casters(place.x, place.w, place.p).full().ravel()
+            if left < SOLVED and parts.sum() > SAME * abs(parts).sum() + LEAST:
+                fact = f"{kind} the casters give the chair {parts.sum():.3g} W"
+                return [_breach((), fact, "let their forces oppose the velocity of the pivot at which they act")]
+        return []
+
     def _anywhere(self, kind: str, on: Collection[Effect], rng: np.random.Generator, free: bool) -> Place:
         p, w = self._values(on, rng), np.array([i.start for i in self._model.inputs])
         if free:
@@ -142,6 +153,13 @@ class Energy:
     @cached_property
     def _settler(self) -> Settler:
         return Settler(self._model)
+
+    @cached_property
+    def _of_casters(self) -> cs.Function:
+        """Power [W] of the casters' forces and of their bearings' moments, part by part."""
+        m, q = self._model, self._model.quantities
+        parts = q["F_xf"] * q["v_xf"], q["F_yf"] * q["v_yf"], q["M_f"] * q["psi_dot"]
+        return cs.Function("of_casters", [m.x, m.w, m.p], [cs.vertcat(*parts)])
 
     @cached_property
     def _powers(self) -> cs.Function:

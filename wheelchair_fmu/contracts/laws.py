@@ -53,16 +53,16 @@ def lines(subject: Subject, effect: Effect) -> Iterator[Line]:
     known = _records(subject, effect)
     for c in effect.contributions:
         unit = ONE if c.factor else subject.model.records[c.to].unit
-        yield _line(f"its {'factor of' if c.factor else 'term in'} {c.to}", [c.law], known, unit)
+        yield line_of(f"its {'factor of' if c.factor else 'term in'} {c.to}", [c.law], known, unit)
     for row in effect.rows:
         name, unit = row.state.name, row.state.unit
-        yield _line(f"rate / mass of {name}", [row.rate, row.mass], known, named(unit.kg, unit.m, unit.s - 1))
+        yield line_of(f"rate / mass of {name}", [row.rate, row.mass], known, named(unit.kg, unit.m, unit.s - 1))
         if row.start:
-            yield _line(f"the start of {name}", [row.start], known, unit)
+            yield line_of(f"the start of {name}", [row.start], known, unit)
 
 
-def _line(words: str, laws: Sequence[Law], known: Mapping[str, Quantity], unit: Unit) -> Line:
-    """The first law, divided by the second if there is one."""
+def line_of(words: str, laws: Sequence[Law], known: Mapping[str, Quantity], unit: Unit) -> Line:
+    """The first law, divided by the second if there is one, of what these records say that it may read."""
     symbols: dict[str, cs.SX] = {}
     units: dict[str, Unit] = {}
     fixed: dict[str, np.ndarray] = {}
@@ -83,10 +83,15 @@ def _line(words: str, laws: Sequence[Law], known: Mapping[str, Quantity], unit: 
 
 def values_at(subject: Subject, place: Place) -> dict[str, dict[str, np.ndarray]]:
     """The value of every symbol at a place, by effect: what is its own goes before what all share."""
-    model = subject.model
-    shared = dict(zip(model.quantities, evaluate(model, place, *model.quantities.values()), strict=True))
+    model, shared = subject.model, shared_values(subject, place)
     by_name = _by_name(model.states, place.x) | _by_name(model.parameters, place.p)
     return {e.id: shared | {q.symbol: by_name[f"effect.{e.id}.{q.name}"] for q in own(e)} for e in subject.effects}
+
+
+def shared_values(subject: Subject, place: Place) -> dict[str, np.ndarray]:
+    """The value of every symbol that all share."""
+    known = subject.model.quantities
+    return dict(zip(known, evaluate(subject.model, place, *known.values()), strict=True))
 
 
 def own(effect: Effect) -> tuple[Quantity, ...]:
@@ -96,9 +101,13 @@ def own(effect: Effect) -> tuple[Quantity, ...]:
 
 def _records(subject: Subject, effect: Effect) -> dict[str, Quantity]:
     """Everything that a law of this effect may read, by its symbol."""
+    return shared_records(subject) | {q.symbol: q for q in own(effect)}
+
+
+def shared_records(subject: Subject) -> dict[str, Quantity]:
+    """What any law may read, by its symbol."""
     model = subject.model
-    shared = (*model.parameters, *model.inputs, *model.states, *model.records.values())
-    return {q.symbol: q for q in (*shared, *own(effect))}
+    return {q.symbol: q for q in (*model.parameters, *model.inputs, *model.states, *model.records.values())}
 
 
 def _by_name(records: Sequence[Quantity], values: np.ndarray) -> dict[str, np.ndarray]:

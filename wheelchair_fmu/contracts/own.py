@@ -1,4 +1,4 @@
-"""Effects of a user's own, from a folder or a variant's file: held to the contracts before anything is done with them."""
+"""Effects and laws of a user's own, from files or out of a variant: held to the contracts before anything is done with them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ from pathlib import Path
 from shlex import quote
 
 from ..errors import EffectError, Failure, ModelError
+from ..model.carried import Carried
+from ..model.choice import Choice, taken_along
 from ..model.effects import Sources, bundled, read, sources
 from ..model.stage import Effect, Program
 from ..model.variant import Variant, programs_in, read_variant, variant_text
 from . import breaches
+from .of_laws import law_breaches
 from .trust import is_trusted, remember
 
 
@@ -66,29 +69,33 @@ def variant_in(path: Path, known: Mapping[str, Effect] | None = None, *, trust: 
     return read_variant(Path(path), known, partial(_loaded, Path(path), trust))
 
 
-def _loaded(path: Path, trust: bool, programs: Mapping[str, Program]) -> dict[str, Effect]:
+def _loaded(path: Path, trust: bool, found: Carried) -> dict[str, Effect]:
+    programs = found.programs()
     if not trust and not all(map(is_trusted, programs.values())):
         raise Failure(
             f"{carries(path, programs)}; read it there, and if you trust it, say so by `wheelchair trust {quote(str(path))}`, "
             "or in Python by Variant.read(..., trust=True)"
         )
-    return checked(tuple((program.file, program.text) for program in programs.values()))
+    chosen = ((own.kind, Choice(own=found.laws).with_laws({own.kind: own.name})) for own in found.laws)
+    if broken := [breach for kind, choice in chosen for breach in law_breaches(kind, choice)]:
+        raise EffectError(broken)
+    return checked(tuple((program.file, program.text) for program in found.effects.values()))
 
 
 def carries(path: Path, programs: Mapping[str, Program]) -> str:
     """The sentence that says so, without its full stop."""
-    names = " and ".join(programs)
-    what = f"effect {names}, a program that runs" if len(programs) == 1 else f"effects {names}, programs that run"
-    return f"{path} carries the {what} with your rights"
+    what = "a program that runs" if len(programs) == 1 else "programs that run"
+    return f"{path} carries the {' and the '.join(programs)}, {what} with your rights"
 
 
 def untrusted(path: Path) -> dict[str, Program]:
-    """The programs in a variant's file that this user does not trust yet, by effects' ids. Raises as `read_variant`."""
-    return {id: program for id, program in programs_in(path).items() if not is_trusted(program)}
+    """The programs in a variant's file that this user does not trust yet, by what each is. Raises as `read_variant`."""
+    return {what: program for what, program in programs_in(path).items() if not is_trusted(program)}
 
 
 def text_of(variant: Variant) -> str:
     """The variant as TOML. The programs in it have run here, so they are trusted on this machine from now on."""
     with suppress(OSError):  # then the user is asked
         remember(effect.program for effect in variant.active() if effect.program)
+        remember(own.program for own in taken_along(variant.choice, variant.values))
     return variant_text(variant)

@@ -48,10 +48,11 @@ def finite(subject: Subject) -> list[Breach]:
 
 def derivative(subject: Subject) -> list[Breach]:
     """The model's slopes along random directions agree with central differences at 1 m/s, and each law's own at rest."""
-    return _moving(subject) or [breach for effect in subject.effects for breach in _at_rest(subject, effect)]
+    return moving(subject) or [breach for effect in subject.effects for breach in _at_rest(subject, effect)]
 
 
-def _moving(subject: Subject) -> list[Breach]:
+def moving(subject: Subject) -> list[Breach]:
+    """Asked of the whole model."""
     model, rng = subject.model, np.random.default_rng(5)
     place = anywhere(model, subject.values(1.0), rng, 1.0, spread=0.05)
     value, slope = _along(model, cs.vertcat(_rates(model), model.y))

@@ -14,15 +14,16 @@ from ..model.wheelchair import Choice, Model, assemble
 
 @dataclass(frozen=True)
 class Breach:
-    """A contract that an effect breaks: the fact, with numbers and units, and the cure."""
+    """A contract that an effect, or a law, breaks: the fact, with numbers and units, and the cure."""
 
     effect: str
     contract: str
     fact: str
     cure: str
+    kind: str = "effect"  # or which law: "tyre law", "caster law"
 
     def __str__(self) -> str:
-        return f"effect {self.effect}, {self.contract}: {self.fact}; {self.cure}"
+        return f"{self.kind} {self.effect}, {self.contract}: {self.fact}; {self.cure}"
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Subject:
     def of(cls, effects: Iterable[Effect]) -> Subject:
         """Raises whatever the effects' laws raise, and ModelError or UsageError where one does not fit the model."""
         effects = tuple(effects)
-        choice = Choice(**{kind: law for effect in effects for kind, law in effect.needs.items()})
+        choice = Choice().with_laws({kind: law for effect in effects for kind, law in effect.needs.items()})
         return cls(effects, assemble(choice, effects), _bare(choice))
 
     @property

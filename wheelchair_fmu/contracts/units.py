@@ -11,7 +11,7 @@ from math import log
 import numpy as np
 
 from ..model.dimensions import named
-from ..model.stage import Effect
+from ..quantities import Parameter
 from .laws import Line, Values, lines, values_at
 from .places import anywhere
 from .subject import Breach, Subject
@@ -34,12 +34,15 @@ def units(subject: Subject) -> list[Breach]:
     found = []
     for effect in subject.effects:
         for line in lines(subject, effect):
-            fault = _fault(line, effect, [{**place[effect.id], **line.fixed} for place in places])
+            fault = fault_of(
+                line, (*effect.parameters, *effect.constants), [{**place[effect.id], **line.fixed} for place in places]
+            )
             found += [Breach(effect.id, "units", *fault)] if fault else []
     return found
 
 
-def _fault(line: Line, effect: Effect, places: Sequence[Values]) -> tuple[str, str] | None:
+def fault_of(line: Line, own: Sequence[Parameter], places: Sequence[Values]) -> tuple[str, str] | None:
+    """What is wrong with a line's unit and how to mend it, perhaps by the units of `own` parameters; None if all is well."""
     if all(_agrees(_scaled(line, at, kms), line.at(at) * line.unit.scale(*kms)) for at in places for kms in SCALES):
         return None
     exponents = _exponents(line, places)
@@ -47,12 +50,12 @@ def _fault(line: Line, effect: Effect, places: Sequence[Values]) -> tuple[str, s
         return f"{line.words} has no unit, but {line.unit.name} belongs there: {MIXED}", NAME_IT
     return (
         f"{line.words} comes out in {named(*exponents).name} where {line.unit.name} belongs",
-        _cure(line, effect, places[0], exponents),
+        _cure(line, own, places[0], exponents),
     )
 
 
-def _cure(line: Line, effect: Effect, at: Values, exponents: Sequence[int]) -> str:
-    own = [p for p in (*effect.parameters, *effect.constants) if p.symbol in line.symbols]
+def _cure(line: Line, own: Sequence[Parameter], at: Values, exponents: Sequence[int]) -> str:
+    own = [p for p in own if p.symbol in line.symbols]
     if len(own) == 1 and _agrees(line.at({**at, own[0].symbol: 2 * at[own[0].symbol]}), 2 * line.at(at)):
         has, needs = own[0].unit, line.unit
         wanted = needs.kg + has.kg - exponents[0], needs.m + has.m - exponents[1], needs.s + has.s - exponents[2]

@@ -89,7 +89,7 @@ class Fleet:
         about = {"folder": str(place), "campaign": place.name}
         try:
             start = self.recipe.variant()
-            measured = windows(read(place, known_parameters(start.catalogue)))
+            measured = windows(read(place, known_parameters(start.catalogue, start.choice)))
             about["campaign"] = measured.name
             variant, measured, fixed = applied(dict(self.settings), start, measured)
             return {**about, **of_diagnosis(diagnose(measured, variant, library(), fixed=fixed))}

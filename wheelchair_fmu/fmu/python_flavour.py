@@ -23,7 +23,7 @@ from uuid import UUID
 from .. import configuration
 from ..configuration import OF_MODELS
 from ..errors import BuildError
-from ..model.variant import LAWS
+from ..model.choice import names
 from ..resources import FMU_SOURCES
 from . import describe, documentation
 from .variables import GRID, TOLERANCE, Interface, Variable
@@ -79,6 +79,7 @@ def _modules(face: Interface) -> dict[str, str]:
     texts = {f.relative_to(PACKAGE).as_posix(): f.read_text(encoding="utf-8") for f in files}
     texts |= {f"model/effects/{e.id}.py": e.program.text for e in face.model.effects if e.program}  # a user's own come along
     texts |= {_place_of(name): file.read_text(encoding="utf-8") for name, file in configuration.files(*OF_MODELS).items()}
+    texts |= {f"model/{own.kind}/{own.name}.py": own.text for own in face.variant.choice.own}
     texts["configuration.py"] = NOTHING_OF_THE_HOST_S
     texts["__init__.py"] = '"""The model of the FMU around it."""\n'
     texts["stepping.py"] = (FMU_SOURCES / "python" / "stepping.py").read_text(encoding="utf-8")
@@ -105,7 +106,7 @@ def _interface(face: Interface, token: str) -> dict[str, Any]:
     return {
         "token": token,
         "choice": {"caster": choice.caster, "equations": choice.equations},
-        "laws": LAWS["tyre"],
+        "laws": names(choice)["tyre"],
         "effects": [e.id for e in face.model.effects],
         "tolerance": TOLERANCE,
         "grid": GRID,

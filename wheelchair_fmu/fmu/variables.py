@@ -14,7 +14,8 @@ import numpy as np
 from ..engine.kernel import kernel
 from ..engine.source import c_source
 from ..errors import BuildError
-from ..model.variant import LAWS, Variant
+from ..model.choice import names
+from ..model.variant import Variant
 from ..model.wheelchair import Model
 from ..quantities import Input, Output, Parameter, S, Unit, per_second
 from ..resources import FMU_SOURCES
@@ -140,7 +141,7 @@ class Interface:
     def watches(self) -> tuple[Watch, ...]:
         name = self.by_name
         # The paper calls its curves linear below 3°; the other laws were fitted to 9°.
-        slip = tuple({"linear": 0.0524}.get(law, 0.16) for law in LAWS["tyre"])
+        slip = tuple({"linear": 0.0524}.get(law, 0.16) for law in names(self.variant.choice)["tyre"])
         return (
             *(
                 Watch(
@@ -167,7 +168,7 @@ def interface(variant: Variant) -> Interface:
     """The FMI variables of a variant. Raises BuildError where the tyre laws make models of different shapes."""
     variant = _without_delays(variant)
     needed = {e.needs["tyre"] for e in variant.active() if "tyre" in e.needs}
-    laws = [law for law in LAWS["tyre"] if law in needed or not needed]
+    laws = [law for law in names(variant.choice)["tyre"] if law in needed or not needed]
     models = {law: replace(variant, choice=replace(variant.choice, tyre=law)).model() for law in laws}
     shapes = {(m.parameters, m.inputs, m.states, m.outputs) for m in models.values()}
     if len(shapes) != 1:

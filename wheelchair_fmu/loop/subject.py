@@ -8,17 +8,20 @@ from pathlib import Path
 
 from ..campaign import Campaign
 from ..contracts.own import catalogue, variant_in
+from ..model.choice import Choice, names
 from ..model.effects import bundled
 from ..model.former import current
 from ..model.stage import Effect
-from ..model.variant import LAWS, Variant
-from ..model.wheelchair import Choice
+from ..model.variant import Variant
 
 
-def known_parameters(catalogue: Mapping[str, Effect] | None = None) -> dict[str, tuple[float, float]]:
-    """Bounds, in SI units, of every parameter that a campaign may name, with these effects (the bundled ones unless given)."""
+def known_parameters(
+    catalogue: Mapping[str, Effect] | None = None, choice: Choice = Choice()
+) -> dict[str, tuple[float, float]]:
+    """Bounds, in SI units, of every parameter that a campaign may name, with these effects (the bundled ones unless given) and
+    the laws that a choice brings along."""
     known = bundled() if catalogue is None else catalogue
-    laws = (Variant(Choice(caster=law), catalogue=known).with_effects(known) for law in LAWS["caster"])
+    laws = (Variant(replace(choice, caster=law), catalogue=known).with_effects(known) for law in names(choice)["caster"])
     return {p.name: (p.lower, p.upper) for law in laws for p in law.parameters()}
 
 

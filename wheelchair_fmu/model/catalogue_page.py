@@ -69,7 +69,7 @@ def _targets(effect: Effect) -> str:
 
 
 def _quantities(effect: Effect) -> dict[str, Quantity]:
-    return dict(assemble(Choice(**effect.needs), [effect]).records)
+    return dict(assemble(Choice().with_laws(effect.needs), [effect]).records)
 
 
 def _needs(effect: Effect) -> str:

@@ -5,12 +5,14 @@ A package whose files these are adds a user's own folder to its `__path__`: a fi
 
 from __future__ import annotations
 
+import linecache
 import pkgutil
 import re
 from collections.abc import Iterable, MutableSequence
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from ..errors import ModelError
@@ -18,6 +20,7 @@ from ..faults import raised
 from .stage import Alternative
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
+EXAMPLE = 'Alternative("{}", ...)'
 
 
 def names(folder: MutableSequence[str], first: tuple[str, ...] = (), but: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -62,19 +65,42 @@ def _record(module: str, name: str, called: str, kind: type, example: str) -> An
         raise
     except BaseException as error:  # a user's own file is a program, and may end in any way
         raise ModelError(_failed(module, error)) from error
+    return _checked(record, module, name, called, kind, example)
+
+
+def _checked(record: Any, place: str, name: str, called: str, kind: type, example: str) -> Any:
     if not isinstance(record, kind) or getattr(record, "name", name) != name:
-        raise ModelError(f"{module}: no {example.format(name)} in it; write {called} = {example.format(name)}")
+        raise ModelError(f"{place}: no {example.format(name)} in it; write {called} = {example.format(name)}")
     return record
 
 
 def _failed(module: str, error: BaseException) -> str:
     """One sentence for whatever a file raised."""
     spec = find_spec(module)
-    place, line, said = raised(spec.origin or module if spec else module, error)
+    return _failure(spec.origin or module if spec else module, error)
+
+
+def _failure(file: str, error: BaseException) -> str:
+    place, line, said = raised(file, error)
     at = f"{place}:{line}" if line else place
     return f"{at}: cannot be read: {said}; mend this line, or move the file away"
 
 
 def laws(package: str, names: Iterable[str]) -> dict[str, Alternative]:
     """The laws by name. Raises ModelError as `records`."""
-    return records(package, names, "LAW", Alternative, 'Alternative("{}", ...)')
+    return records(package, names, "LAW", Alternative, EXAMPLE)
+
+
+def law_of_text(package: str, name: str, text: str, file: str) -> Alternative:
+    """The law that a program's text makes, as if its file lay in this package. Raises ModelError as `records`, with `file`."""
+    module = ModuleType(f"{package}.{name}")
+    module.__dict__.update(__file__=file, __package__=package)
+    try:
+        exec(compile(text, file, "exec"), module.__dict__)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise ModelError(_failure(file, error)) from error
+    linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)  # as it ran, for tracebacks
+    made: Alternative = _checked(module.__dict__.get("LAW"), file, name, "LAW", Alternative, EXAMPLE)
+    return made

@@ -12,7 +12,7 @@
     "tyre.C_lambda" = 4900.0
     "effect.relaxation_length.sigma" = 0.12
 
-Effects of a user's own are in the file too, as programs with their digests, see `carried`.
+Effects and laws of a user's own are in the file too, as programs with their digests, see `carried`.
 """
 
 from __future__ import annotations
@@ -32,19 +32,16 @@ import tomli_w
 from ..errors import Failure, Note, UsageError, unknown
 from ..given import toml
 from ..quantities import Parameter
-from . import carried, caster, tyre
+from . import carried
+from .choice import KINDS, Choice, OwnLaw, configured, names, serves, taken_along
 from .effects import bundled
 from .former import current
 from .stage import Effect, Program
-from .wheelchair import Choice, Model, assemble, base_parameters, serves
+from .wheelchair import Model, assemble, base_parameters
 
-LAWS = {
-    "tyre": tuple(tyre.LAWS),
-    "caster": tuple(name for name in caster.LAWS if name != "paper"),
-    "equations": ("extended", "paper"),
-}
+LAWS = names()  # what may be chosen where no law comes along
 NOTES = ("title", "for", "standard_errors", "origin", "tied")  # what else a file may say: whose values these are, and whence
-Load = Callable[[Mapping[str, Program]], Mapping[str, Effect]]  # runs programs, by effects' ids, once somebody trusts them
+Load = Callable[[carried.Carried], Mapping[str, Effect]]  # runs programs once somebody trusts them, and gives the effects
 
 
 def effects_in(names: Iterable[str]) -> tuple[str, ...]:
@@ -63,7 +60,7 @@ class Variant:
     catalogue: Mapping[str, Effect] = field(default_factory=bundled, repr=False)
 
     def __post_init__(self) -> None:
-        for kind, known in LAWS.items():
+        for kind, known in names(self.choice).items():
             if getattr(self.choice, kind) not in known:
                 raise unknown(f"{kind} law", getattr(self.choice, kind), known)
         for effect in self.effects:
@@ -79,7 +76,7 @@ class Variant:
         every = (need for effect in ids for need in self.catalogue[effect].needs.items())
         needs = {kind: law for kind, law in every if not serves(self.choice, kind, law)}
         more = tuple(e for e in ids if e not in self.effects)
-        return replace(self, effects=(*self.effects, *more), choice=replace(self.choice, **needs))
+        return replace(self, effects=(*self.effects, *more), choice=self.choice.with_laws(needs))
 
     def with_values(self, values: Mapping[str, float | str]) -> Variant:
         """The same with other values; a value of an effect that is off switches it on. Former names are read, with a warning.
@@ -112,7 +109,7 @@ class Variant:
 
     def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
         """Parameter values, shape (np,), in the order of `parameters()`; `values` go before the variant's own."""
-        given = {**self.values, **(values or {}), "tyre.law": 1 + LAWS["tyre"].index(self.choice.tyre)}
+        given = {**self.values, **(values or {}), "tyre.law": 1 + names(self.choice)["tyre"].index(self.choice.tyre)}
         return np.array([given.get(p.name, p.default) for p in self.parameters()])
 
 
@@ -144,19 +141,20 @@ def read_variant(path: Path, catalogue: Mapping[str, Effect] | None = None, load
     """
     known, table = catalogue if catalogue is not None else bundled(), _content(path)
     try:
-        if unread := _unread(carried.programs(table.pop(carried.TABLE, {}), path), known, path):
+        unread = _unread(carried.read(table, path), known, path)
+        if unread:
             if load is None:
-                raise Failure(f"{path}: carries {', '.join(unread)}, and programs are not run here")
+                raise Failure(f"{path}: carries the {' and the '.join(unread.programs())}, and programs are not run here")
             known = {**known, **load(unread)}
-        return _variant(table, known)
+        return _variant(table, known, unread.laws)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
 
 
 def programs_in(path: Path) -> dict[str, Program]:
-    """The programs that a variant's file carries, by effects' ids; none is run. Raises as `read_variant`."""
+    """The programs that a variant's file carries, by what each is ("effect my_drag"); none is run. Raises as `read_variant`."""
     try:
-        return carried.programs(_content(path).get(carried.TABLE, {}), path)
+        return carried.read(_content(path), path).programs()
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
 
@@ -170,16 +168,22 @@ def _content(path: Path) -> dict[str, Any]:
         raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
 
 
-def _unread(programs: Mapping[str, Program], catalogue: Mapping[str, Effect], path: Path) -> dict[str, Program]:
-    """Those that the catalogue does not have. What it has of the same name goes before; where that differs, a note says so."""
-    for id in programs.keys() & catalogue.keys():
-        own = catalogue[id].program
-        if own and own.text != programs[id].text:
-            warnings.warn(f"{path} carries another {id}; the one in {own.file} is taken", Note, stacklevel=2)
-    return {id: program for id, program in programs.items() if id not in catalogue}
+def _unread(all: carried.Carried, catalogue: Mapping[str, Effect], path: Path) -> carried.Carried:
+    """Those that are not here. What is here under the same name goes before; where that differs, a note says so."""
+    here = {(kind, name): own for kind in KINDS for name, own in configured(kind).items()}
+    pairs = [(program, catalogue[id].program) for id, program in all.effects.items() if id in catalogue]
+    pairs += [(law.program, here[law.kind, law.name].program) for law in all.laws if (law.kind, law.name) in here]
+    for theirs, own in pairs:
+        if own and own.text != theirs.text:
+            name = Path(theirs.file).stem
+            warnings.warn(f"{path} carries another {name}; the one in {own.file} is taken", Note, stacklevel=3)
+    return carried.Carried(
+        {id: program for id, program in all.effects.items() if id not in catalogue},
+        tuple(law for law in all.laws if (law.kind, law.name) not in here),
+    )
 
 
-def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Variant:
+def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect], own: tuple[OwnLaw, ...] = ()) -> Variant:
     for key in file:
         if key not in ("laws", "values", *NOTES):
             raise unknown("table", key, ("laws", "values", *NOTES))
@@ -195,7 +199,7 @@ def _variant(file: Mapping[str, Any], catalogue: Mapping[str, Effect]) -> Varian
     for kind in laws:
         if kind not in LAWS:
             raise unknown("law in [laws]", kind, (*LAWS, "effects"))
-    base = Variant(Choice(**laws), catalogue=catalogue, notes={key: file[key] for key in NOTES if key in file})
+    base = Variant(Choice(**laws, own=own), catalogue=catalogue, notes={key: file[key] for key in NOTES if key in file})
     return base.with_effects(effects).with_values(values)
 
 
@@ -206,7 +210,7 @@ def _table(file: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def variant_text(variant: Variant) -> str:
-    """The variant as TOML that `read_variant` reads, with the programs of a user's effects that are on."""
+    """The variant as TOML that `read_variant` reads, with the programs of a user's effects that are on and of their laws."""
     laws = {kind: getattr(variant.choice, kind) for kind in LAWS}
     told = {"laws": {**laws, "effects": list(variant.effects)}, "values": dict(variant.values), **variant.notes}
-    return tomli_w.dumps(told) + carried.text(variant.active())
+    return tomli_w.dumps(told) + carried.text(variant.active(), taken_along(variant.choice, variant.values))

@@ -15,9 +15,10 @@ import casadi as cs
 
 from ..errors import ModelError, unknown
 from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
-from . import caster, chassis, resistance, sensors, tyre
+from . import chassis, resistance, sensors
+from .choice import Choice, law, laws, serves
 from .readings import READINGS
-from .stage import Alternative, Effect, Law, Row, Stage, reads
+from .stage import Effect, Law, Row, Stage, reads
 from .tyre import common
 
 OUTPUTS = (
@@ -110,15 +111,6 @@ FORESEEN = ("a_x", "a_y")  # may be read before they are known; each then is an 
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which laws a model is made of."""
-
-    tyre: str = "linear"
-    caster: str = "ideal"
-    equations: str = "extended"  # or "paper": (9)–(22) to the letter, forward motion only
-
-
-@dataclass(frozen=True)
 class Model:
     """M(p) x' = f(x, w, p), y(x, w, p), x(0) = start(p), and the records of x, w, p and y."""
 
@@ -163,17 +155,17 @@ def _states(choice: Choice) -> int:
 
 def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
     """The parameters of a model without effects."""
-    _law("tyre", tyre.LAWS, choice.tyre)
-    laws = (*tyre.LAWS.values(), _law("caster", caster.LAWS, choice.caster))  # one FMU holds all tyre laws
-    extra = tuple(p for law in laws for p in law.parameters)
-    return (*chassis.PARAMETERS, *common.PARAMETERS, *resistance.PARAMETERS, *extra)
+    law("tyre", choice)
+    tyres = laws("tyre", choice)  # one FMU holds all of them
+    extra = tuple(p for each in (*tyres.values(), law("caster", choice)) for p in each.parameters)
+    return (*chassis.PARAMETERS, *common.parameters(tuple(tyres)), *resistance.PARAMETERS, *extra)
 
 
 def line(choice: Choice) -> tuple[Stage, ...]:
     """The stages, in order."""
     paper = choice.equations == "paper"
-    tyre_law = _law("tyre", tyre.LAWS, choice.tyre)
-    caster_law = _law("caster", caster.LAWS, "paper" if paper else choice.caster)
+    tyre_law = law("tyre", choice)
+    caster_law = law("caster", choice, "paper" if paper else choice.caster)
     return (
         chassis.traction,
         chassis.rider,
@@ -207,18 +199,6 @@ def line(choice: Choice) -> tuple[Stage, ...]:
     )
 
 
-def serves(choice: Choice, kind: str, needed: str) -> bool:
-    """Does the choice have the law that an effect needs, or one that stands in for it?"""
-    own = getattr(choice, kind)
-    return own == needed or needed in {"tyre": tyre.LAWS, "caster": caster.LAWS}.get(kind, {})[own].serves
-
-
-def _law(kind: str, laws: Mapping[str, Alternative], name: str) -> Alternative:
-    if name not in laws:
-        raise unknown(f"{kind} law", name, laws)
-    return laws[name]
-
-
 def _symbols(records: Iterable[Quantity]) -> dict[str, cs.SX]:
     return {r.symbol: cs.SX.sym(r.symbol, r.size) for r in records}
 
@@ -233,7 +213,7 @@ class _Assembly:
         for effect in effects:
             self._refuse_misfit(effect)
         self.parameters = base_parameters(choice)
-        caster_law = _law("caster", caster.LAWS, choice.caster)
+        caster_law = law("caster", choice)
         self.rows: list[tuple[Row, Mapping[str, cs.SX]]] = []
         self.foreseen: list[tuple[State, cs.SX]] = []
         self.known = _symbols(self.parameters) | _symbols(chassis.INPUTS)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import casadi
 
-from .. import __version__
+from .. import __version__, configuration
 from ..engine import compiler
 from ..engine.cache import effect_key
 from ..engine.store import kept
@@ -45,7 +45,8 @@ def _makers() -> str:
     """A digest of every file, and the versions, that an archive depends on."""
     files = (f for place in MAKERS for f in _files(place))
     digest = hashlib.sha256(b"\0".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{__version__} {digest} {casadi.CasadiMeta.version()} {compiler.version()} {compiler.FLAGS}"
+    own = configuration.digest(*configuration.OF_MODELS)
+    return f"{__version__} {digest} {casadi.CasadiMeta.version()} {compiler.version()} {compiler.FLAGS} {own}"
 
 
 def _files(path: Path) -> list[Path]:

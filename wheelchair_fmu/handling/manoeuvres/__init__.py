@@ -9,7 +9,7 @@ A file here, or in the folder `manoeuvres` of a user's configuration, is one mor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from math import isfinite
@@ -123,18 +123,21 @@ def manoeuvre(name: str, **options: float | None) -> Manoeuvre:
 
     Raises UsageError for an unknown name, an option that the manoeuvre does not have, or an impossible value.
     """
-    if name not in MANOEUVRES:
-        raise unknown("manoeuvre", name, MANOEUVRES)
-    make = MANOEUVRES[name]
     given = {key: value for key, value in options.items() if value is not None}
-    known = signature(make).parameters
-    for key in given:
-        if key not in known:
-            takes = ", ".join(map(_option, known))
-            raise UsageError(f"{name} has no {_option(key)}; it takes {takes}")
+    refuse_unknown(name, given)
     if not abs(given.get("delta_force", 0.0)) <= PUSH_LIMIT:  # written so that NaN is refused too
         raise UsageError(f"--delta-force {given['delta_force']:g} N is outside ±{PUSH_LIMIT:g} N; give a force between them")
-    return make(**given)
+    return MANOEUVRES[name](**given)
+
+
+def refuse_unknown(name: str, options: Iterable[str]) -> None:
+    """Raises UsageError for an unknown manoeuvre, or for an option that its function does not have."""
+    if name not in MANOEUVRES:
+        raise unknown("manoeuvre", name, MANOEUVRES)
+    known = signature(MANOEUVRES[name]).parameters
+    for key in options:
+        if key not in known:
+            raise UsageError(f"{name} has no {_option(key)}; it takes {', '.join(map(_option, known))}")
 
 
 def _option(key: str) -> str:

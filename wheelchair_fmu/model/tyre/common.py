@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as cs
 
 from ...quantities import BAR, M_S, N_M, N_M_RAD, N_RAD, ONE, RAD, REAR, M, N, Parameter
@@ -162,6 +164,11 @@ PARAMETERS = (
         source="chosen",
     ),
 )
+
+
+def parameters(laws: tuple[str, ...]) -> tuple[Parameter, ...]:
+    """The same, with these laws to choose from."""
+    return tuple(replace(p, choices=laws, upper=len(laws)) if p.name == "tyre.law" else p for p in PARAMETERS)
 
 
 @stage(

@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from ...engine.simulate import Simulator
-from ...model.variant import LAWS, Variant, number
+from ...model.choice import names
+from ...model.variant import Variant, number
 from ..archives import fmu_of
 from ..driving import Fmu
 
@@ -29,7 +30,9 @@ class KernelEngine:
         self._own = variant.vector()
         self._places = {p.name: i for i, p in enumerate(variant.parameters())}
         own = int(self._own[self._places["tyre.law"]])
-        self._simulators = {n: Simulator(variant.with_values({"tyre.law": LAWS["tyre"][n - 1]})) for n in {own, *laws}}
+        self._simulators = {
+            n: Simulator(variant.with_values({"tyre.law": names(variant.choice)["tyre"][n - 1]})) for n in {own, *laws}
+        }
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
         p = self._own.copy()
@@ -46,7 +49,7 @@ class FmuEngine:
     def __init__(self, variant: Variant, laws: Iterable[int] = ()):
         self._fmu = Fmu(fmu_of(variant))
         self._own = {name: value for name, value in variant.values.items() if name in self._fmu.parameters}
-        self._own["tyre.law"] = 1 + LAWS["tyre"].index(variant.choice.tyre)
+        self._own["tyre.law"] = 1 + names(variant.choice)["tyre"].index(variant.choice.tyre)
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
         values = {name: value for name, value in values.items() if name in self._fmu.parameters}  # a record's delay is not
