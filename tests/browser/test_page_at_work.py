@@ -245,7 +245,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     assert reader.page.locator(".card").count() == 3
     assert reader.page.is_visible("#missing") == (verdict == "outside")
-    assert reader.page.locator("#pair svg").count() == (verdict == "tie")
+    assert reader.page.locator("#ties #joint svg").count() == (verdict == "tie")
     for i in range(5):
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()

@@ -20,6 +20,9 @@ from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.report.page import page as page_of
+from wheelchair_fmu.report.page import unpacked
+from wheelchair_fmu.report.tale import Story
 
 HIDDEN = "rolling_resistance_asymmetry"
 TOLD = json.loads(DIAGNOSIS.read_text())
@@ -180,7 +183,8 @@ def test_a_value_out_of_bounds_is_not_taken(reader):
     assert not number.evaluate("e => e.checkValidity()")
 
 
-STARTS = {"PNG": b"\x89PNG", "SVG": b"<?xml", "PDF": b"%PDF-1.4"}
+STARTS = {"PNG": b"\x89PNG", "SVG": b"<?xml", "PDF": b"%PDF-1"}
+EMBEDDED = rb"/FontFile2 \d+ 0 R"
 
 
 def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
@@ -209,6 +213,8 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
                 assert drawn.get("width") == f"{mm}mm"
                 assert TOLD["campaign"] in "".join(drawn.itertext())
                 assert "NaN" not in content.decode() and "undefined" not in content.decode()
+                fonts = re.findall(r"font-weight:(\w+);src:url\(data:font/ttf;base64,", content.decode())
+                assert fonts == ["normal", "bold"]
             if kind == "PNG":
                 with Image.open(file) as picture:
                     assert picture.width == round(mm / 25.4 * 400)
@@ -217,9 +223,21 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
                 width = float(re.search(rb"MediaBox \[0 0 ([\d.]+)", content)[1])  # type: ignore[index]
                 assert width == pytest.approx(mm / 25.4 * 72, abs=0.02)
                 assert content.rstrip().endswith(b"%%EOF")
+                assert len(set(re.findall(EMBEDDED, content))) == 2  # regular and bold
+                assert b"/Subtype /Image" not in content and b"/Type1" not in content
     rows = list(csv.reader(taken(open_report, figure, "CSV", tmp_path).read_text(encoding="utf-8").splitlines()))
     assert len(rows) > 3
     assert len({len(r) for r in rows}) == 1
+
+
+def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path):
+    content = unpacked(report_file.read_text(encoding="utf-8"))
+    content["name"] = "輪椅"
+    (tmp_path / "odd.html").write_text(page_of(content, "輪椅", [], Story([], content["story"]["screens"])), encoding="utf-8")
+    reader = Reader(browser, tmp_path / "odd.html")
+    written = taken(reader, "staircase", "PDF 85 mm", tmp_path).read_bytes()
+    assert b"/Subtype /Image" in written and not re.search(EMBEDDED, written)
+    reader.close()
 
 
 @pytest.mark.parametrize(("scheme", "width"), LOOKS)

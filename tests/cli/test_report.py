@@ -13,7 +13,7 @@ from wheelchair_fmu.report.page import unpacked
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = str(ROOT / "examples" / "sample-campaign")
-TOLD = ROOT / "tests" / "browser" / "sample-diagnosis.json"  # of an earlier version
+TOLD = ROOT / "tests" / "browser" / "sample-diagnosis.json"
 PAPER = ROOT / "tests" / "report" / "paper" / "diagnosis.json"
 
 
@@ -64,17 +64,16 @@ def test_a_diagnosis_becomes_the_supplement_of_a_paper(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("told", "words", "sentence"),
+    ("change", "words", "sentence"),
     [
-        (TOLD, (), "has no 'final', as earlier versions wrote it; diagnose the campaign again"),
-        (PAPER, ("--set", "chair.m=80"), "was made with nothing set by --set; give the same values"),
-        (None, (), "a diagnosis of 'another', not of 'open-06-left-drag'"),
+        ({"final": None}, (), "has no 'final', as earlier versions wrote it; diagnose the campaign again"),
+        ({}, ("--set", "chair.m=80"), "was made with nothing set by --set; give the same values"),
+        ({"campaign": "another"}, (), "a diagnosis of 'another', not of 'open-06-left-drag'"),
     ],
 )
-def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, told, words, sentence):
-    if told is None:
-        told = tmp_path / "d.json"
-        told.write_text(json.dumps({**json.loads(PAPER.read_text(encoding="utf-8")), "campaign": "another"}))
+def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, change, words, sentence):
+    told, content = tmp_path / "d.json", {**json.loads(PAPER.read_text(encoding="utf-8")), **change}
+    told.write_text(json.dumps({k: v for k, v in content.items() if v is not None}))
     done = run("report", SAMPLE, "--diagnosis", str(told), "--paper", "-o", str(tmp_path / "s"), *words)
     assert done.exit_code == 1 and not (tmp_path / "s").exists()
     assert done.stderr.splitlines()[-1].startswith(f"{told}: ") and sentence in done.stderr

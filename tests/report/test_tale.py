@@ -117,7 +117,7 @@ def test_what_is_left_is_told_in_units_of_sensors_where_it_is_known():
     assert tale(told("missing", [DRAG], physical=physical)).physical == [
         "The yaw rate is foretold to 0.35 deg/s, 4% of how much it varies."
     ]
-    assert not tale(CASES["missing"]).physical
+    assert not tale(told("missing", [DRAG], physical={})).physical
 
 
 def test_the_right_guess_is_among_the_choices_and_the_rest_are_not_right():

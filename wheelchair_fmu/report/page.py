@@ -11,6 +11,7 @@ from importlib.resources import files
 from typing import Any
 
 from .markup import cards_html, screens_html
+from .press import press
 from .tale import Story
 
 ASSETS = files(__package__) / "page"
@@ -51,6 +52,8 @@ POLICY = (
 def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], story: Story) -> str:
     """The page as HTML, from what `content.content` gives; `sentence`, `particulars` and `story` are there before any script
     runs."""
+    carried = {**content, "story": {"screens": story.screens, "physical": story.physical}}
+    words = json.dumps(carried, ensure_ascii=False)
     places = {
         "title": f"{escape(content['name'])}: {escape(sentence)}",
         "name": escape(content["name"]),
@@ -65,7 +68,8 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "worker": _in_script(asset("worker.js")),
         "importmap": json.dumps({"imports": {f"page/{m}": _data_url(asset(f"{m}.js")) for m in MODULES}}),
         "plot": _in_script(f"/*\n{asset('vendor/uplot-LICENSE.txt')}*/\n{asset(f'{PLOT}.iife.min.js')}"),
-        "content": packed({**content, "story": {"screens": story.screens, "physical": story.physical}}),
+        "press": packed(press([words, words.upper(), *(asset(f"{m}.js") for m in MODULES)])),
+        "content": packed(carried),
     }
     head, *rest = asset("page.html").split("{{")
     parts = [head]

@@ -9,6 +9,10 @@ export const PRINT = {
   error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", print: true,
 };
 
+const WRITTEN = "system-ui, 'Helvetica Neue', Arial, sans-serif";
+export const FONT = "DejaVu Sans"; // which files carry
+export const PRINTED = `'${FONT}', Helvetica, Arial, sans-serif`;
+
 /** The colours of the page as it is now. */
 export function look() {
   const style = getComputedStyle(document.documentElement);
@@ -24,7 +28,7 @@ export function svg(tag, attributes = {}, ...children) {
 
 /** An SVG element of this size, hidden from screen readers: a table says the same. */
 export const canvas = (width, height, children) =>
-  svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, "aria-hidden": "true", "font-family": "system-ui, 'Helvetica Neue', Arial, sans-serif", "font-size": 12 }, children);
+  svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, "aria-hidden": "true", "font-family": WRITTEN, "font-size": 12 }, children);
 
 /** Text at a place; `anchor` is start, middle or end. */
 export const text = (x, y, words, fill, anchor = "start", more = {}) => svg("text", { x: round(x), y: round(y), fill, "text-anchor": anchor, ...more }, String(words));
@@ -62,20 +66,44 @@ export function extent(...series) {
   return low <= high ? [low, high] : [0, 1];
 }
 
-/** Words in lines of at most so many letters. */
-export function wrapped(words, letters) {
-  const lines = [""];
-  for (const word of words.split(/\s+/)) {
-    for (const piece of word.match(new RegExp(`.{1,${Math.max(Math.floor(letters), 4)}}`, "gu")) ?? [""]) {
-      if (lines.at(-1) && lines.at(-1).length + 1 + piece.length > letters) lines.push(piece);
-      else lines[lines.length - 1] += (lines.at(-1) ? " " : "") + piece;
-    }
-  }
-  return lines;
+let pen = null;
+
+/** How wide words are, in units of drawing, as they are written on the page or, where `look` is of print, in files. */
+export function long(words, look, size = 12, weight = 400) {
+  pen ??= document.createElement("canvas").getContext("2d");
+  pen.font = `${weight >= 600 ? "bold" : "normal"} ${size}px ${look.print ? PRINTED : WRITTEN}`;
+  return pen.measureText(words).width;
 }
 
-/** So many letters of a name, the end given by dots. */
-export function short(name, letters) {
-  const all = [...name];
-  return all.length > letters ? `${all.slice(0, Math.max(0, letters - 1)).join("")}…` : name;
+/** Words in lines no wider than this, at most `most` of them, the end given by dots; only a word that has no place on a line
+ *  of its own is broken. */
+export function broken(words, width, look, size = 12, weight = 400, most = Infinity) {
+  const fits = (t) => long(t, look, size, weight) <= width, lines = [];
+  for (const word of words.split(/\s+/).flatMap((w) => pieces(w, fits))) {
+    if (lines.length && fits(`${lines.at(-1)} ${word.text}`) && !word.on) lines[lines.length - 1] += ` ${word.text}`;
+    else lines.push(word.text);
+  }
+  if (lines.length <= most) return lines;
+  return [...lines.slice(0, most - 1), cut(lines.slice(most - 1).join(" "), fits)];
 }
+
+/** A word as [{text, on}], with hyphens where it is too wide; `on` says that it goes on from the piece before. */
+function pieces(word, fits) {
+  if (fits(word)) return [{ text: word, on: false }];
+  const letters = [...word], out = [];
+  let own = "";
+  for (const letter of letters) {
+    if (own.length > 1 && !fits(`${own}${letter}-`)) { out.push({ text: `${own}-`, on: out.length > 0 }); own = ""; }
+    own += letter;
+  }
+  return [...out, { text: own, on: true }];
+}
+
+const cut = (words, fits) => {
+  const letters = [...words];
+  while (letters.length > 1 && !fits(`${letters.join("").trimEnd()}…`)) letters.pop();
+  return `${letters.join("").trimEnd()}…`;
+};
+
+/** Words on one line no wider than this, the end given by dots. */
+export const fitted = (words, width, look, size = 12, weight = 400) => broken(words, width, look, size, weight, 1)[0];

@@ -3,7 +3,7 @@
 import { byId } from "page/dom";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
-import { forest, pair, panels } from "page/forest";
+import { forest, panels } from "page/forest";
 import { Heat, heat } from "page/heat";
 import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
@@ -23,9 +23,6 @@ export class Figures {
     this.add("forest", "Every effect's size, with its 95 % interval", this.sizes());
     if (campaign.diagnosis.calibration && Object.keys(campaign.diagnosis.calibration).length) this.add("calibration", "Calibrated values beside what was given", this.calibrated());
     else byId("calibration").remove();
-    const tied = this.tied();
-    if (tied) this.add("pair", "Why these cannot be told apart", tied);
-    else byId("pair").remove();
     this.landscape();
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
@@ -102,7 +99,10 @@ export class Figures {
     byId("profiles").hidden = !curves.length;
     byId("joint").hidden = !joint;
     if (curves.length) this.add("profiles", "How sure each size is", this.profiled(curves));
-    if (joint) this.add("joint", "Two rivals together", this.joined(joint));
+    if (!joint) return;
+    const tied = this.campaign.diagnosis.ties.some((t) => joint.effects.every((e) => t.includes(e)));
+    if (tied) byId("ties").append(byId("joint"));
+    this.add("joint", tied ? "Why these cannot be told apart" : "Two rivals together", this.joined(joint));
   }
 
   sizeOf(name) {
@@ -126,22 +126,6 @@ export class Figures {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "fall of twice the log likelihood": cells.map((c) => c[2]) }),
       caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter.`,
-    };
-  }
-
-  /** The first tie of two effects that have one size each. */
-  tied() {
-    const { diagnosis, effects } = this.campaign, group = diagnosis.ties.find((t) => t.length === 2);
-    const ends = (group ?? []).map((id) => {
-      const row = diagnosis.ranking.find((r) => r.effect === id), [p, ...more] = effects.find((e) => e.id === id)?.parameters ?? [], own = p && row?.parameters[p.name.split(".").at(-1)];
-      return own && !more.length && p.delta ? { name: capital(titleOf(this.campaign, id)), value: own.estimate / p.delta, se: (own.se ?? 0) / p.delta, note: withError(own.estimate, own.se, p), error: row.heldout_after } : null;
-    });
-    if (ends.length !== 2 || ends.includes(null)) return null;
-    const [a, b] = ends;
-    return {
-      draw: (width, look) => pair(width, look, a, b),
-      columns: () => ({ effect: ends.map((e) => e.name), "size, in the smallest that would matter": ends.map((e) => e.value), se: ends.map((e) => e.se), "error on runs held out": ends.map((e) => e.error) }),
-      caption: () => `${a.name}, ${a.note}, alone; or ${b.name.toLowerCase()}, ${b.note}, alone; or a share of both along the dashed line: these runs do not say. Both axes are in the smallest size that would matter; within the shading neither would.`,
     };
   }
 

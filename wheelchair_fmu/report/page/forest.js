@@ -1,48 +1,53 @@
 // Estimates with their 95 % intervals: of effects, in sizes of interest; of calibrated values, in standard deviations of what
 // was given.
 
-import { canvas, line, short, svg, text, tick, ticks } from "page/draw";
-import { significant } from "page/numbers";
+import { broken, canvas, fitted, line, long, svg, text, tick, ticks } from "page/draw";
 
 const ROW = 24, CLIP = 12;
+
+/** Where names, rows and numbers of a forest plot have their places: beside one another, or, where it is narrow, above. */
+function places(width, look, rows) {
+  const narrow = width < 560, weight = (r) => (r.strong ? 600 : 400), noted = Math.max(...rows.map((r) => long(r.note, look, 11.5)));
+  const left = narrow ? 12 : Math.min(0.48 * width, 14 + Math.max(...rows.map((r) => long(r.name, look, 12, weight(r))))), right = narrow ? 12 : noted + 20;
+  let y = 24;
+  const all = rows.map((r) => {
+    const name = broken(r.name, narrow ? width - 2 * left - long(r.note, look, 11) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 ? (narrow ? 14 : 10) : 0), top = y;
+    y += high;
+    return { name, top, high, middle: narrow ? top + high - 14 : top + high / 2 };
+  });
+  return { narrow, left, right, all, end: y + 6 };
+}
 
 /** `rows` are [{name, value, low, high, note, strong}], in units of `unit`; the band from −`band` to `band` is
  *  what the words `shaded` say. */
 export function forest(width, look, rows, unit, shaded, band = 1) {
-  const narrow = width < 560, left = narrow ? 12 : Math.min(340, 0.42 * width), right = narrow ? 12 : 140, high = narrow ? 2 * ROW : ROW;
+  const { narrow, left, right, all, end } = places(width, look, rows);
   const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
-  let [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
-  const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), end = 30 + high * rows.length, drawn = [];
+  const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
+  const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
   for (const v of ticks(low, most, (width - left - right) / 70)) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, tick(v), look.faint, "middle", { "font-size": 11 }));
   drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
-  rows.forEach((r, i) => {
-    const y = 24 + high * (i + 0.5) + (narrow ? 8 : 4), colour = r.strong ? look.accent : look.faint, [a, b] = [Math.max(r.low, low), Math.min(r.high, most)];
-    const weight = { "font-weight": r.strong ? 600 : 400 };
-    drawn.push(narrow ? text(left, y - 11, short(r.name, Math.floor((width - 20) / 7.4 - 0.9 * r.note.length)), look.ink, "start", weight) : text(left - 10, y + 4, short(r.name, Math.floor(left / (r.strong ? 7.4 : 6.7))), look.ink, "end", weight));
-    if (a < b) drawn.push(line(across(a), y, across(b), y, colour, { "stroke-width": r.strong ? 3 : 2 }));
-    for (const [beyond, at, way] of [[r.low < low, low, -1], [r.high > most, most, 1]])
-      if (beyond) drawn.push(svg("path", { d: `M${across(at)} ${y}l${-7 * way} -4v8z`, fill: colour }));
-    if (r.value >= low && r.value <= most) drawn.push(svg("rect", { x: across(r.value) - 4.5, y: y - 4.5, width: 9, height: 9, fill: colour, transform: `rotate(45 ${across(r.value)} ${y})` }));
-    drawn.push(narrow ? text(width - right, y - 11, r.note, look.faint, "end", { "font-size": 11 }) : text(width - right + 10, y + 4, r.note, r.strong ? look.ink : look.faint, "start", { "font-size": 11.5 }));
-  });
+  rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
   return canvas(width, end + 40, drawn);
 }
 
-/** A tie: one size alone, the other alone, and the line of shares of both between them. `a` and `b` are {name, value, se}, in
- *  sizes of interest. */
-export function pair(width, look, a, b) {
-  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), reach = (p) => [Math.min(0, 1.15 * (p.value - 2 * p.se)), Math.max(1.3, 1.15 * (p.value + 2 * p.se))];
-  const [xs, ys] = [reach(a), reach(b)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
-  drawn.push(svg("rect", { x: across(Math.max(-1, xs[0])), y: down(1), width: across(1) - across(Math.max(-1, xs[0])), height: down(Math.max(-1, ys[0])) - down(1), fill: look.band }));
-  for (const v of ticks(...xs, w / 70)) drawn.push(line(across(v), top, across(v), top + hh, look.line), text(across(v), top + hh + 16, tick(v), look.faint, "middle"));
-  for (const v of ticks(...ys, hh / 45)) drawn.push(line(left, down(v), left + w, down(v), look.line), text(left - 7, down(v) + 4, tick(v), look.faint, "end"));
-  drawn.push(line(across(a.value), down(0), across(0), down(b.value), look.accent, { "stroke-width": 2, "stroke-dasharray": "6 4" }));
-  drawn.push(line(across(a.value - 1.96 * a.se), down(0), across(a.value + 1.96 * a.se), down(0), look.accent, { "stroke-width": 4 }), line(across(0), down(b.value - 1.96 * b.se), across(0), down(b.value + 1.96 * b.se), look.accent, { "stroke-width": 4 }));
-  for (const [x, y] of [[a.value, 0], [0, b.value]]) drawn.push(svg("circle", { cx: across(x), cy: down(y), r: 6, fill: look.accent }));
-  drawn.push(text(left + w / 2, top + hh + 36, short(a.name, Math.floor(w / 6.8)), look.ink, "middle"), text(0, 0, short(b.name, Math.floor(hh / 6.8)), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
-  return canvas(width, top + hh + 46, drawn);
+/** A row's name and number. */
+function written(r, { name, top, middle }, narrow, left, right, look) {
+  const weight = { "font-weight": r.strong ? 600 : 400 };
+  if (narrow) return [name.map((t, k) => text(left, top + 17 + 14 * k, t, look.ink, "start", weight)), text(right, top + 17, r.note, look.faint, "end", { "font-size": 11 })];
+  return [name.map((t, k) => text(left - 10, middle + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end", weight)), text(right + 10, middle + 4, r.note, r.strong ? look.ink : look.faint, "start", { "font-size": 11.5 })];
+}
+
+/** A row's interval and value. */
+function drawnRow(r, y, across, [low, most], look) {
+  const colour = r.strong ? look.accent : look.faint, [a, b] = [Math.max(r.low, low), Math.min(r.high, most)], out = [];
+  if (a < b) out.push(line(across(a), y, across(b), y, colour, { "stroke-width": r.strong ? 3 : 2 }));
+  for (const [beyond, at, way] of [[r.low < low, low, -1], [r.high > most, most, 1]])
+    if (beyond) out.push(svg("path", { d: `M${across(at)} ${y}l${-7 * way} -4v8z`, fill: colour }));
+  if (r.value >= low && r.value <= most) out.push(svg("rect", { x: across(r.value) - 4.5, y: y - 4.5, width: 9, height: 9, fill: colour, transform: `rotate(45 ${across(r.value)} ${y})` }));
+  return out;
 }
 
 /** Bars of errors from the noise upwards: [{title, error, found}]. */
@@ -51,7 +56,7 @@ export function bars(width, look, rows) {
   const across = (v) => 4 + (width - 60) * (Math.log(v / least) / Math.log(most / least));
   rows.forEach((r, i) => {
     const y = i * high, colour = r.found ? look.accent : look.faint;
-    drawn.push(text(4, y + 14, short(r.title, Math.floor(width / 6.3)), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
+    drawn.push(text(4, y + 14, fitted(r.title, width - 8, look, 12, r.found ? 600 : 400), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
       svg("rect", { x: Math.min(across(1), across(r.error)), y: y + 20, width: Math.max(2, Math.abs(across(r.error) - across(1))), height: 11, rx: 2, fill: colour }), text(Math.max(across(r.error), across(1)) + 7, y + 30, r.error.toFixed(2), look.ink));
   });
   const end = rows.length * high;
@@ -78,5 +83,3 @@ export function panels(width, look, all, unit) {
   });
   return canvas(width, Math.ceil(all.length / abreast) * high, drawn);
 }
-
-export const note = (v) => `${significant(v, 2)}`;

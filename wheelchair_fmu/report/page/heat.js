@@ -1,7 +1,7 @@
 // Tables of errors whose cells stay quiet where a model's error is the noise, and turn the colour of an error where it is not.
 
 import { h } from "page/dom";
-import { canvas, short, svg, text, wrapped } from "page/draw";
+import { broken, canvas, long, svg, text } from "page/draw";
 import { rms, significant } from "page/numbers";
 
 const QUIET = 1.1, LOUD = 6; // whitened RMS without colour, and with all of it
@@ -47,17 +47,20 @@ export class Heat {
 
 /** The same as a drawing. */
 export function heat(width, look, heads, rows) {
-  const left = Math.min(0.36 * width, 150), wide = (width - left) / heads.length, high = rows.some((r) => r.cells.some((c) => c.note)) ? 34 : 24, drawn = [];
-  const named = heads.map((t) => wrapped(t, Math.max(5, Math.floor(wide / 6.2))).slice(0, 4)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
-  named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": 11 }))));
-  rows.forEach((row, i) => {
-    const y = top + high * i;
-    drawn.push(text(left - 8, y + high / 2 + 4, short(row.name, Math.floor(left / 7.2)), look.ink, "end"));
+  const left = Math.min(0.36 * width, 14 + Math.max(...rows.map((r) => long(r.name, look)))), wide = (width - left) / heads.length, drawn = [];
+  const size = wide < 64 ? 10 : 11, named = heads.map((t) => broken(t, wide - 4, look, size, 400, 5)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
+  named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": size }))));
+  let y = top;
+  for (const row of rows) {
+    const name = broken(row.name, left - 12, look, 12, 400, 2), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, 9.5, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));
+    const high = Math.max(name.length > 1 ? 32 : 24, 24 + 11 * noted - (noted ? 1 : 0));
+    name.forEach((t, k) => drawn.push(text(left - 8, y + high / 2 + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end")));
     row.cells.forEach((c, j) => {
-      const x = left + wide * j;
+      const x = left + wide * j, middle = x + wide / 2;
       drawn.push(svg("rect", { x: x + 1, y: y + 1, width: wide - 2, height: high - 2, fill: look.error, "fill-opacity": loud(c.value) / 100, stroke: look.line }),
-        text(x + wide / 2, y + (c.note ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), c.note ? text(x + wide / 2, y + 28, short(c.note, Math.floor(wide / 5)), look.faint, "middle", { "font-size": 9.5 }) : null);
+        text(middle, y + (noted ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), notes[j].map((t, k) => text(middle, y + 27 + 11 * k, t, look.faint, "middle", { "font-size": 9.5 })));
     });
-  });
-  return canvas(width, top + 4 + high * rows.length, drawn);
+    y += high;
+  }
+  return canvas(width, y + 4, drawn);
 }

@@ -1,6 +1,6 @@
 // The likelihood about the estimates: by each size alone, and by the sizes of two rivals together.
 
-import { canvas, course, line, short, svg, text, tick, ticks } from "page/draw";
+import { canvas, course, fitted, line, svg, text, tick, ticks } from "page/draw";
 
 const HIGH = 230;
 
@@ -14,7 +14,7 @@ export function profiles(width, look, all, level) {
     for (const v of ticks(from, to, w / 80)) drawn.push(text(across(v), y0 + hh + 16, tick(v), look.faint, "middle", { "font-size": 11 }));
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
     drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))), look.accent, { "stroke-width": 2 }));
-    drawn.push(text(x0 + w / 2, y0 + hh + 34, short(p.label, Math.floor(wide / 6.8)), look.ink, "middle"));
+    drawn.push(text(x0 + w / 2, y0 + hh + 34, fitted(p.label, wide - 8, look), look.ink, "middle"));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
 }
@@ -36,21 +36,43 @@ export function contour(heights, about, level) {
   return pieces;
 }
 
+/** Pieces that meet, one after another, as courses [[x, y], ...]. */
+export function joined(pieces) {
+  const key = ([x, y]) => `${x.toFixed(6)} ${y.toFixed(6)}`, left = new Set(pieces), out = [];
+  for (const piece of pieces) {
+    if (!left.delete(piece)) continue;
+    const points = [...piece];
+    for (let more = true; more; ) {
+      more = false;
+      for (const other of left) {
+        const [a, b] = other.map(key), first = key(points[0]), last = key(points.at(-1));
+        if (a === last || b === last) points.push(other[a === last ? 1 : 0]);
+        else if (a === first || b === first) points.unshift(other[a === first ? 1 : 0]);
+        else continue;
+        left.delete(other);
+        more = true;
+      }
+    }
+    out.push(points);
+  }
+  return out;
+}
+
 /** Two sizes together: contours of 50 and 95 % about the best, and either size alone on its axis. `pair` is the landscape's
  *  with `names` and `deltas`; both axes are in the smallest sizes that would matter. */
 export function together(width, look, pair) {
   const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, about, heights, deltas } = pair;
   const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
-  const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [contour(heights, about, level).map((piece) => piece.map(at)), dash]);
+  const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [joined(contour(heights, about, level)).map((points) => points.map(at)), dash]);
   const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat())], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
   const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
   const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];
   drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
   for (const v of ticks(...xs, w / 70)) drawn.push(line(across(v), top, across(v), top + hh, v === 0 ? look.faint : look.line), text(across(v), top + hh + 16, tick(v), look.faint, "middle"));
   for (const v of ticks(...ys, hh / 45)) drawn.push(line(left, down(v), left + w, down(v), v === 0 ? look.faint : look.line), text(left - 7, down(v) + 4, tick(v), look.faint, "end"));
-  for (const [pieces, dash] of lines) for (const [[a, b], [c, d]] of pieces) drawn.push(line(across(a), down(b), across(c), down(d), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
+  for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
-  drawn.push(text(left + w / 2, top + hh + 36, short(pair.names[0], Math.floor(w / 6.8)), look.ink, "middle"), text(0, 0, short(pair.names[1], Math.floor(hh / 6.8)), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
+  drawn.push(text(left + w / 2, top + hh + 36, fitted(pair.names[0], width - left, look), look.ink, "middle"), text(0, 0, fitted(pair.names[1], top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
   return canvas(width, top + hh + 46, drawn);
 }

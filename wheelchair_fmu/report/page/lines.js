@@ -1,6 +1,6 @@
 // Curves over time as SVG, for files: what uPlot draws on the page.
 
-import { canvas, course, extent, line, svg, text, tick, ticks } from "page/draw";
+import { canvas, course, extent, line, long, svg, text, tick, ticks } from "page/draw";
 import { display, unitText } from "page/numbers";
 
 const LEFT = 54, RIGHT = 8;
@@ -13,7 +13,7 @@ export function lines(width, look, time, [from, to], panels) {
   let top = 20, at = LEFT;
   for (const [name, , colour, , dash] of panels[0].lines) {
     drawn.push(line(at, 8, at + 20, 8, look[colour], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
-    at += 44 + 6.4 * name.length;
+    at += 44 + long(name, look);
   }
   for (const panel of panels) {
     let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => shown.map((i) => v[i])));
@@ -34,20 +34,20 @@ export function lines(width, look, time, [from, to], panels) {
 /** The path from above, forward up. */
 export function path(width, look, motion) {
   const every = [["before", motion.before, [2, 3]], ["measured", motion.measured], ["model", motion.model, [7, 4]]].filter(([, p]) => p);
-  const [xs, ys] = ["x", "y"].map((c) => extent(...every.map(([, p]) => p[c]))), long = xs[1] - xs[0] > ys[1] - ys[0];
-  const [[left, right], [top, bottom]] = long ? [xs, ys] : [ys, [-xs[1], -xs[0]]], frame = 44, room = 0.3;
+  const [xs, ys] = ["x", "y"].map((c) => extent(...every.map(([, p]) => p[c]))), lengthways = xs[1] - xs[0] > ys[1] - ys[0];
+  const [[left, right], [top, bottom]] = lengthways ? [xs, ys] : [ys, [-xs[1], -xs[0]]], frame = 44, room = 0.3;
   const scale = Math.min((width - 2 * frame) / (right - left + 2 * room), 420 / (bottom - top + 2 * room)), height = scale * (bottom - top + 2 * room) + 80;
   const put = (u, v) => [width / 2 + scale * (u - (left + right) / 2), 24 + scale * (v - top + room)], drawn = [], end = height - 50;
   for (const u of ticks(left, right, width / 110)) { const [x] = put(u, top); drawn.push(line(x, 22, x, end, look.line), text(x, end + 16, tick(u), look.faint, "middle", { "font-size": 11 })); }
-  for (const v of ticks(top, bottom, 4)) { const [, y] = put(left, v); drawn.push(line(frame, y, width - 10, y, look.line), text(frame - 6, y + 4, tick(long ? v : -v), look.faint, "end", { "font-size": 11 })); }
+  for (const v of ticks(top, bottom, 4)) { const [, y] = put(left, v); drawn.push(line(frame, y, width - 10, y, look.line), text(frame - 6, y + 4, tick(lengthways ? v : -v), look.faint, "end", { "font-size": 11 })); }
   let at = frame;
   for (const [name, p, dash] of every) {
-    const points = [...p.x.keys()].filter((i) => i % Math.max(1, Math.floor(p.x.length / 700)) === 0).map((i) => (long ? put(p.x[i], p.y[i]) : put(p.y[i], -p.x[i])));
+    const points = [...p.x.keys()].filter((i) => i % Math.max(1, Math.floor(p.x.length / 700)) === 0).map((i) => (lengthways ? put(p.x[i], p.y[i]) : put(p.y[i], -p.x[i])));
     drawn.push(course(points.map((q) => q[0]), points.map((q) => q[1]), look[name], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }));
     drawn.push(line(at, 8, at + 20, 8, look[name], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
-    at += 44 + 6.4 * name.length;
+    at += 44 + long(name, look);
   }
-  drawn.push(text(width / 2, height - 14, long ? "forward [m]; downwards: to the right [m]" : "to the right [m]; upwards: forward [m]", look.ink, "middle"));
+  drawn.push(text(width / 2, height - 14, lengthways ? "forward [m]; downwards: to the right [m]" : "to the right [m]; upwards: forward [m]", look.ink, "middle"));
   return canvas(width, height, drawn);
 }
 
