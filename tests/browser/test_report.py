@@ -183,7 +183,7 @@ def test_a_value_out_of_bounds_is_not_taken(reader):
     assert not number.evaluate("e => e.checkValidity()")
 
 
-STARTS = {"PNG": b"\x89PNG", "SVG": b"<?xml", "PDF": b"%PDF-1"}
+STARTS = {"PNG": b"\x89PNG", "SVG": b"<?xml", "PDF": b"%PDF-1.3"}
 EMBEDDED = rb"/FontFile2 \d+ 0 R"
 
 

@@ -13,7 +13,7 @@ from ..model.stage import Effect
 from .motion import mirror, neutral, passive, present
 from .record import record
 from .smooth import derivative, finite
-from .subject import Breach, Subject
+from .subject import NOT_OF_NUMBERS, Breach, Subject
 from .units import units
 
 __all__ = ["CLAIMS", "CONTRACTS", "Breach", "Subject", "breaches"]
@@ -44,7 +44,7 @@ def breaches(effect: Effect) -> list[Breach]:
                 effect.id,
                 "equations",
                 f"its law fails{_line(effect, error)}: {type(error).__name__}: {_last(error)}",
-                "write it of quantities, numbers and CasADi's functions, without if",
+                NOT_OF_NUMBERS,
             )
         ]
 

@@ -22,7 +22,7 @@ from .laws import Line, line_of, shared_records, shared_values
 from .motion import mirror
 from .places import anywhere
 from .smooth import finite, moving
-from .subject import Breach, Subject
+from .subject import NOT_OF_NUMBERS, Breach, Subject
 from .units import PLACES, fault_of
 
 SLIPPING = np.array([0.02, -0.03])  # rad, at which no tyre slides: where it does, its trail may be zero in any unit
@@ -51,8 +51,7 @@ def law_breaches(kind: str, choice: Choice) -> list[Breach]:
         found = [Breach(chosen.name, "equations", fact, cure or "change the law")]
     except Exception as error:  # what somebody else's law may raise
         _, _, said = raised("", error)
-        cure = "write it of quantities, numbers and CasADi's functions, without if"
-        found = [Breach(chosen.name, "equations", f"it fails: {said}", cure)]
+        found = [Breach(chosen.name, "equations", f"it fails: {said}", NOT_OF_NUMBERS)]
     return [replace(breach, effect=chosen.name, kind=f"{kind} law") for breach in found]
 
 

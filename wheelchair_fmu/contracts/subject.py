@@ -11,6 +11,8 @@ import numpy as np
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, Model, assemble
 
+NOT_OF_NUMBERS = "write it of quantities, numbers and CasADi's functions, without if"  # the cure of a law that raises an error
+
 
 @dataclass(frozen=True)
 class Breach:

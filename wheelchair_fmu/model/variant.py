@@ -168,18 +168,18 @@ def _content(path: Path) -> dict[str, Any]:
         raise Failure(f"{path}: not a TOML file in UTF-8: {error}") from error
 
 
-def _unread(all: carried.Carried, catalogue: Mapping[str, Effect], path: Path) -> carried.Carried:
+def _unread(found: carried.Carried, catalogue: Mapping[str, Effect], path: Path) -> carried.Carried:
     """Those that are not here. What is here under the same name goes before; where that differs, a note says so."""
     here = {(kind, name): own for kind in KINDS for name, own in configured(kind).items()}
-    pairs = [(program, catalogue[id].program) for id, program in all.effects.items() if id in catalogue]
-    pairs += [(law.program, here[law.kind, law.name].program) for law in all.laws if (law.kind, law.name) in here]
+    pairs = [(program, catalogue[id].program) for id, program in found.effects.items() if id in catalogue]
+    pairs += [(law.program, here[law.kind, law.name].program) for law in found.laws if (law.kind, law.name) in here]
     for theirs, own in pairs:
         if own and own.text != theirs.text:
             name = Path(theirs.file).stem
             warnings.warn(f"{path} carries another {name}; the one in {own.file} is taken", Note, stacklevel=3)
     return carried.Carried(
-        {id: program for id, program in all.effects.items() if id not in catalogue},
-        tuple(law for law in all.laws if (law.kind, law.name) not in here),
+        {id: program for id, program in found.effects.items() if id not in catalogue},
+        tuple(law for law in found.laws if (law.kind, law.name) not in here),
     )
 
 
