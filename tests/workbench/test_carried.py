@@ -16,6 +16,6 @@ def test_a_session_trusts_what_it_has_written(tmp_path, monkeypatch):
     (session.effects / "mine.py").unlink()
     monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "emptied"))
     assert session.variant().values == {"effect.mine.q": 2.0}
-    assert list(untrusted(session.variant_file)) == ["mine"]
+    assert list(untrusted(session.variant_file)) == ["effect mine"]
     session.trust_variant()  # as before each job
     assert untrusted(session.variant_file) == {}
