@@ -233,7 +233,8 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
 def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path):
     content = unpacked(report_file.read_text(encoding="utf-8"))
     content["name"] = "輪椅"
-    (tmp_path / "odd.html").write_text(page_of(content, "輪椅", [], Story([], content["story"]["screens"])), encoding="utf-8")
+    story = Story([{"head": "What", "lead": "輪椅", "lines": []}] * 3, content["story"]["screens"])
+    (tmp_path / "odd.html").write_text(page_of(content, "輪椅", [], story), encoding="utf-8")
     reader = Reader(browser, tmp_path / "odd.html")
     written = taken(reader, "staircase", "PDF 85 mm", tmp_path).read_bytes()
     assert b"/Subtype /Image" in written and not re.search(EMBEDDED, written)
