@@ -19,8 +19,9 @@ YAW_RESISTANCE = Alike(
     "yaw resistance, or how far a turn goes wide", told_by="turns of one radius at several speeds, and a spin on the spot"
 )
 TURNED_PATCHES = Alike(
-    "a torque against the turn: turn_slip is the dry one on the spot and, at one speed, the viscous one on wide arcs",
-    told_by="a spin on the spot beside turns of several radii at several speeds",
+    "a torque against the turn: turn_slip is the dry one on the spot and, at one speed, the viscous one on wide arcs, "
+    "pivot_torque is there only about a wheel that stands",
+    told_by="a spin on the spot and a turn about one wheel, beside turns of several radii at several speeds",
 )
 EFFECTIVE_MASS = Alike(
     "the mass that pushes have to set going",

@@ -22,6 +22,7 @@ INSPECT = {
     "longitudinal_load_transfer": "Estimate the height of the centre of mass, by weighing the chair level and tilted back.",
     "longitudinal_slip": "Look for a slippery floor or worn tread, and compare a wheel's turns with the way it rolled.",
     "marker_offset": "Measure with a tape how far the marker lies from the centre of mass.",
+    "pivot_torque": "Turn the chair about one wheel that stands, by the other rim, and feel what lets go once it rolls.",
     "pneumatic_trail_decay": "Repeat the tightest turn: this shows at large slip only, so see how the tyre was identified.",
     "push_force_delay": "Tap the push rim sharply and compare when the force and the accelerometer show it.",
     "push_force_gain": "Hang a known weight on each push rim and compare what its force sensor reads.",

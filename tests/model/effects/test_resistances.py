@@ -11,6 +11,7 @@ ALL = (
     "aerodynamic_drag",
     "floor_cross_slope",
     "floor_slope",
+    "pivot_torque",
     "rolling_resistance_asymmetry",
     "rolling_resistance_speed",
     "scrub_torque",
@@ -176,6 +177,20 @@ def test_turned_patches_slow_a_spin_evenly(way):
     result = drive({**TOP, "start.psi_dot": way * spin, **values}, T=1.0)
     slowing = 2 * M / np.sqrt(1 + (T_R / 2 / L) ** 2) / I_Z
     np.testing.assert_allclose(result["chair.psi_dot"], way * (spin - slowing * result.time), rtol=1e-6)
+
+
+@pytest.mark.effect("pivot_torque")
+@pytest.mark.parametrize("left", [True, False])
+def test_a_wheel_that_the_chair_turns_about_is_held_and_the_other_is_not(left):
+    """About the standing wheel the torque is M; the other goes round it at t_r, by which its torque is less, by L / t_r."""
+    M, L, turn = 3.0, 0.04, 0.8
+    side = 1 if left else -1
+    motion = {"start.psi_dot": turn, "start.u": -side * turn * T_R / 2, "tyre.C_m_lambda": 0.0}
+    own = {"effect.pivot_torque.M": M, "effect.pivot_torque.L": L, "effect.pivot_torque.rate": 1e-5}
+    torque = snapshot({**SMOOTH, **motion, **own})["M_t"]
+    held, rolling = torque if left else torque[::-1]
+    assert held == pytest.approx(-M, rel=1e-6)
+    assert rolling == pytest.approx(-M * L / np.hypot(T_R, L), rel=1e-6)
 
 
 @pytest.mark.effect("turn_slip")
