@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import check, read
-from wheelchair_fmu.campaign.series import RARE, estimate, spikes
+from wheelchair_fmu.campaign.series import RARE, began, estimate, spikes
 
 from .small import SI, csv_text, motion, rows
 
@@ -105,3 +105,13 @@ def test_in_a_coarse_recording_nothing_stands_alone(campaign):
     data[:, 0] *= 6.0
     data[50, 5] += 4.0
     assert not np.isnan(read(campaign(files={"a.csv": csv_text(SI, rows(data))})).runs[0].channels["yaw_rate"]).any()
+
+
+def test_a_series_that_grows_begins_where_its_line_does():
+    """A chair that is being pushed gains speed; one glitch says nothing of it, and of few samples their median is taken."""
+    time = 3.0 + np.arange(0, 1, 0.01)
+    speeds = 0.4 + 1.5 * (time - 3.0) + np.random.default_rng(2).normal(0, 0.002, len(time))
+    speeds[4], speeds[7] = 40.0, np.nan
+    assert began(time, speeds) == pytest.approx(0.4, abs=0.005)
+    assert began(time[::5], speeds[::5]) == pytest.approx(np.median(speeds[::5][:10]))
+    assert began(time, np.full(len(time), np.nan)) is None

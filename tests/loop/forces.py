@@ -25,6 +25,18 @@ def wandering(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarr
     return out
 
 
+def swinging(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
+    """A momentum (n,) of second order, p'' + 15 p' + 50 p = white noise, by steps of a tenth of a sample."""
+    out, p, rate, noise = np.empty(len(time)), 0.0, 0.0, sd * np.sqrt(2 * 15 * 50)
+    for i, gap in enumerate(np.diff(time, prepend=time[0] - 5.0)):
+        steps = max(10, round(gap / 1e-3))
+        for shock in noise * np.sqrt(gap / steps) * rng.standard_normal(steps):
+            rate += -(15 * rate + 50 * p) * gap / steps + shock
+            p += rate * gap / steps
+        out[i] = p
+    return out
+
+
 def ridden(campaign: Campaign, rng: np.random.Generator, forces: Forces) -> Campaign:
     """The campaign's runs, simulated with its own pushes and these forces, and read with its noise."""
     likelihood, runs = Likelihood(campaign, Variant()), []

@@ -12,7 +12,7 @@ from wheelchair_fmu.model.variant import Variant
 
 RECORD = next(p for p in Variant().parameters() if p.name == "chair.a")
 GOOD = Calibrated(RECORD, 0.32, 0.001, 0.32, 0.01, False)
-LEFT = Unexplained(Strength(20.0, 1.0, 100.0), Strength(11.0, 0.5, 50.0), ())
+LEFT = Unexplained(Strength(20.0, 1.0, 0.0, 100.0), Strength(11.0, 0.5, 0.0, 50.0), ())
 
 
 def test_whatever_orders_a_force_has_a_lead():

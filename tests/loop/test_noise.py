@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
-from wheelchair_fmu.loop.noise import noise_model_of
+from wheelchair_fmu.loop.noise import by_run, noise_model_of
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import ridden
@@ -32,7 +32,7 @@ def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 40
     run = SimpleNamespace(time=0.01 * np.arange(n), channels={"yaw_rate": noise + smooth}, inputs={})
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
-    evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), predicted=predicted, r=r, e=r)])
+    evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), followed=predicted, r=r, e=r)])
     return noise_model_of(evidence, {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
 
 
@@ -92,7 +92,7 @@ def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
     r = readings[:, None] / stated
     time = 0.01 * np.arange(len(noise))
     run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={})
-    one = SimpleNamespace(run=run, channels=("yaw_rate",), predicted=np.zeros(r.shape), r=r, e=r)
+    one = SimpleNamespace(run=run, channels=("yaw_rate",), followed=np.zeros(r.shape), r=r, e=r)
     noise_model, notes = noise_model_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
     assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
     step = float(np.median(np.diff(time[places])))
@@ -109,3 +109,22 @@ def test_a_chair_that_bumps_make_walk_at_random_is_no_noise_of_its_sensors(sampl
     found, notes = noise_model_of(likelihood.evidence(bumpy.fit, {}, ()), fine, likelihood.noise_model)
     for name in ("wheel_speed_l", "wheel_speed_r"):
         assert found.sd[name] == fine[name] and not [note for note in notes if note.startswith(name)]
+
+
+def test_a_sensor_that_shakes_more_in_one_run_is_seen(sample):
+    """Twice the noise of a_y in one run; the others keep theirs, and a run not seen has what all have together."""
+    rng, shaken = np.random.default_rng(4), sample.fit[2].name
+
+    def shake(run):
+        sd = sample.noise["a_y"] * (3**0.5 if run.name == shaken else 0.0)  # beside what it has
+        return replace(run, channels={**run.channels, "a_y": run.channels["a_y"] + rng.normal(0, sd, len(run.time))})
+
+    campaign = replace(sample, runs=tuple(shake(run) for run in sample.runs))
+    taken = NoiseModel(campaign.noise)
+    found = by_run(Likelihood(campaign, Variant(), taken).evidence(campaign.fit, {}, ()), taken)
+    others = [times["a_y"] for run, times in found.items() if run != shaken]
+    assert found[shaken]["a_y"] == pytest.approx(2 * np.mean(others), rel=0.1) and np.ptp(others) < 0.2
+    known = replace(taken, by_run=found)
+    assert known.of("a_y", shaken) == pytest.approx(found[shaken]["a_y"] * taken.sd["a_y"])
+    together = np.sqrt(np.mean([times["a_y"] ** 2 for times in found.values()]))
+    assert known.of("a_y", "another") == pytest.approx(together * taken.sd["a_y"])

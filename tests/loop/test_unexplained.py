@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.disturbance import strength
+from wheelchair_fmu.loop.disturbance import Strength, strength
 from wheelchair_fmu.loop.fit import Fit
 from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.strokes import begun, phase
-from wheelchair_fmu.loop.unexplained import unexplained
+from wheelchair_fmu.loop.unexplained import CONSTANT, Order, Unexplained, unexplained
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, ridden, wandering
@@ -96,3 +96,19 @@ def test_strokes_begin_where_hands_begin_to_push_and_end_with_the_last():
 def test_a_coast_has_no_strokes():
     time = np.arange(0, 4, 0.01)
     assert begun(time, 0 * time).size == 0 and np.isnan(phase(time, 0 * time)).all()
+
+
+def test_a_body_that_swings_is_told_in_newton_seconds_and_orders_nothing():
+    forces, orders = (object(),), (Order("force", "stroke", 0.6, "the missing force is locked to the stroke"),)
+    swings = Unexplained(Strength(20.0, 1.0, 9.0, 100.0), Strength(2.0, 0.3, 4.2, 50.0), orders, forces, 800.0, 0.2)
+    assert swings.ordered == () and swings.like_a_floor
+    assert "2 N, 0.3 N m and a swing of the rider's body of 4.2 N s" in swings.words[0]
+    assert swings.words[1].startswith("Nothing else orders it")
+    assert swings.as_json()["body"] == 4.2 and swings.as_json()["calibrated"]["body"] == 9.0
+
+
+@pytest.mark.parametrize(("force", "counts"), [(2.0, False), (20.0, True)])
+def test_what_stays_the_same_is_a_floors_where_that_is_flat(force, counts):
+    same = (Order("force", CONSTANT, 0.6, "the missing force stays the same throughout"),)
+    left = Unexplained(Strength(force, 0.1, 0.0, 9.0), Strength(force, 0.1, 0.0, 9.0), same, (object(),), 800.0, 0.2)
+    assert (left.ordered == same) == counts

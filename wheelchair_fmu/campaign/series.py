@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from scipy.stats import theilslopes
 
 _MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
 _ENOUGH = 8  # differences
@@ -14,6 +15,8 @@ FAR = 12.0  # standard deviations of the noise from either neighbour,
 ALONE = 3.0  # and times what the four neighbours differ from one to the next
 RARE = 0.01  # of all samples, and
 FEW = 3  # of a run; what is more frequent is how this sensor reads
+FIRST, LINE = 0.2, 8  # s from which a series' first value is taken, by a line if that is so many samples; of fewer
+MEDIAN = 10  # samples the median says it better
 
 
 def estimate(series: Iterable[np.ndarray]) -> float | None:
@@ -98,6 +101,18 @@ def without(series: np.ndarray, places: Sequence[int] | np.ndarray) -> np.ndarra
     rest = series.copy()
     rest[places] = np.nan
     return rest
+
+
+def began(time: np.ndarray, series: np.ndarray) -> float | None:
+    """What a series (n,) at times (n,), with NaN in gaps, began with: the robust line of Theil and Sen through its first
+    samples, as a chair that is being pushed gains speed. None where it has no sample."""
+    there = np.isfinite(series)
+    time, series = time[there] - time[0], series[there]
+    first = time <= FIRST
+    if first.sum() < LINE:
+        return float(np.median(series[:MEDIAN])) if series.size else None
+    slope = theilslopes(series[first], time[first]).slope
+    return float(np.median(series[first] - slope * time[first]))
 
 
 def integral(time: np.ndarray, series: np.ndarray, at: np.ndarray) -> np.ndarray:

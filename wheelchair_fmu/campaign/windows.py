@@ -15,12 +15,13 @@ import numpy as np
 
 from .condensed import condensed
 from .records import Campaign, Run
+from .series import began
 
 LARGE = 36_000  # samples of a campaign, above which a search works on a choice of windows
 WINDOW = 10.0  # s
 NEAR = 2.0  # s by which the start of a window may move to where the chair hardly turns
 CALM = 0.5  # s over which that is judged
-FIRST = 10  # samples from which a piece's speed is taken
+LEAST_SAMPLES = 10  # of a piece
 STARTS = "start."  # parameters that say where a run starts
 HEADING = "start.psi"
 
@@ -75,14 +76,14 @@ def between(run: Run, first: float, last: float) -> Run:
 def part(run: Run, first: float, last: float) -> Run:
     """The same as one of several, with a name that says where it begins."""
     start, stop = np.searchsorted(run.time, [first - 1e-9, last + 1e-9])
-    return _cut(run, int(start), int(stop)) if stop - start >= FIRST else run
+    return _cut(run, int(start), int(stop)) if stop - start >= LEAST_SAMPLES else run
 
 
 def _cells(run: Run, seconds: float) -> list[Cell]:
     count = max(1, int((run.time[-1] - run.time[0]) / seconds))
     edges = np.searchsorted(run.time, np.linspace(run.time[0], run.time[-1], count + 1)[1:-1])
     ends = pairwise((0, *map(int, edges), len(run.time)))
-    return [(run, start, stop) for start, stop in ends if stop - start >= FIRST]  # a gap in the record may leave fewer
+    return [(run, start, stop) for start, stop in ends if stop - start >= LEAST_SAMPLES]  # a gap in the record may leave fewer
 
 
 def _drawn(cells: Sequence[Sequence[Cell]], share: float, rng: np.random.Generator) -> Iterator[Cell]:
@@ -108,7 +109,7 @@ def _cut(run: Run, start: int, stop: int) -> Run:
     return replace(
         run,
         name=f"{run.name}@{run.time[start]:.6g}s",
-        u0=_speed(channels) if start else run.u0,
+        u0=_speed(run.time[part], channels) if start else run.u0,
         set=known,
         time=run.time[part],
         inputs=inputs,
@@ -153,8 +154,9 @@ def _heading(run: Run, at: int) -> float | None:
     return run.set.get(HEADING, 0.0) + float(np.trapezoid(rate[before], time[before]))
 
 
-def _speed(channels: dict[str, np.ndarray]) -> float | None:
+def _speed(time: np.ndarray, channels: dict[str, np.ndarray]) -> float | None:
     """Speed at a piece's first samples, as for a run whose file states none."""
     speeds = [channels[name] for name in ("u", "wheel_speed_l", "wheel_speed_r") if name in channels]
-    firsts = [s[np.isfinite(s)][:FIRST] for s in (speeds[:1] if "u" in channels else speeds)]
-    return float(np.mean([np.median(f) for f in firsts])) if firsts and all(f.size for f in firsts) else None
+    firsts = [began(time, s) for s in (speeds[:1] if "u" in channels else speeds)]
+    known = [f for f in firsts if f is not None]
+    return float(np.mean(known)) if known and len(known) == len(firsts) else None

@@ -105,10 +105,11 @@ class Round:
 
     @property
     def help(self) -> Candidate | None:
-        """The best candidate proven, however small, if slopes promised about as much: a refit may owe its fall to a better
-        calibration."""
+        """The best candidate proven, however small, if slopes promised about as much, or runs that it was not fitted to confirm
+        it: a refit may owe its fall to a better calibration."""
         promised = {s.effect: s.drop for s in self.scores}
-        return next((c for c in self.candidates if c.proven and promised[c.effect] > BESIDE * c.drop), None)
+        confirmed = (c for c in self.candidates if promised[c.effect] > BESIDE * c.drop or (c.gain and c.gain[1] > 0))
+        return next((c for c in confirmed if c.proven), None)
 
 
 class Search(Screen):
@@ -151,6 +152,8 @@ class Search(Screen):
                 ended.append(self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival))
                 rival = min(rival, ended[-1].misfit)
         found = min(ended, key=lambda f: f.misfit)
+        if w.leads:
+            found = replace(found, misfit=base.misfit - self.weight(found, effect))
         found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
         held = (
             likelihood.restarted(likelihood.evidence(w.campaign.holdout, found.values), found.values)
@@ -168,6 +171,8 @@ class Search(Screen):
         if s.score.drop < (least if s.linear else least / BEYOND):
             return []
         names = [*base.names, *self.factory.parameters(s.score.effect)]
+        if self.factory.leads:  # where forces make up for what is missing, slopes say about how much that is
+            return [({**base.values, **self._expected(s)}, None)]
         at_prior_mean = self.at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *at_prior_mean)]
         if s.linear and len(calibrations) == 1:
@@ -180,6 +185,12 @@ class Search(Screen):
             return [(dict(zip(names, off, strict=True)), known)]
         thetas = self._sizes(likelihood, base, names, calibrations, s, least, visible)
         return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
+
+    def _expected(self, s: Screened) -> dict[str, float]:
+        """An effect's sizes as slopes have them, within bounds."""
+        names = self.factory.parameters(s.score.effect)
+        sizes = (x if np.isfinite(x) else 0.0 for x in s.score.estimate)
+        return {n: float(np.clip(x, self.records[n].lower, self.records[n].upper)) for n, x in zip(names, sizes, strict=True)}
 
     def _sizes(
         self,

@@ -16,27 +16,34 @@ from scipy.optimize import minimize
 
 from ..campaign import moving
 from ..engine.innovations import Whitener
-from .likelihood import Evidence, Likelihood, NoiseModel, RunEvidence, disturbance
+from .likelihood import FORGOTTEN, Evidence, Likelihood, NoiseModel, RunEvidence, disturbance
 from .parallel import parallel_map
 
-USUAL_FORCE, USUAL_MOMENT = 5.0, 1.0  # N and N m: a strength's prior falls by e over this
+USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by e over this
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
-START = ((0.03, 0.03), (0.3, 0.03), (0.03, 0.3), (0.6, 0.6), (6.0, 6.0))  # times these, from where the search may start
+# times these, from where the search may start
+START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
+LASTING = (0.5, 1.0)  # s: what is forgotten sooner is a stroke or a sensor's noise, and what lasts longer an effect
+STRIDE = (0.7, 0.7, 0.7, -0.4)  # of their logarithms, by which it begins
 ROUNDS = 5  # in which a path and a strength are found, at most,
 CLOSE = 0.1  # of a strength, by which the last one may differ
 
 
 @dataclass(frozen=True)
 class Strength:
-    """Standard deviations of the force (N) and of the moment (N m) that a model needs, and by how much −2 log posterior falls
-    with them."""
+    """Standard deviations of the force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
+    needs, by how much −2 log posterior falls with them, and the time (s) over which the moment is forgotten."""
 
     force: float
     moment: float
+    body: float
     fall: float
+    lasting: float = FORGOTTEN
 
-    def put_into(self, noise_model: NoiseModel) -> NoiseModel:
-        return replace(noise_model, force=self.force, moment=self.moment)
+    def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
+        """Noise with forces of this strength, found for a chair of this mass (kg)."""
+        forces = {"force": self.force, "moment": self.moment, "body": self.body, "lasting": self.lasting}
+        return replace(noise_model, **forces, mass=mass)
 
 
 def strength(evidence: Evidence, t_r: float) -> Strength:
@@ -45,27 +52,27 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
     `t_r` is the distance (m) between the wheels. Uncertain clocks and baselines of runs are taken as they are.
     """
 
-    def misfit(log_ratio: np.ndarray) -> float:
-        ratios = np.exp(log_ratio)
-        force, moment = ratios * (USUAL_FORCE, USUAL_MOMENT)
-        return _misfit(evidence, NoiseModel({}, force=force, moment=moment), t_r) + 2 * float(ratios.sum())
+    def misfit(logs: np.ndarray) -> float:
+        *ratios, lasting = np.exp(logs)
+        force, moment, body = ratios * USUAL
+        noise_model = NoiseModel({}, force=force, moment=moment, body=body, lasting=lasting)
+        return _misfit(evidence, noise_model, t_r) + 2 * float(np.sum(ratios))
 
     without = _misfit(evidence, NoiseModel({}), t_r)
-    least, begun = min(((misfit(at), at) for at in np.log(START)), key=lambda tried: tried[0])
+    begin = (np.log([*at, FORGOTTEN]) for at in START)
+    least, begun = min(((misfit(at), at) for at in begin), key=lambda tried: tried[0])
     if least > without:
-        return Strength(0.0, 0.0, 0.0)
+        return Strength(0.0, 0.0, 0.0, 0.0)
     found = minimize(
         misfit,
         begun,
         method="Nelder-Mead",
-        bounds=[(np.log(LEAST), np.log(MOST))] * 2,
-        options={"xatol": 0.05, "fatol": 0.5, "initial_simplex": begun + np.array([[0.0, 0.0], [0.7, 0.0], [0.0, 0.7]])},
+        bounds=[*[(np.log(LEAST), np.log(MOST))] * 3, tuple(np.log(LASTING))],
+        options={"xatol": 0.05, "fatol": 0.5, "initial_simplex": begun + np.vstack([np.zeros(4), np.diag(STRIDE)])},
     )
-    ratios = np.exp(found.x)
-    force, moment = (
-        float(r * usual) if r > 2 * LEAST else 0.0 for r, usual in zip(ratios, (USUAL_FORCE, USUAL_MOMENT), strict=True)
-    )
-    return Strength(force, moment, without - float(found.fun))
+    *ratios, lasting = np.exp(found.x)
+    force, moment, body = (float(r * usual) if r > 2 * LEAST else 0.0 for r, usual in zip(ratios, USUAL, strict=True))
+    return Strength(force, moment, body, without - float(found.fun), float(lasting))
 
 
 def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> tuple[Strength, Evidence]:
@@ -76,8 +83,9 @@ def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> t
     back. So forces are estimated, the model is led by them, and the strength is estimated anew from there.
     """
     likelihood = likelihood.led(moving(likelihood.campaign))
-    likelihood.noise_model = replace(likelihood.noise_model, force=USUAL_FORCE, moment=USUAL_MOMENT)
-    found = Strength(0.0, 0.0, 0.0)
+    force, moment, body = USUAL
+    found = Strength(force, moment, body, 0.0)
+    likelihood.noise_model = found.put_into(likelihood.noise_model)
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
         before, found = found, strength(evidence, t_r)
@@ -88,7 +96,7 @@ def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> t
 
 
 def _alike(one: Strength, other: Strength) -> bool:
-    pairs = ((one.force, other.force), (one.moment, other.moment))
+    pairs = ((one.force, other.force), (one.moment, other.moment), (one.body, other.body))
     return all(abs(a - b) <= CLOSE * max(a, b) for a, b in pairs)
 
 

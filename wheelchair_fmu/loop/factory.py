@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 
-from ..campaign import BY_NAME, Campaign
+import numpy as np
+
+from ..campaign import BY_NAME, Campaign, moving
 from ..campaign.channels import MOMENTUM
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import adds_state
-from .likelihood import Likelihood, NoiseModel, driven
+from .likelihood import Evidence, Likelihood, NoiseModel, driven
 from .timing import Late, retimed
 
 MEASURED = ("chair.m", "chair.a", "chair.b", "chair.t_r")  # by scales and tape, well enough to be doubted only a little
@@ -49,6 +51,18 @@ class ModelFactory:
         self.noise_model = NoiseModel(campaign.noise)
         self._benches: dict[tuple[frozenset[str], bool], Likelihood] = {}
         self.starts: dict[str, dict[str, float]] = {}
+        self.paths: dict[str, np.ndarray] = {}
+        self.leads = False  # are runs led along the forces that nobody recorded?
+        self.begun: dict[str, float] = {}  # calibrated values from where calibration starts, if not from those given
+
+    def led(self, along: Evidence, values: Mapping[str, float]) -> ModelFactory:
+        """The same, of where the chair rolls, with every run led along the forces that nobody recorded: from starts, paths and
+        calibrated `values` of evidence `along` which they led."""
+        other = ModelFactory(moving(self.campaign), self.variant, self.fixed, [n for n in self.calibrated if n != SCALE])
+        other.given, other.noise_model, other.leads, other.begun = self.given, self.noise_model, True, dict(values)
+        other.starts = {e.run.name: dict(e.start) for e in along.runs}
+        other.paths = {e.run.name: e.path for e in along.runs if e.path is not None}
+        return other
 
     def likelihood(self, effects: Iterable[str] = ()) -> Likelihood:
         """The likelihood on which these effects may be on."""
@@ -70,9 +84,11 @@ class ModelFactory:
             variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
             columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
             self._benches[key] = Likelihood(self.campaign, variant, columns=columns, derives=derives)
+            self._benches[key].leads = self.leads
         likelihood = self._benches[key]
         likelihood.noise_model = self.noise_model
         likelihood.starts.update(self.starts)
+        likelihood.paths.update(self.paths)
         return likelihood
 
     def leave_out(self, channels: Container[str]) -> None:
@@ -89,14 +105,16 @@ class ModelFactory:
             self._benches.clear()
 
     def remember(self, likelihood: Likelihood) -> None:
-        """Keep the starts a likelihood has found, for the next one."""
+        """Keep the starts and paths a likelihood has found, for the next one."""
         self.starts.update(likelihood.starts)
+        self.paths.update(likelihood.paths)
 
     def widened(self, more: Mapping[str, Effect]) -> ModelFactory:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
         variant = replace(self.variant, catalogue={**self.catalogue, **more})
         other = ModelFactory(self.campaign, variant, self.fixed, [n for n in self.calibrated if n != SCALE])
-        other.noise_model, other.starts = self.noise_model, dict(self.starts)
+        other.noise_model, other.starts, other.paths = self.noise_model, dict(self.starts), dict(self.paths)
+        other.leads = self.leads
         return other
 
     def parameters(self, effect: str) -> tuple[str, ...]:

@@ -28,6 +28,7 @@ NEAR = 2.0  # mean square innovation of a model that is about right: of one that
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
 PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
 AT_BOUND = 1e-3  # of a parameter's scale
+LEAST_SHARE = 0.2  # of a step that is tried
 REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -130,10 +131,20 @@ class Problem:
 
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
         """How much the squares would fall at most, if slopes held all the way: of what no bound holds."""
-        g = self.gradient(here.S, here.r, theta)
-        near = AT_BOUND * self.scale
+        return float(self.gradient(here.S, here.r, theta) @ self.newton(here, theta))
+
+    def newton(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
+        """The step (k,) to where squares would be least, if slopes held all the way: of what no bound holds."""
+        g, near = self.gradient(here.S, here.r, theta), AT_BOUND * self.scale
         free = ~((theta < self.lower + near) & (g < 0) | (theta > self.upper - near) & (g > 0))
-        return float(g[free] @ np.linalg.pinv(self.information(here)[np.ix_(free, free)], hermitian=True) @ g[free])
+        step = np.zeros(len(theta))
+        step[free] = np.linalg.pinv(self.information(here)[np.ix_(free, free)], hermitian=True) @ g[free]
+        return step
+
+    def stepped(self, theta: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """As much of a step as slopes hold for, within bounds."""
+        far = float(np.max(np.abs(step) / self.prior.sd, initial=0.0))
+        return np.clip(theta + step / max(1.0, far), self.lower, self.upper)
 
     def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
         """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
@@ -185,6 +196,8 @@ def fit(
     problem = Problem(likelihood, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
+    if likelihood.leads:
+        return _fit_led(problem, theta, here, most if names else 0)
     for _ in range(most if names else 0):
         enough = max(STRAIGHT, SLIGHT * (problem.squares(here, theta) - len(here.r)))
         if problem.expected(here, theta) < max(enough, (problem.misfit(here, theta) - rival) / MOST):
@@ -200,8 +213,38 @@ def fit(
         if further is None:
             break
         theta, here = further
-    covariance = np.linalg.pinv(problem.information(here), hermitian=True) if names else np.zeros((0, 0))
+    return _found(problem, theta, here)
+
+
+def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
+    covariance = np.linalg.pinv(problem.information(here), hermitian=True) if len(theta) else np.zeros((0, 0))
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
+
+
+def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int) -> Fit:
+    """The same where forces that nobody recorded lead the runs: the values at which innovations tell nothing more of them.
+
+    A filter knows what forces do to a chair of this mass, so that the likelihood takes how large innovations are for a
+    measurement of the mass. It is none that anyone would trust: filters weigh the readings and are no evidence themselves
+    (generalised estimating equations; Liang and Zeger 1986), and no step is asked whether it makes the likelihood larger.
+    """
+    promised, share = problem.expected(here, theta), 1.0
+    for _ in range(most):
+        if promised < STRAIGHT:
+            break
+        to = problem.stepped(theta, share * problem.newton(here, theta))
+        try:
+            there = problem.linearised(to)
+            still = problem.expected(there, to)
+        except SimulationError:
+            still = math.inf
+        if still < promised:
+            theta, here, promised, share = to, there, still, 1.0
+        elif share > LEAST_SHARE:
+            share /= 2
+        else:
+            break
+    return _found(problem, theta, here)
 
 
 def _taken(

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
+from ..campaign.series import began
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -37,10 +38,14 @@ ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
-STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where forces lead
+STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where forces lead; the whole one while steps grow shorter
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
-FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten: a bump is shorter, a lean longer
-FIRST = 0.2  # s of samples that say where a run starts
+FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
+# s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
+SWUNG = (0.1, 0.2)
+MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
+MOST_STEPS = 12  # steps that lead a run along the forces which nobody recorded, at most,
+FARTHEST, ARRIVED = 3.0, 0.03  # standard deviations of a force: slopes hold over the former, the latter leads nowhere else
 
 
 @dataclass(frozen=True)
@@ -51,13 +56,44 @@ class NoiseModel:
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
     force: float = 0.0  # N, standard deviation of what pushes the chair along its heading and nobody recorded,
-    moment: float = 0.0  # N m, and of what turns it
+    moment: float = 0.0  # N m, of what turns it,
+    body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
+    lasting: float = FORGOTTEN  # s over which the moment is forgotten; a force that is forgotten sooner than that is a body's
+    mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
+    by_run: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # times `sd` that a channel's noise is in a run
+
+    def of(self, channel: str, run: str) -> float:
+        """Standard deviation of a channel's noise in a run; in one that nothing is known of, as in the others together."""
+        known = self.by_run.get(run) or {}
+        others = [times[channel] ** 2 for times in self.by_run.values() if channel in times]
+        times = known.get(channel) or (float(np.sqrt(np.mean(others))) if others else 1.0)
+        return self.sd.get(channel, 0.0) * times
+
+    @property
+    def disturbed(self) -> bool:
+        """Do forces act that nobody recorded?"""
+        return max(self.force, self.moment, self.body) > 0
 
     def differs(self, other: NoiseModel) -> bool:
         """Is some channel's noise of another size or noise_model, by more than estimates of either scatter?"""
         sizes = (other.sd[c] / sd for c, sd in self.sd.items() if sd > 0)
         colours = (abs(self.ar.get(c, 0.0) - other.ar.get(c, 0.0)) for c in {*self.ar, *other.ar})
-        return any(not 1 / SCATTER < ratio < SCATTER for ratio in sizes) or any(c > 1 - 1 / SCATTER for c in colours)
+        return (
+            any(not 1 / SCATTER < ratio < SCATTER for ratio in sizes)
+            or any(c > 1 - 1 / SCATTER for c in colours)
+            or self._otherwise_disturbed(other)
+            or any(not 1 / SCATTER < ratio < SCATTER for ratio in self._run_by_run(other))
+        )
+
+    def _run_by_run(self, other: NoiseModel) -> Iterator[float]:
+        """Ratios of what both have by run."""
+        for run, times in self.by_run.items():
+            yield from (other.by_run.get(run, {}).get(channel, 1.0) / size for channel, size in times.items())
+
+    def _otherwise_disturbed(self, other: NoiseModel) -> bool:
+        """Do forces act of another size, by more than estimates of it scatter and by more than can be felt?"""
+        pairs = ((self.force, other.force, 0.5), (self.moment, other.moment, 0.1), (self.body, other.body, 0.5))
+        return any(abs(a - b) > max((SCATTER - 1) * max(a, b), felt) for a, b, felt in pairs)
 
 
 @dataclass(frozen=True)
@@ -84,7 +120,7 @@ class RunEvidence:
     measured: np.ndarray  # (n, nz), less offsets
     whitener: Marginal | Weighed
     offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
-    path: np.ndarray | None = None  # (n, 2) force and moment that nobody recorded, about which all is linearised; None: none
+    path: np.ndarray | None = None  # (n, 4) forces that nobody recorded (see `disturbance`), about which all is linearised
     added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
     driven: np.ndarray | None = None  # (n, nz) readings simulated with them
 
@@ -122,14 +158,26 @@ class RunEvidence:
         return float(np.nansum(self.r**2)) + self.whitener.logdet
 
     @property
+    def forces(self) -> np.ndarray:
+        """(4,) standard deviations of the forces that nobody recorded; see `disturbance`."""
+        assert isinstance(self.whitener, Marginal)
+        filter_ = self.whitener.whitener
+        return filter_.arrays["input_sd"][0, filter_.recorded :]
+
+    @property
     def foretold(self) -> np.ndarray:
         """(n, nz) readings without forces that nobody recorded, by slopes about where these lead."""
         return self.predicted if self.driven is None else self.driven - self.added
 
+    @property
+    def followed(self) -> np.ndarray:
+        """(n, nz) simulated readings, with the forces that nobody recorded where the run is led by them."""
+        return self.predicted if self.driven is None else self.driven
+
     @cached_property
     def e(self) -> np.ndarray:
-        """(n, nz) the simulation's own `errors`."""
-        return self.errors(self.predicted)
+        """(n, nz) the simulation's own `errors`; by slopes, where such forces are among the noise."""
+        return self.errors(self.foretold)
 
     def on_rows(self, simulated: Mapping[str, np.ndarray]) -> np.ndarray:
         """Simulated channels (n,) by name as readings (n, nz), each for when its device's samples were taken."""
@@ -152,7 +200,7 @@ class RunEvidence:
         return [i for i, c in enumerate(self.channels) if BY_NAME[c].drifts]
 
     def _innovations(self, predicted: np.ndarray) -> np.ndarray:
-        if predicted is self.predicted:
+        if predicted is self.predicted and self.driven is None:
             return self.r
         return self.whitener((self.measured - predicted)[:, :, None], self.offset)[:, :, 0]
 
@@ -271,7 +319,7 @@ class Likelihood:
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
         self.paths: dict[str, np.ndarray] = {}
-        self._led_by_forces = False
+        self.leads = False
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -286,6 +334,11 @@ class Likelihood:
     def known(self, run: Run) -> dict[str, float]:
         """What the campaign file says of this run's chair."""
         return {**self.campaign.known, **run.set}
+
+    def chair(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Values (SI) of the chair, as these have them or the campaign says."""
+        given = {p.name: p.default for p in self.variant.parameters()}
+        return {**given, **self.variant.values, **self.campaign.known, **values}
 
     def evidence(
         self, runs: Iterable[Run], values: Mapping[str, float], by: Sequence[str] = (), *, tune_start: int = 0
@@ -307,18 +360,31 @@ class Likelihood:
         """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
 
         def one(e: RunEvidence) -> RunEvidence:
-            results, predicted = self._simulated(e.run, values, e.start)
-            driven = None if e.path is None else self._simulated(e.run, values, e.start, e.path)[1]
-            measured = self._measured(e.run, values)
             assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
-            there = replace(e, results=results, predicted=predicted, measured=measured, driven=driven)
-            return replace(there, r=e.whitener((measured - there.foretold)[:, :, None], e.offset)[:, :, 0])
+            there = replace(e, measured=self._measured(e.run, values))
+            if e.path is None:
+                results, predicted = self._simulated(e.run, values, e.start)
+                there = replace(there, results=results, predicted=predicted)
+            else:  # where other values leave another rest, other forces make up for it
+                there = self._driven_again(there, values, e.path)
+                there = self._driven_again(there, values, followed(there))
+            return replace(there, r=e.whitener((there.measured - there.foretold)[:, :, None], e.offset)[:, :, 0])
 
         return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+
+    def _driven_again(self, e: RunEvidence, values: Mapping[str, float], path: np.ndarray) -> RunEvidence:
+        """A run at other `values` along a `path`, by the filter that it has."""
+        assert isinstance(e.whitener, Marginal)
+        filter_, given = e.whitener.whitener, self._given(e.run, values, e.start)[0]
+        results, driven = self._simulated(e.run, values, e.start, path)
+        as_push = self._unknown(filter_.recorded, given, values).as_push
+        return replace(e, results=results, driven=driven, path=path, added=filter_.response(path @ as_push.T))
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
         for a start that is off; errors, of a simulation that knows no reading, do not."""
+        if self.leads:
+            return evidence  # which starts where forces and readings together have it
 
         def one(e: RunEvidence) -> RunEvidence:
             start = self._better_start(e)
@@ -339,59 +405,63 @@ class Likelihood:
     def _simulated(
         self, run: Run, values: Mapping[str, float], start: Mapping[str, float], path: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 2) acting."""
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 4) acting."""
         given, w = self._given(run, values, start)
         if path is not None:
-            w = self._driven(run, given, w, path)
+            w = self._driven(run, given, w, path, values)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
         predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
         return results, read(run, self._channels(run), predicted, start)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
-        e = self._one(run, values, by)
+        if self.leads:
+            return self._along(run, values, by, keep=rounds > 0)
+        e = self._one(run, values, by, self.starts[run.name])
         for _ in range(rounds):
-            if self._led_by_forces:
-                further = self._led(e, values, by)
-                if further is None:
-                    break
-                e = further
-                continue
             better, sd = self._better_start(e), e.uncertain
             if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
-            e = self._one(run, values, by)
+            e = self._one(run, values, by, better)
         return e
 
-    def _led(self, e: RunEvidence, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence | None:
-        """The run along a path that forces which nobody recorded lead it, as all readings have them: as much of the step there
-        as makes the readings likelier; None where none does."""
-        name, path = e.run.name, np.zeros((len(e.run.time), 2)) if e.path is None else e.path
-        step, better, before = followed(e) - path, self._better_start(e), self.starts[e.run.name]
+    def _along(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], keep: bool) -> RunEvidence:
+        """The run along the path that forces which nobody recorded lead it; `keep` it for the next values.
+
+        A model that lacks much goes another way than the chair did, and slopes along that way say little of what a force, or
+        another value, would do. So all is linearised about where the readings say that forces led the chair.
+        """
+        e = first = self._one(run, values, by, self.starts[run.name], self.paths.get(run.name))
+        before = np.inf
+        for _ in range(MOST_STEPS if self.noise_model.disturbed else 0):
+            step = followed(e) - _path(e)
+            size = float(np.max(np.abs(step[:, e.forces > 0]) / e.forces[e.forces > 0]))
+            if size < ARRIVED:
+                break
+            most = min(1.0, FARTHEST / size) * (1.0 if size < before else STEPS[1])
+            e, before = self._stepped(e, values, most * step), size
+        if keep:
+            self.starts[run.name], self.paths[run.name] = dict(e.start), _path(e)
+        return e if e is first or not by else self._one(run, values, by, e.start, e.path)
+
+    def _stepped(self, e: RunEvidence, values: Mapping[str, float], step: np.ndarray) -> RunEvidence:
+        """The run with as much of a step along the forces, and of its start's, as can be simulated."""
+        better, path = self._better_start(e), _path(e)
         for share in STEPS:
-            self.starts[name] = {n: before.get(n, 0.0) + share * (v - before.get(n, 0.0)) for n, v in better.items()}
-            self.paths[name] = path + share * step
+            start = {n: e.start.get(n, 0.0) + share * (v - e.start.get(n, 0.0)) for n, v in better.items()}
             try:
-                further = self._one(e.run, values, by)
+                return self._one(e.run, values, (), start, path + share * step)
             except SimulationError:
                 continue
-            if further.misfit < e.misfit:
-                return further
-        self.starts[name] = before
-        if e.path is None:
-            del self.paths[name]
-        else:
-            self.paths[name] = e.path
-        return None
+        return e
 
-    @property
-    def _disturbed(self) -> bool:
-        return self.noise_model.force > 0 or self.noise_model.moment > 0
+    def _unknown(self, pushes: int, given: np.ndarray, values: Mapping[str, float]) -> Disturbance:
+        return disturbance(self.noise_model, pushes, given[self._tread], self.chair(values)[MASS])
 
-    def _driven(self, run: Run, given: np.ndarray, w: np.ndarray, path: np.ndarray) -> np.ndarray:
+    def _driven(self, run: Run, given: np.ndarray, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
         """Inputs (n, nw) with forces that nobody recorded, as pushes."""
         pushes, out = pushes_of(run), w.copy()
-        as_push = disturbance(self.noise_model, len(pushes), given[self._tread]).as_push
+        as_push = self._unknown(len(pushes), given, values).as_push
         out[:, [self._inputs.index(n) for n in pushes]] += path @ as_push.T
         return out
 
@@ -402,15 +472,22 @@ class Likelihood:
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
-    def _one(self, run: Run, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
+    def _one(
+        self,
+        run: Run,
+        values: Mapping[str, float],
+        by: tuple[str, ...],
+        found: Mapping[str, float],
+        path: np.ndarray | None = None,
+    ) -> RunEvidence:
+        """The run from the start that was `found`, maybe by a model with casters of another kind, along `path`."""
         channels, which, pushes = self._channels(run), self._which(run), pushes_of(run)
         prior, sd = self._prior(run), start_sd(run, self.start_names)
-        found = self.starts[run.name]  # maybe by a model with casters of another kind
         start = {**prior, **{n: v for n, v in found.items() if n in prior or n not in CASTERS}}
         given, w = self._given(run, values, start)
         columns = [n for n in (*by, *self.start_names) if n not in self._delays and n not in self.offsets]
-        path = self.paths.get(run.name) if self._disturbed else None
-        acting = w if path is None else self._driven(run, given, w, path)
+        path = path if self.noise_model.disturbed else None
+        acting = w if path is None else self._driven(run, given, w, path, values)
         simulated = self.sensitivities.run(run.time, acting, given, columns, tolerance=TOLERANCE)
         measured = self._measured(run, values)
         driven = read(run, channels, simulated.readings[:, which], start)
@@ -418,7 +495,7 @@ class Likelihood:
         spread = to_state * [sd[n] for n in self.start_names]
         noise = self._noise(run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
-        unknown = disturbance(self.noise_model, len(pushes), given[self._tread]) if self._disturbed else None
+        unknown = self._unknown(len(pushes), given, values) if self.noise_model.disturbed else None
         filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
         constants = locals_of(run)
         by_constant = [slope(c, run, channels, driven, pushes, filter_) for c in constants]
@@ -427,6 +504,8 @@ class Likelihood:
         signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
         signals[:, :, 0] = measured - (driven - added)
         self._fill_columns(signals[:, :, 1 : 1 + k + m], run, simulated, w[:, there], by, columns, which, filter_)
+        if path is not None:
+            signals[:, :, 1 : 1 + k] += self._as_before(filter_, given, values, path, by)
         for j, column in enumerate(by_constant):
             signals[:, :, 1 + k + m + j] = column
         whitener = Marginal(filter_, signals[:, :, 1 + k + m :] * [c.sd for c in constants])
@@ -440,6 +519,18 @@ class Likelihood:
             return RunEvidence(*of_run, simulated.results, driven, measured, whitener, offset)
         alone = self._simulated(run, values, start)
         return RunEvidence(*of_run, *alone, measured, whitener, offset, path, added, driven)
+
+    def _as_before(
+        self, filter_: Whitener, given: np.ndarray, values: Mapping[str, float], path: np.ndarray, by: tuple[str, ...]
+    ) -> np.ndarray:
+        """What has to be added to slopes (n, nz, k) along a path, as its forces do the same to a heavier chair: they grow with
+        its mass. The path is made of the very errors that slopes are held against, and with its forces in the slope by its
+        mass a chair would be found too light."""
+        out = np.zeros((*filter_.present.shape, len(by)))
+        if MASS in by:
+            pushed = path[:, ALONG] @ self._unknown(filter_.recorded, given, values).as_push[:, ALONG].T
+            out[:, :, by.index(MASS)] = filter_.response(pushed) / self.chair(values)[MASS]
+        return out
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
         """What was measured (n, nz), less the sensors' offsets."""
@@ -509,8 +600,8 @@ class Likelihood:
         step = np.array([run.input_steps.get(n, usual) for n in pushes])
         swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
         sd, ar = self.noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.noise_model.ar}
-        names = [BY_FMU_NAME[n].name for n in pushes]
-        of_pushes, readings = ([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in some] for some in (names, channels))
+        of_pushes = [(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]
+        readings = [(self.noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]
         return Noise(*np.array(of_pushes).T, *np.array(readings).T, start, step)
 
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
@@ -524,23 +615,42 @@ class Likelihood:
         path on which forces that nobody recorded lead it, once its start is tuned."""
         other = self.with_noise_model(self.noise_model)
         other.campaign, other.starts, other.paths = campaign, {r.name: other._prior(r) for r in campaign.runs}, {}
-        other._led_by_forces = True
+        other.leads = True
         return other
 
 
-def disturbance(noise_model: NoiseModel, pushes: int, t_r: float) -> Disturbance:
-    """A force along the heading and a moment, as changes of the recorded pushes, of which the first two are on the left and
-    on the right wheel, `t_r` apart."""
-    as_push = np.zeros((pushes, 2))
-    as_push[:2] = [[0.5, 1 / t_r], [0.5, -1 / t_r]]
-    return Disturbance(np.array([noise_model.force, noise_model.moment]), np.full(2, FORGOTTEN), as_push)
+def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0) -> Disturbance:
+    """A force along the heading, a moment, and the two processes by which a rider's body pushes, as changes of the recorded
+    pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
+
+    What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
+    they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride.
+
+    A body whose momentum p against the chair is of second order, p'' + (α + β) p' + α β p = white noise, pushes by −p': two
+    processes of first order, α and β, that one noise drives, and a force without a mean.
+    """
+    alpha, beta = (1 / t for t in SWUNG)
+    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * noise_model.body
+    body = np.sqrt([alpha / 2, beta / 2]) * driven
+    as_push = np.zeros((pushes, 4))
+    along = mass / noise_model.mass if noise_model.mass else 1.0
+    as_push[:2] = [[along / 2, side / t_r, -along / 2, along / 2] for side in (1, -1)]
+    common = np.eye(4)
+    common[2, 3] = common[3, 2] = 2 * np.sqrt(alpha * beta) / (alpha + beta)
+    sd = np.array([noise_model.force, noise_model.moment, *body])
+    return Disturbance(sd, np.array([FORGOTTEN, noise_model.lasting, *SWUNG]), as_push, common)
 
 
 def followed(e: RunEvidence) -> np.ndarray:
-    """The force and moment (n, 2) that nobody recorded, as all readings of a run have them."""
+    """The forces (n, 4) that nobody recorded, as all readings of a run have them."""
     assert isinstance(e.whitener, Marginal)
     filter_ = e.whitener.whitener
     return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])
+
+
+def _path(e: RunEvidence) -> np.ndarray:
+    """The forces (n, 4) along which a run is linearised."""
+    return np.zeros((len(e.run.time), 4)) if e.path is None else e.path
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:
@@ -575,17 +685,12 @@ def block_length(run: Run) -> int:
 
 def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START) -> dict[str, float]:
     """Where a run is expected to start: as it is set, or else as its first samples and what is known say."""
-    first = run.time <= run.time[0] + FIRST
-
-    def mean(name: str, channel: str) -> float:
-        values = run.channels[channel][first] if channel in run.channels else np.array([])
-        values = values[np.isfinite(values)]
-        return float(values.mean()) if len(values) else known.get(name, 0.0)
-
-    found = {name: mean(name, channel.name) for name, channel in TELLS.items()}
+    first = {name: began(run.time, run.channels[c.name]) for name, c in TELLS.items() if c.name in run.channels}
+    found = {name: known.get(name, 0.0) for name in TELLS} | {name: value for name, value in first.items() if value is not None}
     found = _of_the_cm(run, found, known)
     if run.u0 is not None:
         found["start.u"] = run.u0
+    found["start.v"] = known.get("start.v", known.get("chair.b", 0.0) * found["start.psi_dot"])  # the axle hardly slips
     return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in names}
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from .disturbance import strength
 from .factory import ModelFactory
 from .fit import Fit, Problem, fit, start_value
 from .likelihood import Evidence, Likelihood, offsets_of
-from .noise import QUIETER, noise_model_of
+from .noise import QUIETER, by_run, noise_model_of
 from .statistics import TIED, estimates, margin
 from .timing import Late
 
@@ -40,13 +42,15 @@ class Models:
         w = self.factory
         likelihood = w.likelihood()
         names = self.names(())
-        start = {n: start_value(likelihood, likelihood.records[n]) for n in names}
+        start = {n: w.begun.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
         nominal = likelihood.evidence(w.campaign.fit, start, names, tune_start=1)
         nominal_held = likelihood.evidence(w.campaign.holdout, start, (), tune_start=1)
         found = fit(likelihood, names, start, nominal)
         found = self._restarted(likelihood, names, found.values, 1)
         held = self.heldout(likelihood, found.values)
         w.remember(likelihood)
+        if w.leads:
+            w.begun = dict(found.values)
         return found, held, nominal, nominal_held
 
     def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
@@ -86,30 +90,41 @@ class Models:
             if effect in keep or self._plainly_needed(found, effect):
                 continue
             fewer = tuple(e for e in effects if e != effect)
+            if self.factory.leads and self.weight(found, effect) > margin(found.evidence):
+                continue
             without = self.refit(fewer, found.values)
-            if without.misfit - found.misfit < margin(found.evidence):
+            if self.factory.leads or without.misfit - found.misfit < margin(found.evidence):
                 return self.pruned(fewer, without, keep)
         return effects, found
 
     def _plainly_needed(self, found: Fit, effect: str) -> bool:
         """Is an effect's estimate, by its standard errors, so far from zero that nobody needs to try without?"""
+        return self.weight(found, effect) > PLAINLY * TIED
+
+    def weight(self, found: Fit, effect: str) -> float:
+        """How far an effect's estimate is from zero, by its covariance: about as much as −2 log likelihood would rise without
+        it, where filters stay as they are."""
         value, covariance = estimates(found, self.factory.parameters(effect))
-        return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value) > PLAINLY * TIED
+        return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
 
     def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
         return likelihood.evidence(self.factory.campaign.holdout, values, (), tune_start=tune_start)
 
-    def reestimate_noise(self, evidence: Evidence, *, again: bool = False) -> bool:
-        """Take the noise that these residuals show, and say whether it is another than before. `again`: now that an effect
+    def reestimate_noise(self, found: Fit, *, again: bool = False) -> bool:
+        """Take the noise that this fit's residuals show, and say whether it is another than before. `again`: now that an effect
         is in that was missing when the noise was estimated."""
-        before = self.factory.noise_model
-        lowest = QUIETER if again else 0.0
-        self.factory.noise_model, self.noise_notes = noise_model_of(evidence, self.factory.campaign.noise, before, lowest)
-        if self.factory.noise_model.differs(before):
-            self._without.clear()
-            return True
-        return False
+        before, lowest = self.factory.noise_model, QUIETER if again else 0.0
+        now, notes = noise_model_of(found.evidence, self.factory.campaign.noise, before, lowest)
+        if self.factory.leads:
+            chair = self.factory.likelihood().chair(found.values)
+            forces = strength(found.evidence, chair["chair.t_r"])
+            now = forces.put_into(replace(now, by_run=by_run(found.evidence, before)), chair["chair.m"])
+        if not now.differs(before):
+            return False  # and models that are compared are by the same noise
+        self.factory.noise_model, self.noise_notes = now, notes
+        self._without.clear()
+        return True
 
     def rival_of(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
         """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""

@@ -24,6 +24,7 @@ EVEN = 0.25  # share of the usual time over so many readings by which one may di
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 ENDLESS = 0.99  # AR(1) coefficient of what walks at random, as a chair on a rough floor does
 MOST = 0.995  # the largest that is looked at
+ENOUGH = 100  # samples of a channel in a run that tell its noise there
 
 
 def noise_model_of(
@@ -57,6 +58,19 @@ def noise_model_of(
     return replace(taken, sd=sd, ar=ar), notes
 
 
+def by_run(evidence: Evidence, taken: NoiseModel) -> dict[str, dict[str, float]]:
+    """How many times a channel's usual standard deviation its noise is in each run, by how innovations change from one sample
+    to the next: a chair on a rough floor shakes its sensors the more the faster it goes."""
+    found: dict[str, dict[str, float]] = {e.run.name: {} for e in evidence.runs}
+    for e in evidence.runs:
+        for i, channel in enumerate(e.channels):
+            r = _there(e.r[:, i])
+            if len(r) > ENOUGH:
+                times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run.name) / taken.sd[channel]
+                found[e.run.name][channel] = times
+    return found
+
+
 def _push_colour(evidence: Evidence, side: str, sd: float) -> float:
     """AR(1) coefficient of the noise in a record of pushes, by its stated size and its third differences, which no hand's
     push moves: for AR(1) noise these have a variance of σ² (20 − 30 φ + 12 φ² − 2 φ³)."""
@@ -83,7 +97,7 @@ def _residuals(evidence: Evidence, channel: str) -> list[tuple[np.ndarray, np.nd
     """Times and residuals (m,) of the channel's own readings in each run: a slow sensor has none in most rows."""
     found = []
     for e in (e for e in evidence.runs if channel in e.channels):
-        d = e.run.channels[channel] - e.predicted[:, e.channels.index(channel)]
+        d = e.run.channels[channel] - e.followed[:, e.channels.index(channel)]
         there = np.isfinite(d)
         found.append((e.run.time[there], d[there]))
     return found

@@ -14,6 +14,8 @@ from .staircase import Step
 from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring
 
+LED = 3  # times that forces, noise and calibration are found one from another, at most
+
 
 def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
     """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
@@ -23,6 +25,8 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
     """
     say("calibrating")
     w = search.factory
+    if w.leads:
+        return _begin_led(search)
     found = dict(by_signals(w.campaign))
     w.retime(found)
     columns = wiring(w.likelihood(), w.given)
@@ -35,10 +39,21 @@ def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, li
             w.retime(more)
             found |= more
             base, held, ladder = first_steps(search)
-    if search.reestimate_noise(base.evidence):
+    if search.reestimate_noise(base):
         base, held, ladder = first_steps(search)
     search.retimed |= found
     search.notes = list(columns.notes)
+    return base, held, ladder
+
+
+def _begin_led(search: Search) -> tuple[Fit, Evidence, list[Step]]:
+    """The same where forces lead the runs: columns and clocks were looked at before, and how strong the forces are may be known
+    only once all is calibrated beside them."""
+    base, held, ladder = first_steps(search)
+    for _ in range(LED):
+        if not search.reestimate_noise(base):
+            break
+        base, held, ladder = first_steps(search)
     return base, held, ladder
 
 
@@ -47,7 +62,7 @@ def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
     Not while a delay of all pushes is in it, or nobody is to estimate one."""
     w = search.factory
     delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
-    if not name or delay in effects:
+    if not name or delay in effects or w.leads:
         return False
     likelihood, theta = w.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
     prior = Problem(likelihood, base.names).prior

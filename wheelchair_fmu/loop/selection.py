@@ -128,7 +128,7 @@ class StepwiseSelection:
 
     def _step(self) -> None:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""
-        if self.search.reestimate_noise(self.base.evidence, again=True):
+        if self.search.reestimate_noise(self.base, again=True):
             self.search.say("calibrating with the noise that is left")
             self._noise_known_since = len(self.rounds)
             self._anew(self.base)

@@ -24,14 +24,15 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 
 def tied(r: Round, effect: str) -> tuple[str, ...]:
     """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. What
-    predicts held-out runs better is so much likelier. In a search again, beside all that was found, fitted runs alone tell."""
+    predicts held-out runs better is so much likelier, if it was found. In a search again, beside all that was found,
+    fitted runs alone tell."""
     leader = _of(r, effect)
     group, farthest = [leader.effect], leader.fit.misfit + margin(leader.fit.evidence)
     for c in r.candidates:
         if c is leader or not c.lawful:
             continue
         ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
-        near = c.fit.misfit - max(0.0, ahead) <= farthest
+        near = c.fit.misfit <= farthest or (c.fit.misfit - ahead <= farthest and c.found)
         same = abs(ahead) < se and c.found and c.drop >= NEARLY * leader.drop
         if near or same:
             group.append(c.effect)

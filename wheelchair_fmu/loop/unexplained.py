@@ -21,6 +21,7 @@ from .likelihood import Evidence, Likelihood, NoiseModel, RunEvidence, pushes_of
 from .parallel import parallel_map
 from .strokes import phase
 
+STROKE = "stroke"
 BINS = 8  # of a variable, alike in how much was recorded in each
 KNOWN = 0.8  # of a force's usual size: where the readings tell it no better, it is not asked what orders it
 SHARE = 0.25  # of a force's mean square in other runs that an order must foretell
@@ -75,37 +76,45 @@ class Unexplained:
         return self.after.force <= FLAT * self.weight and self.after.moment <= FLAT * self.weight * self.arm
 
     @property
+    def ordered(self) -> tuple[Order, ...]:
+        """What orders it, but for the stroke, to which a rider's body is locked that has its part in such forces, and for what
+        stays the same, where a floor that counts as flat and falls to one side does as much."""
+        nobodys = {STROKE, CONSTANT} if self.like_a_floor else {STROKE}
+        return tuple(o for o in self.orders if o.by not in nobodys)
+
+    @property
     def words(self) -> list[str]:
         """What a person is told."""
         told = [f"As calibrated, the model needs {_size(self.before)} that nobody recorded; in the end, {_size(self.after)}."]
-        if self.forces and not self.orders:
-            told.append(
-                "Nothing orders it, and a floor that counts as flat does as much: it is nobody's effect."
-                if self.like_a_floor
-                else "Nothing that was recorded orders it."
-            )
+        if self.forces and not self.ordered and self.like_a_floor:
+            nothing = "Nothing else orders it" if self.orders else "Nothing orders it"
+            told.append(f"{nothing}, and a floor that counts as flat does as much: it is nobody's effect.")
+        elif self.forces and not self.orders:
+            told.append("Nothing that was recorded orders it.")
         return told + [f"{o.words[0].upper()}{o.words[1:]}." for o in self.orders]
 
     def as_json(self) -> dict[str, Any]:
-        """The key `disturbance`: standard deviations in N and N m that the model needs in the end, the same as `calibrated`,
-        what orders them, and all in words."""
-        in_the_end, calibrated = ({"force": s.force, "moment": s.moment} for s in (self.after, self.before))
+        """The key `disturbance`: standard deviations in N, N m and N s that the model needs in the end, and the time in s over
+        which the moment lasts, the same as `calibrated`, what orders them, and all in words."""
+        in_the_end, calibrated = (_figures(s) for s in (self.after, self.before))
         return {**in_the_end, "calibrated": calibrated, "orders": [o.as_json() for o in self.orders], "words": self.words}
 
 
+def _figures(s: Strength) -> dict[str, float]:
+    return {"force": s.force, "moment": s.moment, "body": s.body, "lasting": s.lasting}
+
+
 def _size(s: Strength) -> str:
-    return f"{s.force:.2g} N and {s.moment:.2g} N m" if s.fall else "no force and no moment"
-
-
-def geometry(likelihood: Likelihood, found: Fit) -> dict[str, float]:
-    """Values (SI) of the chair, as a fit has them or the campaign says."""
-    given = {p.name: p.default for p in likelihood.variant.parameters()}
-    return {**given, **likelihood.variant.values, **likelihood.campaign.known, **found.values}
+    if not s.fall:
+        return "no force and no moment"
+    if not s.body:
+        return f"{s.force:.2g} N and {s.moment:.2g} N m"
+    return f"{s.force:.2g} N, {s.moment:.2g} N m and a swing of the rider's body of {s.body:.2g} N s"
 
 
 def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength, evidence: Evidence) -> Unexplained:
     """What a fitted model lacks, and what orders it, by `evidence` at its values."""
-    chair = geometry(likelihood, found)
+    chair = likelihood.chair(found.values)
     weight, arm = chair["chair.m"] * chair["g"], chair["chair.b"]
     if not after.fall:
         return Unexplained(before, after, (), (), weight, arm)
@@ -207,7 +216,7 @@ def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str
         "yaw rate": at["chair.psi_dot"],
         "heading": np.mod(at["chair.psi"], 2 * np.pi),
         "push": push,
-        "stroke": phase(e.run.time, push),
+        STROKE: phase(e.run.time, push),
         "caster angle": 0.5 * (at["caster.fl"] + at["caster.fr"]),
         "time": e.run.time - e.run.time[0],
         "left wheel's angle": turned["l"],
@@ -249,7 +258,7 @@ VARIABLES: dict[str, tuple[str, Basis]] = {
     "yaw rate": ("goes with the yaw rate", _bins),
     "heading": ("goes with the heading", _bins),
     "push": ("goes with the push", _bins),
-    "stroke": ("is locked to the stroke, as that of a body is that moves and was not recorded", _strokes),
+    STROKE: ("is locked to the stroke, as that of a body is that moves and was not recorded", _strokes),
     "caster angle": ("goes with the casters' angle", _bins),
     "time": ("grows or fades in the course of a run", _course),
     "left wheel's angle": ("comes back with every turn of the left wheel", _turns),

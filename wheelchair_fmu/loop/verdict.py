@@ -25,7 +25,7 @@ from .fit import Fit
 from .interval import profile_interval
 from .joint import explains
 from .lead import lead
-from .likelihood import Evidence, NoiseModel
+from .likelihood import MASS, Evidence, NoiseModel
 from .limits import beyond
 from .preflight import retime_by_slopes, settle_clocks
 from .probability import Belief, beliefs, shared
@@ -33,9 +33,9 @@ from .relief import reliefs
 from .screen import AT_THE_FLOOR
 from .selection import StepwiseSelection
 from .staircase import Step
-from .statistics import correlation_time, decisive, estimates
+from .statistics import correlation_time, decisive, estimates, standard_errors
 from .ties import NEARLY, grouped, tied
-from .unexplained import Unexplained, geometry, unexplained
+from .unexplained import Unexplained, unexplained
 
 ENOUGH_POWER = 0.8
 WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
@@ -48,6 +48,7 @@ REST = 0.15  # what calibration left may leave this much of its mean square erro
 HARDLY = 1.04  # the same, where they explain next to nothing: they leave
 NEXT_TO_ALL = 0.9  # of it
 FORETOLD_BADLY, OF_WHAT_WAS = 1.2, 0.2  # the same two on held-out runs alone, to which nothing was fitted
+NORMAL = 1.96  # standard errors either side that hold 95 %
 FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
 LASTING = 2.0  # that is no noise where so many samples are alike
@@ -136,34 +137,41 @@ def diagnose(
     began = time.monotonic()
     campaign = windows(campaign)
 
-    def searched(noise_model: NoiseModel | None, terms: Mapping[str, Effect]) -> Diagnosis:
-        factory = ModelFactory(campaign, variant or Variant(), fixed, calibrated)
-        factory.noise_model = noise_model or factory.noise_model
-        return _searched(Search(factory, progress), terms, experiments, stepped)
-
-    found = searched(None, generic or {})
-    found = _with_forces(found, lambda noise_model: searched(noise_model, {}), progress)
+    factory = ModelFactory(campaign, variant or Variant(), fixed, calibrated)
+    found = _searched(Search(factory, progress), generic or {}, experiments, stepped)
+    found = _with_forces(found, lambda search: _searched(search, {}, experiments, stepped), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     return replace(found, seconds=time.monotonic() - began)
 
 
-def _with_forces(found: Diagnosis, again: Callable[[NoiseModel], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
+def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
-    before, _ = _acting(found, (), found.rounds[0].fit)
+    before, along = _acting(found, (), found.rounds[0].fit)
     if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
         return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
     say("searching again, with forces that nobody recorded")
     try:
-        second = again(before.put_into(found.search.factory.noise_model))
+        second = again(_led(found, before, along))
     except SimulationError:  # forces so strong that they hide all that a model does
         return replace(found, unexplained=_left(found, before))
     left = _left(second, before)
-    if left.orders or not left.like_a_floor:
+    if left.ordered or not left.like_a_floor:
         return replace(found, unexplained=left)
     with_forces = replace(second.ladder[1], name=FORCES)
     return replace(second, ladder=(*found.ladder[:2], with_forces, *second.ladder[2:]), unexplained=left)
+
+
+def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Search:
+    """A search of the same campaign, with its columns and clocks as they were found, along such forces, as they lead the
+    calibrated model's runs."""
+    factory = found.search.factory.led(along, found.rounds[0].fit.values)
+    mass = found.search.factory.likelihood().chair(found.rounds[0].fit.values)[MASS]
+    factory.noise_model = forces.put_into(NoiseModel(factory.campaign.noise), mass)
+    search = Search(factory, found.search.say)
+    search.notes = list(found.search.notes)
+    return search
 
 
 def _left(found: Diagnosis, before: Strength) -> Unexplained:
@@ -176,7 +184,7 @@ def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength
     """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
     term, which no likelihood of the search knows."""
     likelihood = found.search.factory.likelihood(effects)
-    t_r = geometry(likelihood, at)["chair.t_r"]
+    t_r = likelihood.chair(at.values)["chair.t_r"]
     if not set(at.names) <= set(likelihood.records):
         return strength(at.evidence, t_r), at.evidence
     return acting(likelihood, at.values, t_r)
@@ -236,6 +244,10 @@ def _searched(
 def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
     """Intervals of the parameters of the effects that were found."""
     likelihood, names = search.factory.likelihood(included), [n for e in effects for n in search.factory.parameters(e)]
+    if search.factory.leads:  # no value was found by how likely the readings are
+        errors = standard_errors(found)
+        ends = {n: NORMAL * errors[n] for n in names if n in found.names}
+        return {n: (found.values[n] - end, found.values[n] + end) for n, end in ends.items()}
     return {n: profile_interval(likelihood, found, n) for n in names if n in found.names}
 
 
@@ -348,9 +360,12 @@ def _verdict(
     left: Evidence,
     values: Sequence[Calibrated],
 ) -> str:
-    if proposal is not None or ladder[-1].left > UNEXPLAINED or any(v.beyond for v in values):
+    # a body that swings with the pushes, and that nobody recorded, answers them as another mass would
+    swings = search.factory.noise_model.body > 0
+    strained = [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
+    if proposal is not None or ladder[-1].left > UNEXPLAINED or strained:
         return "outside"
-    if effects and insufficient(ladder) and correlation_time(left) > LASTING:
+    if effects and not search.factory.leads and insufficient(ladder) and correlation_time(left) > LASTING:
         return "outside"
     if effects:
         return "tie" if ties else "missing"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from ..campaign import CHANNELS, Campaign, Run
@@ -49,7 +49,7 @@ def content(
         "outputs": {c.name: c.fmu for c in CHANNELS},
         "drifting": [c.name for c in CHANNELS if c.drifts],
         "pushed": list(PUSHES),
-        "noise": {"sd": dict(colour.sd), "ar": dict(colour.ar)},
+        "noise": asdict(colour),
         "known": {**factory.variant.values, **campaign.known},
         "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],
         "effects": [_effect(e) for e in factory.catalogue.values()],

@@ -99,7 +99,7 @@ def test_the_numbers_are_those_of_the_diagnosis():
     rates = [s["channels"]["yaw_rate"]["heldout_rms"] for s in diagnosis["ladder"]]
     assert "{:#.3g}, {:#.3g} and {:#.3g} deg/s in `yaw_rate`".format(*rates) in text
     calibrated_moment = diagnosis["disturbance"]["calibrated"]["moment"]
-    assert f"and {calibrated_moment:.2g} N m for the calibrated model and zero for the last one." in text
+    assert f"{calibrated_moment:.2g} N m and " in text and "N s for the calibrated model and zero for the last one." in text
     assert "total mass m of chair and user, 80.0 ± 2.0 kg" in text
     durations = [run.time[-1] - run.time[0] for run in sample().fit]
     assert f"Seven runs of {sum(durations):.1f} s together were fitted" in text
@@ -121,8 +121,8 @@ def test_the_numbers_are_those_of_the_diagnosis():
         ("other noise", "with a coefficient of 0.625 from one reading to the next"),
         (
             "with forces",
-            "the noise of the recorded pushes and a slow random force and moment that nobody recorded, forgotten over 1 s, as "
-            "process noise",
+            "the noise of the recorded pushes and a slow random force and moment and a swing of the rider's body that nobody "
+            "recorded as process noise",
         ),
         ("next", r"To be measured next: a slalom\_with \[20 kg\], 3 times."),
     ],

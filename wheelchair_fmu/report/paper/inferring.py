@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ...campaign.channels import PUSH_NAMES
 from ...campaign.recorded import PUSHES_CLOCK
 from ...loop.diagnose import AS_LARGE, PLAIN, SIGNIFICANT, SURELY, VISIBLE
-from ...loop.likelihood import BLOCK, CASTER_SD, FORGOTTEN, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
+from ...loop.likelihood import BLOCK, CASTER_SD, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
 from ...loop.score import RUNS
 from ..words import listed, title_of
 from .case import OFFSET, PROFILE, Case, interval
@@ -61,7 +61,7 @@ def _process(case: Case) -> str:
     """What a filter takes for noise that the chair adds up."""
     noise = ["the noise of the recorded pushes"] if any(case.told["noise"]["sd"].get(c) for c in PUSH_NAMES) else []
     if case.with_forces:
-        noise.append(f"a slow random force and moment that nobody recorded, forgotten over {FORGOTTEN:g} s,")
+        noise.append("a slow random force and moment and a swing of the rider's body that nobody recorded")
     return f"{listed(noise, 'and')} as process noise" if noise else "the pushes known exactly"
 
 

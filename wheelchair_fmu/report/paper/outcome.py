@@ -7,7 +7,6 @@ from typing import Any
 
 from ...campaign.channels import CHANNEL_NAMES
 from ...loop.calibration import DOUBTED
-from ...loop.likelihood import FORGOTTEN
 from ...loop.probability import LARGE, SLIGHT
 from ..told import NAMED, Told, near_rivals
 from ..words import listed, sentence, title_of
@@ -176,8 +175,8 @@ def disturbance(case: Case) -> str:
         return ""
     before, after = (_strength(s) for s in (told["calibrated"], told))
     words = [
-        f"The most likely strength of a slow random force along the heading and of a slow random moment that nobody recorded, "
-        f"each forgotten over {FORGOTTEN:g} s, was {before} for the calibrated model"
+        f"The most likely strength of a slow random force along the heading and of a slow random moment, forgotten over a "
+        f"second or less, and of a momentum of the rider's body that nobody recorded was {before} for the calibrated model"
         + (f" and {after} for the last one." if case.grew else ".")
     ]
     words += [f"{capital(plain(o['words']))}." for o in told["orders"]]
@@ -185,7 +184,6 @@ def disturbance(case: Case) -> str:
 
 
 def _strength(told: Mapping[str, Any]) -> str:
-    """Standard deviations in N and N m."""
-    if not told["force"] and not told["moment"]:
-        return "zero"
-    return f"{told['force']:.2g} N and {told['moment']:.2g} N m"
+    """Standard deviations in N, N m and N s."""
+    sizes = (told["force"], told["moment"], told.get("body", 0.0))
+    return "{:.2g} N, {:.2g} N m and {:.2g} N s".format(*sizes) if any(sizes) else "zero"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...campaign import moving
 from ...errors import Failure, SimulationError
 from ...loop.factory import ModelFactory
 from ...loop.likelihood import Evidence, Likelihood, NoiseModel
@@ -58,13 +59,14 @@ def _residuals(evidence: Evidence, at: int) -> dict[str, np.ndarray]:
 def _likelihood(case: Case) -> Likelihood:
     """Of the runs as the diagnosis had them: pushes in time, without the channels that it left out."""
     used = case.final["runs"]
-    runs = (in_time(r, case.told["sync"]) for r in case.campaign.runs if r.name in used)
+    whole = replace(case.campaign, runs=tuple(in_time(r, case.told["sync"]) for r in case.campaign.runs))
+    runs = (r for r in (moving(whole) if case.with_forces else whole).runs if r.name in used)
     kept = tuple(replace(r, channels={c: v for c, v in r.channels.items() if c in used[r.name]["channels"]}) for r in runs)
     terms = {name: term for name, term in library().items() if name in case.effects}
     chair = replace(case.chair, catalogue={**terms, **case.chair.catalogue})
     factory = ModelFactory(replace(case.campaign, runs=kept), chair, case.fixed)
-    forces = (case.told["disturbance"] or {}).get("calibrated", {}) if case.with_forces else {}
-    factory.noise_model = NoiseModel(case.told["noise"]["sd"], case.told["noise"]["ar"], **forces)
+    forces = (case.told["disturbance"] or {}).get("calibrated", {}) if case.with_forces else {}  # of an older diagnosis
+    factory.noise_model, factory.leads = NoiseModel(**{**forces, **case.told["noise"]}), case.with_forces
     return factory.likelihood(case.effects)
 
 
