@@ -52,3 +52,13 @@ def test_clocks_are_found_also_where_a_campaign_gives_a_size_to_an_effect_of_one
     place = with_settings(SAMPLE, tmp_path / "campaign", {"coast-down": '{ "effect.mine.q" = 2.0 }'})
     told = CliRunner().invoke(app, ["sync", str(place), "--dry-run", "-o", str(tmp_path)])
     assert told.exit_code == 0 and "every run has one clock" in told.output
+
+
+def test_the_old_spelling_of_output_still_works(tmp_path):
+    campaign = tmp_path / "campaign"
+    shutil.copytree(SAMPLE, campaign)
+    head, *runs = (campaign / "campaign.toml").read_text(encoding="utf-8").split("[[run]]")
+    (campaign / "campaign.toml").write_text("[[run]]".join([head, runs[0]]), encoding="utf-8")
+    check(campaign, "--plot", "--out", tmp_path / "old")
+    assert (tmp_path / "old" / "preview.html").exists()
+    assert "--out " not in check("--help").stdout

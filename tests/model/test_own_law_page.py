@@ -53,3 +53,21 @@ def test_every_file_that_is_no_law_is_told_in_a_sentence(tmp_path):
     assert (
         done.returncode == 1 and "there is a bundled 'dugoff' already; give the file and its record another name" in done.stderr
     )
+
+
+@pytest.mark.parametrize(
+    "line", ["from .shares import share", "from . import shares", "import wheelchair_fmu.model.tyre.shares"]
+)
+def test_a_law_that_reads_a_file_beside_it_is_refused(tmp_path, line):
+    with_example(PAGE, tmp_path)
+    laws = tmp_path / "config" / "laws" / "tyre"
+    (laws / "shares.py").write_text(
+        'from ..stage import Alternative\n\nLAW = Alternative("shares", ())\n\n\ndef share(x):\n    return x\n'
+    )
+    brush = (laws / "brush.py").read_text(encoding="utf-8")
+    (laws / "brush.py").write_text(
+        brush.replace("import casadi as cs\n", f"import casadi as cs\n\n{line}\n", 1), encoding="utf-8"
+    )
+    done = attempt(tmp_path, "-m", "wheelchair_fmu.cli.main", "laws", "list")
+    assert done.returncode == 1 and len(done.stderr.splitlines()) == 1, done.stderr
+    assert "brush.py:7: reads shares.py beside it" in done.stderr and "write into brush.py what it needs" in done.stderr

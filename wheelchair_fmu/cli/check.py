@@ -21,7 +21,7 @@ from ..model.stage import Effect
 from ..report import preview
 from ..report.saving import save
 from ..writing import written
-from .files import print_json
+from .files import Out, print_json
 from .group import console
 
 MOST = 6  # warnings that other commands repeat
@@ -49,13 +49,14 @@ def check(
     effects: Annotated[Path | None, typer.Option(metavar="DIR", help="A folder with effect files of your own.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the faults as JSON.")] = False,
     plot: Annotated[bool, typer.Option("--plot", help="Draw every signal of every run: preview.html and PNG.")] = False,
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where to draw.")] = Path("out"),
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Where to draw.")] = Path("out"),
+    out: Out = None,
 ) -> None:
     """Read a campaign and print all its faults: place, fact, cure. Exits with 1 where there are errors."""
     found = judged(campaign, known_parameters(catalogue(effects)))
     faults = found.faults
     if plot:
-        draw(campaign.name, found.runs, faults, out)
+        draw(campaign.name, found.runs, faults, out or output)
     errors = sum(fault.severity == ERROR for fault in faults)
     counts = {"errors": errors, "warnings": len(faults) - errors}
     if as_json:

@@ -24,6 +24,8 @@ class TableKind(StrEnum):
 
 
 Kind = Annotated[TableKind, typer.Option("--table", help="What a table of series is written as.")]
+# How `--output` was spelt in some commands: still understood, but not shown.
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", hidden=True)]
 
 
 def write_table(path: Path, columns: Mapping[str, np.ndarray]) -> None:

@@ -18,7 +18,7 @@ from ..loop.subject import known_parameters
 from ..report.saving import save
 from ..report.sync_figure import sync_figure
 from ..writing import written
-from .files import print_json
+from .files import Out, print_json
 from .group import console
 
 
@@ -30,15 +30,17 @@ def sync(
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Find the clocks, but do not write them.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where the picture goes.")] = Path("out"),
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Where the picture goes.")] = Path("out"),
+    out: Out = None,
 ) -> None:
     """Find the offset of each device's clock in each run, and write what is sure into campaign.toml."""
     seen = judged(campaign, known_parameters())
     if not seen.runs:
         raise CampaignError([fault for fault in seen.faults if fault.severity == ERROR])
     found = find(seen.runs)
+    picture = (out or output) / "clocks.png"
     if found:
-        with written(out / "clocks.png") as beside:
+        with written(picture) as beside:
             save(sync_figure(found), beside)
     if as_json:
         print_json({"campaign": str(campaign), "sync": {one.run.name: _told(one) for one in found}})
@@ -48,7 +50,7 @@ def sync(
     if not dry_run and any(one.sure for one in found):
         doc = seen.runs[0].doc
         write(doc, found)
-        console(stderr=True).print(f"the clocks that are sure are in {doc.path}; their picture is {out / 'clocks.png'}")
+        console(stderr=True).print(f"the clocks that are sure are in {doc.path}; their picture is {picture}")
 
 
 def _told(one: RunClocks) -> dict[str, Any]:

@@ -5,10 +5,12 @@ A package whose files these are adds a user's own folder to its `__path__`: a fi
 
 from __future__ import annotations
 
+import ast
 import linecache
 import pkgutil
 import re
-from collections.abc import Iterable, MutableSequence
+from collections.abc import Iterable, Iterator, MutableSequence
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -87,13 +89,51 @@ def _failure(file: str, error: BaseException) -> str:
 
 
 def laws(package: str, names: Iterable[str]) -> dict[str, Alternative]:
-    """The laws by name. Raises ModelError as `records`."""
-    return records(package, names, "LAW", Alternative, EXAMPLE)
+    """The laws by name. Raises ModelError as `records`, and for a user's own file that reads another one beside it."""
+    found = records(package, names, "LAW", Alternative, EXAMPLE)
+    bundled = Path(import_module(package).__file__ or "").parent
+    files = (Path(import_module(f"{package}.{name}").__file__ or "") for name in found)
+    for file in files:
+        if file.parent != bundled:
+            _alone(package, file.read_text(encoding="utf-8"), str(file))
+    return found
+
+
+def _alone(package: str, text: str, file: str) -> None:
+    """A variant carries a law as one text, so the law reads nothing of the user's own. Raises ModelError where it does."""
+    top = package.partition(".")[0]
+    bundled = {module.name for module in pkgutil.iter_modules([str(Path(import_module(package).__file__ or "").parent)])}
+    for line, module in _read_beside(ast.parse(text), package):
+        name = module.partition(".")[0]
+        if name not in bundled:
+            raise ModelError(
+                f"{file}:{line}: reads {name}.py beside it, which does not go along where {top} takes the law; "
+                f"write into {Path(file).name} what it needs of {name}.py"
+            )
+
+
+def _read_beside(program: ast.Module, package: str) -> Iterator[tuple[int, str]]:
+    """Line and name of each module of the law's own package that a program imports."""
+    for node in ast.walk(program):
+        match node:
+            case ast.ImportFrom(level=1, module=None, names=names):
+                yield from ((node.lineno, each.name) for each in names)
+            case ast.ImportFrom(level=1, module=str(module)):
+                yield node.lineno, module
+            case ast.ImportFrom(level=0, module=str(module)) if module == package:
+                yield from ((node.lineno, each.name) for each in node.names)
+            case ast.ImportFrom(level=0, module=str(module)) if module.startswith(f"{package}."):
+                yield node.lineno, module.removeprefix(f"{package}.")
+            case ast.Import(names=names):
+                inside = (each.name for each in names if each.name.startswith(f"{package}."))
+                yield from ((node.lineno, name.removeprefix(f"{package}.")) for name in inside)
 
 
 def law_of_text(package: str, name: str, text: str, file: str) -> Alternative:
     """The law that a program's text makes, as if its file lay in this package. Raises ModelError as `records`, with `file`."""
     module = ModuleType(f"{package}.{name}")
+    with suppress(SyntaxError):  # which the program says itself when it is run
+        _alone(package, text, file)
     module.__dict__.update(__file__=file, __package__=package)
     try:
         exec(compile(text, file, "exec"), module.__dict__)
