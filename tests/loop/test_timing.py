@@ -63,9 +63,19 @@ def test_a_delay_that_all_runs_share_is_no_clock(sample):
 RUNS = ["coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom-quick", "random-steps"]
 
 
-LOST = pytest.mark.xfail(strict=True, reason="the push that turns the chair lies before this record of it begins")
+def cannot(why: str):
+    return pytest.mark.xfail(strict=True, raises=AssertionError, reason=why)
+
+
+TIES = {
+    ("steady-right", 1.3): cannot("the push that turns the chair lies before this record of it begins"),
+    ("slalom-slow", -1.3): cannot("this record lacks the last 1.3 s of pushes, and the answer ties with camber_misalignment"),
+}
 SHIFTS = [
-    pytest.param(n, s, marks=LOST if (n, s) == ("steady-right", 1.3) else ()) for n in RUNS for s in (0.02, 0.05, 0.1, 0.3, 1.3)
+    pytest.param(n, sign * s, marks=TIES.get((n, sign * s), ()))
+    for n in RUNS
+    for s in (0.02, 0.05, 0.1, 0.3, 1.3)
+    for sign in (1, -1)
 ]
 
 
@@ -81,7 +91,7 @@ def same_verdict(sample, name, seconds, chair=None):
 @pytest.mark.parametrize(("name", "seconds"), SHIFTS)
 def test_the_verdict_is_the_same_and_the_shift_is_told(sample, name, seconds):
     told = same_verdict(sample, name, seconds)
-    assert told == pytest.approx(seconds, abs=0.01) or (told is None and seconds < 0.05)
+    assert told == pytest.approx(seconds, abs=0.01) or (told is None and abs(seconds) < 0.05)
 
 
 @among("rolling_resistance_asymmetry", "push_force_delay", "gyro_bias", "camber_misalignment")
