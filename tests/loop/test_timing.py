@@ -63,7 +63,7 @@ def test_a_delay_that_all_runs_share_is_no_clock(sample):
 RUNS = ["coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom-quick", "random-steps"]
 
 
-def cannot(why: str):
+def cannot(why: str) -> pytest.MarkDecorator:
     return pytest.mark.xfail(strict=True, raises=AssertionError, reason=why)
 
 
