@@ -22,7 +22,8 @@ from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.staircase import Step
 from wheelchair_fmu.loop.statistics import sandwich, size_seen
-from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient
+from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient, share_seen
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
 
@@ -275,3 +276,13 @@ def test_a_tie_beside_other_effects_is_broken_with_these_in(tmp_path):
     found = diagnose(campaign, chair, experiments=experiments())
     assert found.verdict == "tie" and found.already == ("rolling_resistance_asymmetry",)
     assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
+
+
+def test_another_form_of_a_cause_makes_no_catalogue_larger():
+    """Of four causes two are seen, and one in one of its four forms."""
+    forms = ("scrub_torque", "scrub_torque_viscous", "turn_slip", "pivot_torque")
+    seen = {"gyro_bias": True, "toe_misalignment": True, "wheel_inertia": False} | {
+        form: form == "scrub_torque" for form in forms
+    }
+    assert share_seen(seen, bundled()) == pytest.approx((1 + 1 + 0 + 1 / 4) / 4)
+    assert share_seen({}, bundled()) == 0

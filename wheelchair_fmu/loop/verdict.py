@@ -38,7 +38,7 @@ from .ties import NEARLY, grouped, tied
 from .unexplained import Unexplained, unexplained
 
 ENOUGH_POWER = 0.8
-WHOLE_LIBRARY = 0.75  # share of the effects that must have been seen if they were there
+WHOLE_LIBRARY = 0.75  # share of the causes that must have been seen if they were there
 SMALL_VISIBLE = 0.005
 PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
@@ -374,7 +374,16 @@ def _verdict(
     if _small(rounds, "small"):
         return "small"
     seen = _seen(search, rounds[0])
-    return "adequate" if np.mean(list(seen.values()) or [0]) >= WHOLE_LIBRARY else "cannot_see"
+    return "adequate" if share_seen(seen, search.factory.catalogue) >= WHOLE_LIBRARY else "cannot_see"
+
+
+def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:
+    """Share of the causes that would have been seen; of one that has several forms, as large a part as of these."""
+    causes: dict[str, list[bool]] = {}
+    for effect, would in seen.items():
+        cause = next((alike.what for alike in catalogue[effect].alike if alike.one_cause), effect)
+        causes.setdefault(cause, []).append(would)
+    return float(np.mean([np.mean(forms) for forms in causes.values()] or [0.0]))
 
 
 def _seen(search: Search, first: Round) -> dict[str, bool]:

@@ -22,6 +22,7 @@ TURNED_PATCHES = Alike(
     "a torque against the turn: turn_slip is the dry one on the spot and, at one speed, the viscous one on wide arcs, "
     "pivot_torque is there only about a wheel that stands",
     told_by="a spin on the spot and a turn about one wheel, beside turns of several radii at several speeds",
+    one_cause=True,
 )
 EFFECTIVE_MASS = Alike(
     "the mass that pushes have to set going",

@@ -102,11 +102,12 @@ class Alternative:
 @dataclass(frozen=True)
 class Alike:
     """What several effects do alike: those whose records hold this, and `with_parameters` of the chair. `told_by` is what tells
-    them apart."""
+    them apart; `one_cause`: they are forms of one."""
 
     what: str
     told_by: str
     with_parameters: tuple[str, ...] = ()
+    one_cause: bool = False
 
 
 @dataclass(frozen=True)
