@@ -83,8 +83,7 @@ class ModelFactory:
         if key not in self._benches:
             variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
             columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
-            self._benches[key] = Likelihood(self.campaign, variant, columns=columns, derives=derives)
-            self._benches[key].leads = self.leads
+            self._benches[key] = Likelihood(self.campaign, variant, None, columns, derives, self.leads)
         likelihood = self._benches[key]
         likelihood.noise_model = self.noise_model
         likelihood.starts.update(self.starts)

@@ -301,7 +301,8 @@ class Likelihood:
     nothing. `noise_model` is the noise. Sensor offsets
     that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
     the parameters that sensitivities may be asked by, all if not given; the start is among them in any case. One that does not
-    derive is compiled without, and only runs evidence `again`.
+    derive is compiled without, and only runs evidence `again`. One that `leads` has runs that begin
+    where the chair rolls, each led along the forces that nobody recorded.
     """
 
     def __init__(
@@ -311,15 +312,16 @@ class Likelihood:
         noise_model: NoiseModel | None = None,
         columns: Sequence[str] | None = None,
         derives: bool = True,
+        leads: bool = False,
     ):
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
         self.start_names = starts_of(p.name for p in self.variant.parameters())
         wanted = None if columns is None else (*columns, *self.start_names)
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
+        self.leads = leads
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
         self.paths: dict[str, np.ndarray] = {}
-        self.leads = False
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -329,7 +331,7 @@ class Likelihood:
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
     def _prior(self, run: Run) -> dict[str, float]:
-        return prior_start(run, self.known(run), self.start_names)
+        return prior_start(run, self.known(run), self.start_names, self.leads)
 
     def known(self, run: Run) -> dict[str, float]:
         """What the campaign file says of this run's chair."""
@@ -614,8 +616,8 @@ class Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""
         other = self.with_noise_model(self.noise_model)
-        other.campaign, other.starts, other.paths = campaign, {r.name: other._prior(r) for r in campaign.runs}, {}
-        other.leads = True
+        other.campaign, other.leads, other.paths = campaign, True, {}
+        other.starts = {r.name: other._prior(r) for r in campaign.runs}
         return other
 
 
@@ -683,14 +685,16 @@ def block_length(run: Run) -> int:
     return max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
 
 
-def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START) -> dict[str, float]:
-    """Where a run is expected to start: as it is set, or else as its first samples and what is known say."""
+def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START, rolls: bool = False) -> dict[str, float]:
+    """Where a run is expected to start: as it is set, or else as its first samples and what is known say, and whether the chair
+    `rolls` by then."""
     first = {name: began(run.time, run.channels[c.name]) for name, c in TELLS.items() if c.name in run.channels}
     found = {name: known.get(name, 0.0) for name in TELLS} | {name: value for name, value in first.items() if value is not None}
     found = _of_the_cm(run, found, known)
     if run.u0 is not None:
         found["start.u"] = run.u0
-    found["start.v"] = known.get("start.v", known.get("chair.b", 0.0) * found["start.psi_dot"])  # the axle hardly slips
+    if rolls:
+        found["start.v"] = known.get("start.v", known.get("chair.b", 0.0) * found["start.psi_dot"])  # the axle hardly slips
     return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in names}
 
 
