@@ -14,6 +14,9 @@ from .test_import import GIVEN, imported, measured
 
 AT = {"lab-00": None, "lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}  # where the inertial sensor sits
 
+WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
+FORETOLD_WORSE = ("lab-01", "lab-02")  # 0.040 m/s where 0.029 can be reached, and 0.028 where 0.0134 can be
+
 
 @pytest.fixture(scope="module", params=AT)
 def found(request, tmp_path_factory):
@@ -33,6 +36,18 @@ def found(request, tmp_path_factory):
         text = text.replace("# at = [0.0, 0.0]", f"at = {AT[request.param]} #", 1)
     (out / "campaign.toml").write_text(text, encoding="utf-8")
     return request.param, diagnose(read(out))
+
+
+@pytest.mark.nightly
+def test_wheels_are_foretold_about_as_well_as_can_be(found, request):
+    lab, diagnosis = found
+    if lab in FORETOLD_WORSE:
+        why = "the rolling resistances of front and rear are exchanged"
+        request.node.add_marker(pytest.mark.xfail(strict=True, raises=AssertionError, reason=why))
+    floors = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[lab]["floor_of_the_held_out_runs"].values()
+    reached = max(floor["true_rider"]["hub_speed_rms"] for floor in floors)
+    told = diagnosis.ladder[-1].physical
+    assert max(told[f"wheel_speed_{side}"]["heldout_rms"] for side in "lr") < WITHIN * reached
 
 
 @pytest.mark.nightly

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..faults import Fault
+from .series import began
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,12 @@ class Run:
     baselines: tuple[Baseline, ...] = ()
     input_steps: Mapping[str, float] = field(default_factory=dict)
     devices: int = 1
+
+    @cached_property
+    def first(self) -> dict[str, float]:
+        """What each channel began with, by its first samples; those that have none are left out."""
+        found = {name: began(self.time, series) for name, series in self.channels.items()}
+        return {name: value for name, value in found.items() if value is not None}
 
 
 @dataclass(frozen=True, eq=False)

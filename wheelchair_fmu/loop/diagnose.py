@@ -105,11 +105,10 @@ class Round:
 
     @property
     def help(self) -> Candidate | None:
-        """The best candidate proven, however small, if slopes promised about as much, or runs that it was not fitted to confirm
-        it: a refit may owe its fall to a better calibration."""
+        """The best candidate proven, however small, if slopes promised about as much: a refit may owe its fall to a better
+        calibration."""
         promised = {s.effect: s.drop for s in self.scores}
-        confirmed = (c for c in self.candidates if promised[c.effect] > BESIDE * c.drop or (c.gain and c.gain[1] > 0))
-        return next((c for c in confirmed if c.proven), None)
+        return next((c for c in self.candidates if c.proven and promised[c.effect] > BESIDE * c.drop), None)
 
 
 class Search(Screen):
@@ -189,8 +188,8 @@ class Search(Screen):
     def _expected(self, s: Screened) -> dict[str, float]:
         """An effect's sizes as slopes have them, within bounds."""
         names = self.factory.parameters(s.score.effect)
-        sizes = (x if np.isfinite(x) else 0.0 for x in s.score.estimate)
-        return {n: float(np.clip(x, self.records[n].lower, self.records[n].upper)) for n, x in zip(names, sizes, strict=True)}
+        expected, *_ = sizes_to_try(s, [self.records[n] for n in names])
+        return dict(zip(names, map(float, expected), strict=True))
 
     def _sizes(
         self,

@@ -15,7 +15,6 @@ import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
-from ..campaign.series import began
 from ..engine.innovations import Disturbance, Noise, Whitener
 from ..engine.sensitivities import Linearised, Sensitivities
 from ..errors import SimulationError
@@ -688,8 +687,7 @@ def block_length(run: Run) -> int:
 def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START, rolls: bool = False) -> dict[str, float]:
     """Where a run is expected to start: as it is set, or else as its first samples and what is known say, and whether the chair
     `rolls` by then."""
-    first = {name: began(run.time, run.channels[c.name]) for name, c in TELLS.items() if c.name in run.channels}
-    found = {name: known.get(name, 0.0) for name in TELLS} | {name: value for name, value in first.items() if value is not None}
+    found = {name: run.first.get(channel.name, known.get(name, 0.0)) for name, channel in TELLS.items()}
     found = _of_the_cm(run, found, known)
     if run.u0 is not None:
         found["start.u"] = run.u0

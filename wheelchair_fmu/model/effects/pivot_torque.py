@@ -5,10 +5,10 @@ dusty floor, slides all over as soon as its wheel rolls: then a wheel that the c
 that goes round it is not.
 """
 
-from ...quantities import N_M, RAD_S, M, Parameter
+from ...quantities import N_M, M, Parameter
 from ..alike import TURNED_PATCHES
 from ..stage import Effect, adds
-from .turn_slip import resistance
+from .turn_slip import RATE, resistance
 
 TORQUE = Parameter(
     "M",
@@ -30,15 +30,6 @@ LENGTH = Parameter(
     upper=5.0,
     symbol="L_pivot",
     source="chosen: about half a patch's length",
-)
-RATE = Parameter(
-    "rate",
-    RAD_S,
-    "yaw rate within which the torque of a standing wheel builds up",
-    default=0.1,
-    lower=1e-5,
-    upper=1.0,
-    source="chosen",
 )
 
 
