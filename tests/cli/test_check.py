@@ -62,9 +62,3 @@ def test_the_old_spelling_of_output_still_works(tmp_path):
     check(campaign, "--plot", "--out", tmp_path / "old")
     assert (tmp_path / "old" / "preview.html").exists()
     assert "--out " not in check("--help").stdout
-
-
-def test_a_notebook_s_colours_bring_no_control_codes_into_a_pipe(tmp_path, monkeypatch):
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    told = CliRunner().invoke(app, ["compare", str(SAMPLE), "-o", str(tmp_path)])
-    assert told.exit_code == 0 and "\x1b" not in told.output

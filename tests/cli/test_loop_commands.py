@@ -141,3 +141,9 @@ def test_a_run_in_which_the_chair_stands_is_left_out(tmp_path):
     assert done.exit_code == 0 and done.stderr.count("says nothing and is left out") == 1
     told = json.loads(done.stdout)
     assert "straight-strokes" not in [r["run"] for r in told["runs"]] and len(told["runs"]) == 9
+
+
+def test_a_notebook_s_colours_bring_no_control_codes_into_a_pipe(tmp_path, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    told = run("compare", SAMPLE, "-o", str(tmp_path))
+    assert told.exit_code == 0 and "\x1b" not in told.output

@@ -38,9 +38,11 @@ class Terminal(Console):
 def console(*, stderr: bool = False) -> Console:
     """Made anew each time, so that it writes to where stdout or stderr point now."""
     file = sys.stderr if stderr else sys.stdout
-    shown = file.isatty()  # where FORCE_COLOR is set, as in notebooks, rich would draw its progress into a pipe again and again
-    plain: dict[str, Any] = {} if shown else {"width": PIPED, "force_terminal": False}
-    return Terminal(stderr=stderr, highlight=False, soft_wrap=True, markup=False, emoji=False, **plain)
+    # Where FORCE_COLOR is set, as in notebooks, rich would draw its progress into a pipe again and again.
+    width, force = (None, None) if file.isatty() else (PIPED, False)
+    return Terminal(
+        stderr=stderr, highlight=False, soft_wrap=True, markup=False, emoji=False, width=width, force_terminal=force
+    )
 
 
 def announce(text: object) -> None:

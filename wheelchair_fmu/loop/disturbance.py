@@ -24,7 +24,8 @@ LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 # times these, from where the search may start
 START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
 LASTING = (0.5, 1.0)  # s: what is forgotten sooner is a stroke or a sensor's noise, and what lasts longer an effect
-PRECISE = 1e-7  # share by which −2 log posterior may still fall
+PRECISE = 1e-7  # share by which −2 log posterior may still fall,
+NEARBY = 1e-3  # and share of a strength over which its slope is taken
 ROUNDS = 5  # in which a path and a strength are found, at most,
 CLOSE = 0.1  # of a strength, by which the last one may differ
 
@@ -68,7 +69,7 @@ def strength(evidence: Evidence, t_r: float) -> Strength:
         begun,
         method="L-BFGS-B",
         bounds=[*[(np.log(LEAST), np.log(MOST))] * 3, tuple(np.log(LASTING))],
-        options={"ftol": PRECISE, "eps": 1e-3},
+        options={"ftol": PRECISE, "eps": NEARBY},
     )
     *ratios, lasting = np.exp(found.x)
     force, moment, body = (float(r * usual) if r > 2 * LEAST else 0.0 for r, usual in zip(ratios, USUAL, strict=True))
