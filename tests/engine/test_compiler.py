@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from wheelchair_fmu.engine import cache, compiler
+from wheelchair_fmu.engine import cache, compiler, objects
 from wheelchair_fmu.errors import BuildError
+from wheelchair_fmu.model.wheelchair import Choice
 
 posix = pytest.mark.skipif(os.name == "nt", reason="a shell's script")
 
@@ -89,3 +90,34 @@ def test_a_compiler_for_another_machine_is_said(cc, tmp_path, monkeypatch):
             cache.helper("innovations")
     finally:
         compiler.version.cache_clear()
+
+
+def test_generated_code_is_compiled_once_whatever_it_is_derived_for(monkeypatch, tmp_path):
+    """The steps of a model are the same for who simulates and for who differentiates, and after a change of what made them."""
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "cache"))
+    compiled: list[str] = []
+    by_compiler = compiler.compile_object
+
+    def compile_object(source: Path, *rest) -> Path:
+        compiled.append(source.name)
+        return by_compiler(source, *rest)
+
+    monkeypatch.setattr(compiler, "compile_object", compile_object)
+    cache.library(Choice(), ())
+    assert sorted(compiled) == ["advance.c", "model.c"]
+    cache.library(Choice(), (), ["tyre.C_lambda"])
+    assert sorted(compiled[2:]) == ["rodas.c", "tangent.c", "tangent_model.c"]
+    cache.library(Choice(caster="swivelling"), ())
+    assert compiled[5:] == ["model.c"]
+    monkeypatch.setattr(cache, "sources", lambda: "changed, but not what is generated")
+    cache.library(Choice(), (), ["tyre.C_lambda"])
+    assert sorted(compiled[6:]) == ["rodas.c", "tangent.c"]
+
+
+def test_generated_code_depends_on_what_it_includes(monkeypatch, tmp_path):
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path / "cache"))
+    text = "int one;\n"
+    one, other = objects.compiled("equations", text, ("-O2",)), objects.compiled("equations", text, ("-O0",))
+    assert objects.compiled("equations", text, ("-O2",)) == one != other
+    monkeypatch.setattr(objects, "headers", lambda: "another header")
+    assert objects.compiled("equations", text, ("-O2",)) not in (one, other)

@@ -19,6 +19,7 @@ from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler
 from .kernel import at_rest, kernel, seldom_among
+from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import noisy, tangent
@@ -74,11 +75,8 @@ def _compile(
     if columns is not None:
         texts["tangent_model"] = tangent_source(tangent(model, columns, pushes), "tangent")
         by_hand = ["tangent", "rodas"]
-    place = target.parent
-    for name, text in texts.items():
-        (place / f"{name}.c").write_text(text)
     with side_by_side(os.cpu_count()) as pool:
-        objects = [pool.submit(_object, place / f"{name}.c", place / f"{name}.o", f"-DWC_PUSHES={pushes}") for name in texts]
+        objects = [pool.submit(compiled, name, text, _flags(name, pushes)) for name, text in texts.items()]
         objects += [pool.submit(_by_hand, name, pushes) for name in by_hand]
         compiler.compile_shared([o.result() for o in objects], target)
 
@@ -89,14 +87,15 @@ def _by_hand(name: str, pushes: int) -> Path:
     def make(path: Path) -> None:
         header = path.with_name("coefficients.h")
         header.write_text(coefficients())
-        _object(CSRC / f"{name}.c", path, "-include", str(header), f"-DWC_PUSHES={pushes}")
+        flags = ["-include", str(header), f"-I{CSRC}", *_flags(name, pushes)]
+        compiler.compile_object(CSRC / f"{name}.c", path, flags)
 
     return kept(_name(f"{name}-{pushes}", ".o"), ".o", make)
 
 
-def _object(source: Path, target: Path, *flags: str) -> Path:
-    """Compile one of the files of a library."""
-    return compiler.compile_object(source, target, ["-fvisibility=default", f"-I{CSRC}", LEVELS[source.stem], *flags])
+def _flags(name: str, pushes: int) -> list[str]:
+    """How one of the files of a library is compiled."""
+    return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}"]
 
 
 def _name(name: str, suffix: str) -> str:

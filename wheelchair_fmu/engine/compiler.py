@@ -46,12 +46,14 @@ def command() -> tuple[str, ...]:
 
 
 @cache
-def version() -> str:
-    """What $CC asks for, and what the compiler says of itself, for the cache's key."""
-    said = _run([*command(), "--version"], 60.0).strip()
+def version(cross: tuple[str, ...] | None = None) -> str:
+    """What is asked for, by $CC or as the compiler for another system, and what the compiler says of itself, for keys of what
+    is kept."""
+    asked = cross or command()
+    said = _run([*asked, "--version"], 60.0).strip()
     if not said:
-        raise BuildError(f"{shlex.join(command())} --version says nothing, so it is no C compiler; {CURE}")
-    return f"{os.environ.get('CC', '')} {said.splitlines()[0]}"
+        raise BuildError(f"{shlex.join(asked)} --version says nothing, so it is no C compiler; {CURE}")
+    return f"{shlex.join(cross) if cross else os.environ.get('CC', '')} {said.splitlines()[0]}"
 
 
 def compile_shared(
@@ -66,9 +68,9 @@ def compile_shared(
     return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, "-lm"])
 
 
-def compile_object(source: Path, target: Path, extra: Sequence[str] = ()) -> Path:
+def compile_object(source: Path, target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None) -> Path:
     """Compile one C file into an object that `compile_shared` takes. Raises BuildError with the compiler's own words."""
-    return _compiled([*command(), *FLAGS, "-c"], [source], target, extra)
+    return _compiled([*(cross or command()), *FLAGS, "-c"], [source], target, extra)
 
 
 def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:

@@ -25,7 +25,12 @@ def generate(face: Interface) -> dict[str, str]:
 
 def names(face: Interface) -> list[str]:
     """What `generate` makes."""
-    return [*(f"{law}.c" for law in face.models), "rules.c"]
+    return [*kernels(face), "rules.c"]
+
+
+def kernels(face: Interface) -> list[str]:
+    """Those with the equations of one law each, and its kernel."""
+    return [f"{law}.c" for law in face.models]
 
 
 def _hidden(text: str) -> str:
@@ -54,7 +59,7 @@ def _rules(m: Model) -> str:
 
 def tables(face: Interface, name: str, token: str) -> str:
     """model_data.c: `model`, from what the generated files before it define."""
-    kernels = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in face.choices)
+    laws = ", ".join(f"&{law}_kernel" if law in face.models else "0" for law in face.choices)
     chooser = face.by_name[face.chooser].index if face.chooser else -1
     return "\n".join(
         [
@@ -82,7 +87,7 @@ def tables(face: Interface, name: str, token: str) -> str:
                 "wc_state", "states", (f"{{{place}, {v.reference}, {_number(v.nominal)}}}" for place, v in face.states.items())
             ),
             *_array("int", "crossings", (str(v.index) for v in face.of("output") if v.type == "Boolean")),
-            f"static const wc_kernel *const kernels[] = {{{kernels}}};",
+            f"static const wc_kernel *const kernels[] = {{{laws}}};",
             "",
             "static const wc_model the_model = {",
             f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",

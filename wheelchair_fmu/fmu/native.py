@@ -1,22 +1,25 @@
 """The native flavour: generated C and fmu_src's own, compiled into one library that speaks both versions of FMI.
 
-All C files are parts of one, all.c, which is what is compiled here and by whoever builds from an archive's sources. So all
-functions but FMI's own are static, and several source FMUs can be linked into one program.
+In an archive's sources all C files are parts of one, all.c, for whoever builds from them. All functions but FMI's own are
+static there, and several source FMUs can be linked into one program.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
 
+from ..children import side_by_side
+from ..engine import compiler, objects
 from ..engine.source import CSRC
 from ..errors import BuildError
 from ..resources import FMU_SOURCES
 from . import data, describe, describe3, documentation, related
-from .platforms import Platform, chosen, compile_for
+from .platforms import Platform, chosen, for_oldest_libc
 from .variables import Interface
 
 PROTOCOLS = {"2": "fmi2.c", "3": "fmi3.c"}
@@ -25,17 +28,18 @@ HANDWRITTEN = (*PROTOCOLS.values(), *CORE[1:], "instance.h", "model.h")
 TABLES = "model_data.c"
 UNIT = "all.c"
 BUILD_DESCRIPTION = "buildDescription.xml"
-# Contracting a·b + c to one rounding would give other digits on other machines; each compiler is asked in its own way.
-BEGINNING = """/* The one file to compile: it includes all others, so that nothing but FMI's own functions is seen outside.
+WHOLE = """/* The one file to compile: it includes all others, so that nothing but FMI's own functions is seen outside.
  * Define FMI2_FUNCTION_PREFIX or FMI3_FUNCTION_PREFIX to link several FMUs into one program. */
-#if defined(__clang__)
+"""
+# Contracting a·b + c to one rounding would give other digits on other machines; each compiler is asked in its own way.
+BEGINNING = """#if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__)
 #pragma GCC optimize("fp-contract=off")
 #elif defined(_MSC_VER)
 #pragma fp_contract(off)
 #endif
-#define WC_LOCAL static
+#define WC_LOCAL {linkage}
 #define CASADI_SYMBOL_EXPORT static
 #if defined(__GNUC__) /* CasADi writes functions that nobody calls, with arguments that nobody reads */
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -74,9 +78,16 @@ def sources(face: Interface) -> tuple[dict[str, str], str]:
 
 def unit(face: Interface, versions: Iterable[str]) -> str:
     """all.c for these versions of FMI."""
-    generated = "".join(f'#include "{name}"\n#undef CASADI_PREFIX\n' for name in data.names(face))
+    return WHOLE + _included(data.names(face), versions)
+
+
+def _included(generated: Iterable[str], versions: Iterable[str], before: str = "") -> str:
+    """C that includes generated files, then all that is written by hand."""
+    equations = "".join(f'#include "{name}"\n#undef CASADI_PREFIX\n' for name in generated)
     others = (TABLES, *CORE, *(PROTOCOLS[version] for version in versions))
-    return BEGINNING + generated + BETWEEN + "".join(f'#include "{name}"\n' for name in others)
+    return (
+        BEGINNING.format(linkage="static") + before + equations + BETWEEN + "".join(f'#include "{name}"\n' for name in others)
+    )
 
 
 def headers() -> Path:
@@ -86,14 +97,28 @@ def headers() -> Path:
     return Path(fmpy.__file__).parent / "c-code"
 
 
-def compile_library(name: str, texts: dict[str, str], platform: Platform) -> bytes:
-    """The shared library `name` of C files, given by name and text, of which all.c includes the others."""
-    with TemporaryDirectory() as folder:
+def compile_library(face: Interface, texts: Mapping[str, str], platform: Platform) -> bytes:
+    """The shared library of C files, given by name and text, for both versions of FMI. The equations of each law are an object
+    of their own here, which FMUs that differ by start values share; `all.c` of an archive's sources has them in one."""
+    cross, kernels = platform.command(), data.kernels(face)
+    with TemporaryDirectory() as folder, side_by_side(os.cpu_count()) as pool:
+        jobs = [pool.submit(_equations, texts[name], platform) for name in kernels]
+        declared = '#include "advance.h"\n' + "".join(f"extern const wc_kernel {Path(name).stem}_kernel;\n" for name in kernels)
         for file, text in texts.items():
             (Path(folder) / file).write_text(text, encoding="utf-8")
-        target = Path(folder) / f"{name}{platform.suffix}"
-        compile_for(platform, [Path(folder) / UNIT], target, [f"-I{folder}", f"-I{headers()}"])
+        rest = Path(folder) / UNIT
+        others = [name for name in data.names(face) if name not in kernels]
+        rest.write_text(for_oldest_libc(platform, _included(others, PROTOCOLS, declared)), encoding="utf-8")
+        target = Path(folder) / f"{face.name}{platform.suffix}"
+        sources = [rest, *(job.result() for job in jobs)]
+        compiler.compile_shared(sources, target, [f"-I{folder}", f"-I{headers()}", *platform.link], cross)
         return target.read_bytes()
+
+
+def _equations(text: str, platform: Platform) -> Path:
+    """The object of one law's equations."""
+    whole = BEGINNING.format(linkage="") + text + BETWEEN
+    return objects.compiled("equations", for_oldest_libc(platform, whole), (), platform.command())
 
 
 def archive(face: Interface) -> dict[str, bytes]:
@@ -106,8 +131,7 @@ def archives(
 ) -> dict[str, dict[str, bytes]]:
     """Everything in the archive of each version of FMI, by path; `results` are what it should give, by file name."""
     texts, token = sources(face)
-    whole = {**texts, UNIT: unit(face, PROTOCOLS)}
-    libraries = {p: compile_library(face.name, whole, p) for p in platforms}
+    libraries = {p: compile_library(face, texts, p) for p in platforms}
     beside = related.files(face.variant, results) if results else {}
     made = {}
     for version in versions:

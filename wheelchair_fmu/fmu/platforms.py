@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
-from pathlib import Path
 
-from ..engine import compiler
 from ..errors import BuildError, unknown
 
 # -Bsymbolic: our calls reach our functions, whatever the importer has loaded before.
@@ -88,11 +85,6 @@ def chosen(words: str) -> list[Platform]:
     return list(found.values())
 
 
-def compile_for(p: Platform, sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
-    """Compile C files into the shared library `target` of a platform."""
-    flags = [*flags, *p.link]
-    if p.link == ELF and not p.target:
-        header = target.with_name("oldest_glibc.h")
-        header.write_text(OLDEST_GLIBC)
-        flags += ["-include", str(header)]
-    return compiler.compile_shared(sources, target, flags, p.command())
+def for_oldest_libc(p: Platform, text: str) -> str:
+    """C text that, compiled for a platform and linked, loads on systems as old as the platform's target says."""
+    return OLDEST_GLIBC + text if p.link == ELF and not p.target else text
