@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.independent.campaigns import ROOM_CHANNELS, make
+from tests.loop.conftest import among
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.verdict import diagnose
@@ -36,8 +37,9 @@ def test_a_point_that_is_given_is_where_the_marker_is_read(folder, tmp_path):
         assert after < 1.1 < 1.5 < before
 
 
-def test_a_point_that_nobody_gave_is_found(folder):
-    found = diagnose(read(folder))
+@among("marker_offset", "gyro_scale", "toe_misalignment", "wheel_radius_error")
+def test_a_point_that_nobody_gave_is_found(folder, chair):
+    found = diagnose(read(folder), chair)
     assert found.verdict == "missing" and found.effects == ("marker_offset",)
     assert found.final.values["effect.marker_offset.x"] == pytest.approx(-0.2, abs=0.01)
     assert found.final.values["effect.marker_offset.y"] == pytest.approx(0.05, abs=0.01)

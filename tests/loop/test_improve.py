@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from benchmarks.independent.campaigns import make
 from benchmarks.independent.hidden import usual
 from benchmarks.independent.manoeuvres import STRAIGHT, Run, coast
-from tests.loop.conftest import measured
+from tests.loop.conftest import among, measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
@@ -55,19 +55,20 @@ def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
     assert abs(toed.fit.values[toe]) < 3 * standard_errors(toed.fit)[toe]
 
 
-def test_the_proposed_runs_break_the_tie(tmp_path):
+@among("aerodynamic_drag", "rolling_resistance_speed", "longitudinal_slip", "wheel_inertia")
+def test_the_proposed_runs_break_the_tie(tmp_path, chair):
     """Two drags look alike at low speed; coast-downs from 2.5 m/s, made by another author's chair, decide. The mass is known
     exactly, as with noise four times as large an uncertain one leaves more than two in the tie."""
     hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 1.2)}
     noisy = {"noise_scale": 4.0, "seed": 7}
     tied = diagnose(
-        read(make(tmp_path / "one", hidden, manoeuvres="straight", **noisy)), experiments=experiments(), fixed=MEASURED
+        read(make(tmp_path / "one", hidden, manoeuvres="straight", **noisy)), chair, experiments=experiments(), fixed=MEASURED
     )
     assert tied.verdict == "tie" and tied.next_experiment is not None
     assert set(tied.effects) == {"aerodynamic_drag", "rolling_resistance_speed"} == set(tied.next_experiment["separates"])
     assert tied.next_experiment["manoeuvre"] == "a coast-down from 2.5 m/s"
     more = [replace(FAST, name=f"fast-{i}") for i in range(tied.next_experiment["repeats"])]
-    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, *more], **noisy)), fixed=MEASURED)
+    decided = diagnose(read(make(tmp_path / "two", hidden, manoeuvres=[*STRAIGHT, *more], **noisy)), chair, fixed=MEASURED)
     assert decided.verdict == "missing" and decided.ties == ()
     assert decided.rounds[0].candidates[0].effect == "aerodynamic_drag"
 
