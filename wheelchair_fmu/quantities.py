@@ -132,6 +132,12 @@ class Parameter(Quantity):
         if self.nominal is None:
             object.__setattr__(self, "nominal", abs(self.default) or self.smallest_interesting or 1.0)
 
+    @property
+    def delta(self) -> float:
+        """δ, of a parameter that has one: every parameter of an effect that is estimated."""
+        assert self.smallest_interesting is not None, self.name
+        return self.smallest_interesting
+
     def prior_sd(self, value: float) -> float:
         """Standard deviation of what is known of it where it was measured or looked up as `value`."""
         return self.known_to if self.known_to is not None else self.uncertainty * (abs(value) or 1.0)

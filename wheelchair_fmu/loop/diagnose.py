@@ -144,7 +144,7 @@ class Search(Screen):
         begun = [f for f in parallel_map(one_step, starts) if f]
         if not begun:
             return None
-        own, ended = w.parameters(effect), []
+        own, ended = w.parameters(effect), list[Fit]()
         for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
             signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
             if signs not in others:
@@ -231,7 +231,14 @@ class Search(Screen):
         return s.forced(visible) or visible_fall(likelihood, known, names, to) > NEARLY_ENOUGH * visible
 
     def judge(
-        self, base: Fit, base_held: Evidence, found: Fit, held: Evidence | None, effect: str, names: Sequence[str], tests: int
+        self,
+        base: Fit,
+        base_held: Evidence | None,
+        found: Fit,
+        held: Evidence | None,
+        effect: str,
+        names: Sequence[str],
+        tests: int,
     ) -> Candidate:
         """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
@@ -256,9 +263,9 @@ class Search(Screen):
             dispersion=dispersion,
             correlation=correlation,
             p=min(1.0, tests * p),
-            falls=found.evidence.rms < SAME * base.evidence.rms or (held is not None and held.rms < base_held.rms),
+            falls=found.evidence.rms < SAME * base.evidence.rms or bool(held and base_held and held.rms < base_held.rms),
             visible=base.evidence.fall_to(found.evidence),
-            gain=held_out_gain(base_held, held) if held is not None and held.runs else None,
+            gain=held_out_gain(base_held, held) if base_held and held and held.runs else None,
             heldout=held.summary() if held is not None else None,
             small=small,
             large=not small and size_seen(*in_deltas) >= (AS_LARGE if at_the_floor(base.evidence, base_held) else SURELY),

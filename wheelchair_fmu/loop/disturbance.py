@@ -43,8 +43,7 @@ class Strength:
 
     def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
         """Noise with forces of this strength, found for a chair of this mass (kg)."""
-        forces = {"force": self.force, "moment": self.moment, "body": self.body, "lasting": self.lasting}
-        return replace(noise_model, **forces, mass=mass)
+        return replace(noise_model, force=self.force, moment=self.moment, body=self.body, lasting=self.lasting, mass=mass)
 
 
 def strength(evidence: Evidence, t_r: float) -> Strength:
@@ -104,7 +103,7 @@ def _alike(one: Strength, other: Strength) -> bool:
 def disturbed(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> tuple[Whitener, np.ndarray]:
     """The filter of a run with forces as strong as `noise_model` has them, and where (nx,) it expects the true start, less the
     simulated one."""
-    filter_ = e.whitener.whitener
+    filter_ = e.filter.whitener
     filter_ = filter_.disturbed(disturbance(noise_model, len(filter_.noise.pushes), t_r))
     return filter_, e.offset[: filter_.size[0]]
 

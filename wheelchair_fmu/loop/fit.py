@@ -70,7 +70,7 @@ def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
         if name in likelihood.campaign.priors:
             return likelihood.campaign.priors[name]
         if name.startswith("effect."):
-            return GROUPED * likelihood.records[name].smallest_interesting if groups[name.rpartition(".")[0]] > 1 else np.inf
+            return GROUPED * likelihood.records[name].delta if groups[name.rpartition(".")[0]] > 1 else np.inf
         if name in likelihood.offsets:
             return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
         return likelihood.records[name].prior_sd(mean)

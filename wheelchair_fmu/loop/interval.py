@@ -78,15 +78,15 @@ def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], f
 
 def profile(
     likelihood: Likelihood, found: Fit, at: Sequence[int], corrections: int = CORRECTIONS
-) -> Callable[[Sequence[float]], float]:
+) -> Callable[[Sequence[float] | np.ndarray], float]:
     """The misfit (−2 log likelihood and prior) by some parameters of a fit, the others where these let them be; infinity where
     the model cannot be simulated. The others follow by slopes, which `corrections` - 1 further steps improve."""
     problem, S = Problem(likelihood, found.names), found.evidence.S
     chosen = np.isin(np.arange(len(found.names)), at)
     A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
-    inverse, where = np.linalg.pinv(A[np.ix_(~chosen, ~chosen)], hermitian=True), list(at)
+    inverse, where = np.linalg.pinv(A[np.ix_(~chosen, ~chosen)], hermitian=True), np.array(at)
 
-    def misfit(values: Sequence[float]) -> float:
+    def misfit(values: Sequence[float] | np.ndarray) -> float:
         theta, lowest = best.copy(), np.inf
         theta[where] = values
         theta[~chosen] -= inverse @ A[np.ix_(~chosen, where)] @ (np.asarray(values) - best[where])

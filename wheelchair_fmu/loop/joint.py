@@ -69,7 +69,7 @@ def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], grou
     every = (*effects, *new)
     likelihood, names = search.factory.likelihood(every), search.names(every)
     own = [n for e in group for n in search.factory.parameters(e)]
-    sizes = [[f * search.records[n].smallest_interesting for f in SIZES] for n in own]
+    sizes = [[f * search.records[n].delta for f in SIZES] for n in own]
     tries = list(product(*sizes))
     if len(tries) > TRIES:
         tries = [tries[i] for i in np.random.default_rng(0).choice(len(tries), TRIES, replace=False)]

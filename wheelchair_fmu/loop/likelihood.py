@@ -157,10 +157,15 @@ class RunEvidence:
         return float(np.nansum(self.r**2)) + self.whitener.logdet
 
     @property
+    def filter(self) -> Marginal:
+        """The filter, of evidence that still has it (see `summary`)."""
+        assert isinstance(self.whitener, Marginal)
+        return self.whitener
+
+    @property
     def forces(self) -> np.ndarray:
         """(4,) standard deviations of the forces that nobody recorded; see `disturbance`."""
-        assert isinstance(self.whitener, Marginal)
-        filter_ = self.whitener.whitener
+        filter_ = self.filter.whitener
         return filter_.arrays["input_sd"][0, filter_.recorded :]
 
     @property
@@ -201,7 +206,7 @@ class RunEvidence:
     def _innovations(self, predicted: np.ndarray) -> np.ndarray:
         if predicted is self.predicted and self.driven is None:
             return self.r
-        return self.whitener((self.measured - predicted)[:, :, None], self.offset)[:, :, 0]
+        return self.filter((self.measured - predicted)[:, :, None], self.offset)[:, :, 0]
 
     @cached_property
     def rms(self) -> dict[str, float]:
@@ -601,9 +606,9 @@ class Likelihood:
         step = np.array([run.input_steps.get(n, usual) for n in pushes])
         swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
         sd, ar = self.noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.noise_model.ar}
-        of_pushes = [(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]
-        readings = [(self.noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]
-        return Noise(*np.array(of_pushes).T, *np.array(readings).T, start, step)
+        push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
+        reading_sd, reading_ar = np.array([(self.noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]).T
+        return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
 
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
         """The same likelihood with other noise; starts found so far are kept."""

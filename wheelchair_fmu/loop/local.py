@@ -21,10 +21,14 @@ STROKE = 0.03  # s, either side: slopes of a recorded push are taken over this, 
 
 
 class Local(Protocol):
-    """One uncertain constant of a run. `sd` is its standard deviation in SI units."""
+    """One uncertain constant of a run."""
 
-    name: str
-    sd: float
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def sd(self) -> float:
+        """Its standard deviation in SI units."""
 
     def felt(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], size: float) -> dict[str, np.ndarray]:
         """Inputs (n,) by FMU name as the chair felt them, where the constant has this `size`."""

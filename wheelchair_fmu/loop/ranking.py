@@ -61,7 +61,9 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
         ),
     )
     rivals = _rivals(first.scores)
-    return [_row(d, scores[e], *candidates.get(e, (None, first)), rivals.get(e, [])) for e in order]
+    nobody: tuple[Candidate | None, Round] = (None, first)
+    seen = {e: candidates.get(e, nobody) for e in order}
+    return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, [])) for e in order]
 
 
 def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
@@ -126,9 +128,10 @@ def leftover_json(d: Diagnosis) -> dict[str, Any]:
     if d.leftover is None:
         return {"p": None, "where": None}
     refitted = (d.proposal,) if d.proposal else d.leftover.candidates
-    best = next(iter((*refitted, *d.leftover.scores)), None)
-    if best is None:
+    terms: list[Candidate | Score] = [*refitted, *d.leftover.scores]
+    if not terms:
         return {"p": 1.0, "where": None}
+    best = terms[0]
     p = best.p if refitted else min(1.0, best.p * len(d.leftover.scores))
     worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
     out = {"p": p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}

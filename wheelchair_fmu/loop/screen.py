@@ -180,7 +180,7 @@ class Screen(Models):
         records = [self.records[n] for n in self.factory.parameters(effect)]
         found = []
         for sign in (1.0,) if self.linear(effect) else (1.0, -1.0):
-            sizes = {r.name: sign * r.smallest_interesting for r in records if r.lower <= sign * r.smallest_interesting}
+            sizes = {r.name: sign * r.delta for r in records if r.lower <= sign * r.delta}
             try:
                 columns = [(known.r - likelihood.resimulated(known, {**values, n: size}).r) / size for n, size in sizes.items()]
             except SimulationError:

@@ -19,10 +19,11 @@ def begun(time: np.ndarray, push: np.ndarray) -> np.ndarray:
     width = max(1, round(SMOOTHED / max(step, 1e-3)))
     level = np.convolve(np.interp(grid, time, push), np.ones(width) / width, "same")
     strongest = float(np.quantile(level, 0.98))
-    starts, pushing = [], False
+    starts: list[float] = []
+    pushing = False
     for t, now in zip(grid, level, strict=True):
         if not pushing and now > BEGINS * strongest and (not starts or t - starts[-1] > SHORTEST):
-            starts.append(t)
+            starts.append(float(t))
             pushing = True
         elif pushing and now < ENDS * strongest:
             pushing = False

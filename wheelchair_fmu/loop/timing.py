@@ -162,6 +162,7 @@ def _left(likelihood: Likelihood, e: RunEvidence, values: Mapping[str, float], l
     """By how many seconds `later` than recorded the pushes are read, the share of the squared innovations that is left."""
     shifts = [float(t) for t in later]
     moved = [_moved(e, seconds) for seconds in shifts]
+    again: tuple[RunEvidence | None, ...]
     try:
         again = likelihood.resimulated(Evidence(tuple(moved), ()), values).runs  # all at once, on all cores
     except SimulationError:

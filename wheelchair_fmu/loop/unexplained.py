@@ -208,7 +208,8 @@ def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str
     """What may order a force in one run, (n,) by name."""
     at = {name: e.results[:, i] for i, name in enumerate(results)}
     gaps = np.diff(e.run.time, prepend=e.run.time[0])
-    push = sum((e.run.inputs.get(n, 0.0) for n in pushes_of(e.run) if n.startswith("push.")), np.zeros(len(e.run.time)))
+    by_hands = [e.run.inputs[n] for n in pushes_of(e.run) if n.startswith("push.") and n in e.run.inputs]
+    push = np.sum([np.zeros(len(e.run.time)), *by_hands], axis=0)
     turned = {side: np.cumsum(at[f"sensor.wheel_speed_{side}"] * gaps) / radius for side in ("l", "r")}
     return {
         CONSTANT: at["chair.u"],

@@ -383,7 +383,7 @@ def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> flo
     for effect, would in seen.items():
         cause = next((alike.what for alike in catalogue[effect].alike if alike.one_cause), effect)
         causes.setdefault(cause, []).append(would)
-    return float(np.mean([np.mean(forms) for forms in causes.values()] or [0.0]))
+    return float(np.mean([float(np.mean(forms)) for forms in causes.values()] or [0.0]))
 
 
 def _seen(search: Search, first: Round) -> dict[str, bool]:
