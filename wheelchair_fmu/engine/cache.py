@@ -7,7 +7,8 @@ import hashlib
 import linecache
 import os
 from collections.abc import Iterable, Sequence
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from ..errors import BuildError
 from ..model.expression import ExpressionLaw
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
-from . import compiler
+from . import compiler, shipped
 from .kernel import at_rest, kernel, seldom_among
 from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
@@ -29,6 +30,32 @@ PACKAGE = Path(__file__).parent.parent
 LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "-O3", "rodas": "-O3"}
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """What a model's library is asked for: laws, effects in order, parameters to differentiate by, and inputs that move."""
+
+    choice: Choice
+    effects: tuple[Effect, ...]
+    columns: tuple[str, ...] | None
+    moved: tuple[str, ...] | None
+
+    @classmethod
+    def of(
+        cls,
+        choice: Choice,
+        effects: Iterable[Effect],
+        columns: Iterable[str] | None = None,
+        moving: Iterable[str] | None = None,
+    ) -> Wanted:
+        moved = None if moving is None else tuple(seldom_among(moving))
+        return cls(choice, tuple(sorted(effects, key=lambda e: e.id)), None if columns is None else tuple(columns), moved)
+
+    @property
+    def words(self) -> str:
+        """The same for what is the same."""
+        return "\n".join((repr(self.choice), repr(self.columns), repr(self.moved), *map(effect_key, self.effects)))
+
+
 def library(
     choice: Choice, effects: Iterable[Effect], columns: Sequence[str] | None = None, moving: Iterable[str] | None = None
 ) -> ctypes.CDLL:
@@ -37,23 +64,32 @@ def library(
     With `columns`, parameters to differentiate by, also `wc_tangent tangent_tangent` and `tangent.h`'s. With
     `moving`, inputs, the chair is on a level floor with open brakes but for these, whatever the others say: half the work.
     """
-    effects = sorted(effects, key=lambda e: e.id)
-    moved = None if moving is None else seldom_among(moving)
-    words = "\n".join((_toolchain(), repr(choice), repr(columns), repr(moved), *map(effect_key, effects)))
-    key = hashlib.sha256(words.encode()).hexdigest()[:24]
-    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(choice, effects, columns, moved, path)))
+    wanted = Wanted.of(choice, effects, columns, moving)
+    if there := shipped.library(_independent(wanted.words)):
+        return there
+    key = hashlib.sha256(f"{_toolchain()}\n{wanted.words}".encode()).hexdigest()[:24]
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(wanted, path)))
 
 
 def helper(name: str) -> ctypes.CDLL:
     """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
-    flags = ["-fvisibility=default", "-O3"]
-    return _loaded(
-        kept(
-            _name(name, compiler.SUFFIX),
-            compiler.SUFFIX,
-            lambda path: compiler.compile_shared([CSRC / f"{name}.c"], path, flags),
-        )
-    )
+    if there := shipped.library(_independent(name)):
+        return there
+    return _loaded(kept(_name(name, compiler.SUFFIX), compiler.SUFFIX, lambda path: _compile_helper(name, path)))
+
+
+def ship(wanted: Wanted, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
+    """What `library` would load on another system, by the compiler for that, where an installed package looks for it."""
+    return shipped.put(_independent(wanted.words), system, suffix, partial(_compile, wanted, cross=cross))
+
+
+def ship_helper(name: str, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
+    """The same for what `helper` would load."""
+    return shipped.put(_independent(name), system, suffix, partial(_compile_helper, name, cross=cross))
+
+
+def _compile_helper(name: str, target: Path, cross: tuple[str, ...] | None = None) -> None:
+    compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3"], cross)
 
 
 def _loaded(path: Path) -> ctypes.CDLL:
@@ -65,32 +101,30 @@ def _loaded(path: Path) -> ctypes.CDLL:
         ) from error
 
 
-def _compile(
-    choice: Choice, effects: list[Effect], columns: Sequence[str] | None, moving: Sequence[str] | None, target: Path
-) -> None:
-    model, pushes = assemble(choice, effects), noisy(moving or ())
-    if moving is not None:
-        model = at_rest(model, moving)
+def _compile(wanted: Wanted, target: Path, cross: tuple[str, ...] | None = None) -> None:
+    model, pushes, columns = assemble(wanted.choice, wanted.effects), noisy(wanted.moved or ()), wanted.columns
+    if wanted.moved is not None:
+        model = at_rest(model, wanted.moved)
     texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
     if columns is not None:
         texts["tangent_model"] = tangent_source(tangent(model, columns, pushes), "tangent")
         by_hand = ["tangent", "rodas"]
     with side_by_side(os.cpu_count()) as pool:
-        objects = [pool.submit(compiled, name, text, _flags(name, pushes)) for name, text in texts.items()]
-        objects += [pool.submit(_by_hand, name, pushes) for name in by_hand]
-        compiler.compile_shared([o.result() for o in objects], target)
+        objects = [pool.submit(compiled, name, text, _flags(name, pushes), cross) for name, text in texts.items()]
+        objects += [pool.submit(_by_hand, name, pushes, cross) for name in by_hand]
+        compiler.compile_shared([o.result() for o in objects], target, (), cross)
 
 
-def _by_hand(name: str, pushes: int) -> Path:
+def _by_hand(name: str, pushes: int, cross: tuple[str, ...] | None) -> Path:
     """A file of `csrc` that all models with so many noisy inputs share, compiled once."""
 
     def make(path: Path) -> None:
         header = path.with_name("coefficients.h")
         header.write_text(coefficients())
         flags = ["-include", str(header), f"-I{CSRC}", *_flags(name, pushes)]
-        compiler.compile_object(CSRC / f"{name}.c", path, flags)
+        compiler.compile_object(CSRC / f"{name}.c", path, flags, cross)
 
-    return kept(_name(f"{name}-{pushes}", ".o"), ".o", make)
+    return kept(_name(f"{name}-{pushes}", ".o", cross), ".o", make)
 
 
 def _flags(name: str, pushes: int) -> list[str]:
@@ -98,23 +132,33 @@ def _flags(name: str, pushes: int) -> list[str]:
     return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}"]
 
 
-def _name(name: str, suffix: str) -> str:
+def _name(name: str, suffix: str, cross: tuple[str, ...] | None = None) -> str:
     """What a file of `csrc`, compiled, is called."""
-    return f"{name}-{hashlib.sha256(f'{_toolchain()} {suffix}'.encode()).hexdigest()[:24]}"
+    return f"{name}-{hashlib.sha256(f'{_toolchain(cross)} {suffix}'.encode()).hexdigest()[:24]}"
 
 
-def _toolchain() -> str:
+def _toolchain(cross: tuple[str, ...] | None = None) -> str:
     """What every native kernel depends on: `sources` and the compiler."""
-    return f"{sources()} {compiler.version()} {compiler.FLAGS}"
+    return f"{sources()} {compiler.version(cross)} {compiler.FLAGS}"
+
+
+def _independent(words: str) -> str:
+    """The key of what was compiled elsewhere from the same equations, whatever derived and compiled it there."""
+    return hashlib.sha256(f"{equations()}\n{words}".encode()).hexdigest()[:24]
+
+
+def sources() -> str:
+    """What all generated code depends on: `equations` and CasADi."""
+    return f"{equations()} {version('casadi')}"
 
 
 @cache
-def sources() -> str:
-    """What all generated code depends on: this package's equations, a user's own, and CasADi."""
+def equations() -> str:
+    """This package's equations, and a user's own."""
     files = sorted([*(PACKAGE / "model").rglob("*.py"), *(PACKAGE / "engine").rglob("*.[pch]*"), PACKAGE / "quantities.py"])
     files = [f for f in files if "__pycache__" not in f.parts]
     texts = hashlib.sha256(b"".join(f.read_bytes() for f in files)).hexdigest()
-    return f"{texts} {digest(*OF_MODELS)} {version('casadi')}"
+    return f"{texts} {digest(*OF_MODELS)}"
 
 
 def effect_key(effect: Effect) -> str:

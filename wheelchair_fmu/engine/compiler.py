@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import platform
 import shlex
 import shutil
 import signal
@@ -21,6 +22,8 @@ from ..errors import BuildError
 FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all")
 LONGEST = 900.0  # seconds: ziglang compiles its C library at first, which takes slow machines minutes
 CURE = "set CC to one, or unset it"
+MACHINE = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
+SYSTEM = f"{MACHINE}-{ {'win32': 'windows'}.get(sys.platform, sys.platform) }"  # as FMI 3.0 calls it
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 

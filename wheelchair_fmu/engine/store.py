@@ -44,9 +44,9 @@ def folder() -> Path:
     return _instead_of(place, why) if why else place
 
 
-def found(name: str, suffix: str) -> Path | None:
-    """The file of this name, if it is there and as it was made."""
-    for path in sorted(folder().glob(f"{name}-*{suffix}")):
+def found(name: str, suffix: str, place: Path | None = None) -> Path | None:
+    """The file of this name in `folder()`, or another place, if it is there and as it was made."""
+    for path in sorted((place or folder()).glob(f"{name}-*{suffix}")):
         if _is_sound(name, path, suffix):
             return path
         log.warning("%s was damaged; it is made again", path)
@@ -64,7 +64,7 @@ def kept(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
         with making() as work:
             beside = work / f"{name}{suffix}"
             make(beside)
-            target = work.parent / _name(name, beside, suffix)
+            target = work.parent / named(name, beside, suffix)
             for other in work.parent.glob(f"{name}-*{suffix}"):
                 if not _is_sound(name, other, suffix):  # what another process has just made is
                     other.unlink(missing_ok=True)
@@ -94,7 +94,7 @@ def making() -> Iterator[Path]:
 
 def _is_sound(name: str, path: Path, suffix: str) -> bool:
     try:
-        if path not in _sound and _name(name, path, suffix) != path.name:
+        if path not in _sound and named(name, path, suffix) != path.name:
             return False
     except FileNotFoundError:  # another process has just removed it for that
         return False
@@ -102,7 +102,8 @@ def _is_sound(name: str, path: Path, suffix: str) -> bool:
     return True
 
 
-def _name(name: str, content: Path, suffix: str) -> str:
+def named(name: str, content: Path, suffix: str) -> str:
+    """What a file of this content is called."""
     with content.open("rb") as file:
         return f"{name}-{hashlib.file_digest(file, 'sha256').hexdigest()[:DIGITS]}{suffix}"
 

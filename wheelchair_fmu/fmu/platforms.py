@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import platform
 import sys
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
+from ..engine import compiler
 from ..errors import BuildError, unknown
 
 # -Bsymbolic: our calls reach our functions, whatever the importer has loaded before.
@@ -60,13 +60,7 @@ PLATFORMS = {
 }
 
 
-def _host() -> str:
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
-    system = {"win32": "windows"}.get(sys.platform, sys.platform)
-    return f"{machine}-{system}"
-
-
-HOST = _host()
+HOST = compiler.SYSTEM
 
 
 def chosen(words: str) -> list[Platform]:
