@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from .diagnose import VISIBLE, Candidate, Round, Search
 from .fit import Fit
-from .joint import together
+from .joint import parted, together
 from .preflight import begin, first_steps
 from .screen import AT_THE_FLOOR
 from .staircase import Step
@@ -81,7 +81,7 @@ class StepwiseSelection:
         self.beside = {}
         for effect in self.effects[len(self.already) :]:
             self.beside[effect] = r = self._beside(effect)
-            if r and (ahead := overtaker(r, effect, self.base)):
+            if r and (ahead := overtaker(r, effect)):
                 self.search.say(f"starting again with {ahead.effect} in the place of {effect}")
                 self.rounds.append(r)
                 self.effects = (*r.effects, ahead.effect)
@@ -94,25 +94,42 @@ class StepwiseSelection:
         """The round that found an effect beside all others of the model, or else a search again."""
         latest = max(i for i, r in enumerate(self.rounds) if any(c.effect == effect for c in r.candidates))
         before = self.rounds[latest]
-        if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
+        whole = not before.contested and {*before.effects, effect} == set(self.effects)
+        if whole and before.winner and before.winner.effect == effect:
             return before
         self.search.say(f"searching for {effect} again, beside all others")
-        known = before if latest >= self._noise_known_since else None
+        known = before if latest >= self._noise_known_since and not before.contested else None
         return beside(self.search, effect, self.effects, self.base, self.held, known)
 
     def _found(self) -> Candidate | None:
-        """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""
+        """What a round of search finds: one effect, or a group; failing that, several of one law; failing that, one that only
+        helps."""
         self.search.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
         visible = VISIBLE if self.rounds else 0.0  # the first round may find what is small
         now = self.search.round(self.effects, self.base, self.held, visible=visible)
         self.rounds.append(now)
         best = now.winner
+        if best is not None and best in now.groups:
+            best = self._parted(now, best)
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
             best = self._together(now)
         if best is None and self.ladder[-1].fit > AT_THE_FLOOR and now.help:
             best = now.help
             self.helping.add(best.effect)
         return best
+
+    def _parted(self, now: Round, group: Candidate) -> Candidate:
+        """The last effect of a group that a round found; the others are steps by then."""
+        rounds = parted(self.search, now, group)
+        self.rounds += rounds
+        self.helping |= {c.effect for r in rounds for c in r.candidates if c.small}
+        steps = rounds[-1].effects[len(now.effects) :]
+        for i, effect in enumerate(steps, len(now.effects) + 1):
+            fewer, fit = rounds[-1].effects[:i], rounds[-1].fit
+            fit = fit if fewer == rounds[-1].effects else self.search.refit(fewer, fit.values)
+            held = self.search.heldout(self.search.factory.likelihood(fewer), fit.values)
+            self.ladder.append(Step.of(f"+{effect}", fit.evidence, held))
+        return rounds[-1].candidates[0]
 
     def _together(self, now: Round) -> Candidate | None:
         """The last of several effects of one law that explain something only together; the others are steps by then."""
