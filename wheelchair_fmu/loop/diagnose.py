@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
+from .factory import TOGETHER
 from .fit import Fit
 from .likelihood import Evidence, Likelihood
 from .marginal import Support, support_of
@@ -44,9 +45,9 @@ GRID = (1.0, 2.0, 4.0)  # of δ as well
 
 @dataclass(frozen=True)
 class Candidate:
-    """One effect added to the model at hand and refitted."""
+    """One effect, or a group of them, added to the model at hand and refitted."""
 
-    effect: str
+    effect: str  # or the group's name
     fit: Fit
     drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
     estimate: np.ndarray
@@ -66,6 +67,11 @@ class Candidate:
     lawful: bool
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The effects that it is of."""
+        return tuple(self.effect.split(TOGETHER))
 
     @property
     def scale(self) -> float:

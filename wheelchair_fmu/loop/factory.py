@@ -24,6 +24,7 @@ CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", 
 
 
 SCALE = "rider.scale"
+TOGETHER = "+"  # between the names of effects in that of their group
 
 
 def _of_the_body(campaign: Campaign) -> tuple[str, ...]:
@@ -134,4 +135,4 @@ class ModelFactory:
 def groups_of(catalogue: Mapping[str, Effect]) -> dict[str, tuple[str, ...]]:
     """By name, effects that may show only together, as records say: each with those through which it acts, these first."""
     groups = ((*(other for other in record.through if other in catalogue), e) for e, record in catalogue.items())
-    return {"+".join(group): group for group in groups if len(group) > 1}
+    return {TOGETHER.join(group): group for group in groups if len(group) > 1}

@@ -139,7 +139,7 @@ class Models:
         return self._without[key]
 
     def linear(self, effect: str) -> bool:
-        """Does the slope at zero tell what the effect does at the size it has? Never of a group: together its members do more."""
+        """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
         if effect in self.factory.groups:
             return False
         record = self.factory.catalogue[effect]

@@ -12,7 +12,7 @@ from math import exp, log
 
 import numpy as np
 
-from .diagnose import Round
+from .diagnose import Round, ranked
 from .marginal import Support, squared, support
 from .score import Score
 from .statistics import RESAMPLES, cosines, difference_blocks, resampled_totals
@@ -43,8 +43,9 @@ def beliefs(found: Mapping[str, Round], last: Round, one_sided: Mapping[str, np.
 
 
 def _rivals(r: Round, effect: str, found: Container[str]) -> Round:
-    """A round without the candidates that were found beside an effect."""
-    return replace(r, candidates=tuple(c for c in r.candidates if c.effect == effect or c.effect not in found))
+    """A round with its groups among the candidates, and without those that were found beside an effect."""
+    others = (c for c in (*r.candidates, *r.groups) if c.effect == effect or not any(e in found for e in c.members))
+    return replace(r, candidates=tuple(ranked(others)))
 
 
 def _either(chances: Iterable[float]) -> float:
