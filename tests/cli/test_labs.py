@@ -15,10 +15,6 @@ from .test_import import GIVEN, imported, measured
 AT = {"lab-00": None, "lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}  # where the inertial sensor sits
 
 WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
-FORETOLD_WORSE = {
-    "lab-01": "0.040 m/s where 0.029 can be reached: nobody has found out why",
-    "lab-02": "0.028 m/s where 0.0134 can be reached: in part for casters with friction and a trail, which show only together",
-}
 
 
 @pytest.fixture(scope="module", params=AT)
@@ -42,10 +38,8 @@ def found(request, tmp_path_factory):
 
 
 @pytest.mark.nightly
-def test_wheels_are_foretold_about_as_well_as_can_be(found, request):
+def test_wheels_are_foretold_about_as_well_as_can_be(found):
     lab, diagnosis = found
-    if lab in FORETOLD_WORSE:
-        request.node.add_marker(pytest.mark.xfail(strict=True, raises=AssertionError, reason=FORETOLD_WORSE[lab]))
     floors = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[lab]["floor_of_the_held_out_runs"].values()
     reached = max(floor["true_rider"]["hub_speed_rms"] for floor in floors)
     told = diagnosis.ladder[-1].physical

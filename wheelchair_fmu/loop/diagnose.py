@@ -201,11 +201,14 @@ class Search(Screen):
         """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
         in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
         change, both signs of δ, and larger ones."""
-        if s.score.drop < (least if s.linear else least / BEYOND):
+        group = s.score.effect in self.factory.groups
+        if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
             return []
         names = [*base.names, *self.factory.parameters(s.score.effect)]
-        if self.factory.leads:  # where forces make up for what is missing, slopes say about how much that is
-            return [({**base.values, **self._expected(s)}, None)]
+        if self.factory.leads:  # where forces make up for what is missing, slopes say about how much that is,
+            of_interest = dict(zip(s.score.names, map(float, s.delta), strict=True))
+            sizes = [self._expected(s), *([of_interest] if group else [])]  # but where a member seems to be nothing
+            return [({**base.values, **size}, None) for size in sizes]
         at_prior_mean = self.at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *at_prior_mean)]
         if s.linear and len(calibrations) == 1:
