@@ -308,9 +308,16 @@ class Search(Screen):
 
     def small(self, found: Fit, effect: str) -> bool:
         """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
+        return _small(*seen_directions(*self._in_deltas(found, effect)))
+
+    def size(self, found: Fit, effect: str) -> float:
+        """How large an effect is in such a fit, in δ; see `size_seen`."""
+        return size_seen(*self._in_deltas(found, effect))
+
+    def _in_deltas(self, found: Fit, effect: str) -> tuple[np.ndarray, np.ndarray]:
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
-        return _small(*seen_directions(estimate / delta, covariance / np.outer(delta, delta)))
+        return estimate / delta, covariance / np.outer(delta, delta)
 
     def round(
         self,

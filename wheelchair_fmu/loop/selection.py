@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from .diagnose import VISIBLE, Candidate, Round, Search
+from .diagnose import SURELY, VISIBLE, Candidate, Round, Search
 from .fit import Fit
 from .joint import parted, together
 from .preflight import begin, first_steps
@@ -23,7 +23,8 @@ class StepwiseSelection:
     """A model on its way up: its `effects`, the fit `base` with all of them, the `held`-out evidence, the staircase `ladder`
     that led there, the `rounds` of search, and for an effect that was found the one that judges it `beside` all others.
 
-    `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named.
+    `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named,
+    and `parts` as members of a group.
     `stepped` is told the staircase whenever it has changed.
     """
 
@@ -33,6 +34,7 @@ class StepwiseSelection:
         self.rounds: list[Round] = []
         self.beside: dict[str, Round | None] = {}
         self.helping: set[str] = set()
+        self.parts: set[str] = set()
         self._tried_together = False
         self._noise_known_since = 0  # rounds that were searched with other noise than is known now
         self.base, self.held, self.ladder = begin(search, search.say)
@@ -67,6 +69,15 @@ class StepwiseSelection:
         self._step()
         self._prune()
         return True
+
+    def named(self) -> tuple[str, ...]:
+        """The effects that were found, without those that only help: what is surely small, and of groups those members that
+        are not as large as an effect is that is named, unless none is."""
+        found = [e for e in self.effects if e not in self.already]
+        small = {e for e in self.helping.intersection(found) if self.search.small(self.base, e)}
+        parts = [e for e in found if e in self.parts]
+        large = {e for e in parts if self.search.size(self.base, e) >= SURELY}
+        return tuple(e for e in found if e not in small and (e not in parts or e in large or not large))
 
     def _prune(self) -> None:
         """The model without what its last effect makes needless."""
@@ -109,7 +120,7 @@ class StepwiseSelection:
         now = self.search.round(self.effects, self.base, self.held, visible=visible)
         self.rounds.append(now)
         best = now.winner
-        if best is not None and best in now.groups:
+        if best is not None and len(best.members) > 1:
             best = self._parted(now, best)
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
             best = self._together(now)
@@ -122,7 +133,7 @@ class StepwiseSelection:
         """The last effect of a group that a round found; the others are steps by then."""
         rounds = parted(self.search, now, group)
         self.rounds += rounds
-        self.helping |= {c.effect for r in rounds for c in r.candidates if c.small}
+        self.parts |= {c.effect for r in rounds for c in r.candidates}
         steps = rounds[-1].effects[len(now.effects) :]
         for i, effect in enumerate(steps, len(now.effects) + 1):
             fewer, fit = rounds[-1].effects[:i], rounds[-1].fit

@@ -210,8 +210,7 @@ def _searched(
         included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
         stepped(tuple(ladder))
     beside = {e: r for e, r in selection.beside.items() if r} if proposal is None else {}
-    helping = {e for e in selection.helping.intersection(included) if search.small(base, e)}
-    effects = tuple(e for e in included if e not in selection.already and e not in helping)
+    effects = tuple(e for e in selection.named() if e in included)
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties = tuple(group for group, _ in groups)
     values = calibration(search.factory.likelihood(included), proposal.fit if proposal else base)
