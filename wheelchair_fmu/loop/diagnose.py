@@ -131,7 +131,7 @@ class Round:
     @property
     def winner(self) -> Candidate | None:
         """The best candidate found, or group of them, unless one that is not large explains the data better by far."""
-        every = ranked((*self.candidates, *self.groups)) if self.groups else self.candidates
+        every = sorted((*self.candidates, *self.groups), key=lambda c: -c.support.large) if self.groups else self.candidates
         best = next((c for c in every if c.found), None)
         if best is None:
             return None
@@ -346,9 +346,9 @@ class Search(Screen):
             if c.fit.misfit < leader:
                 leader = c.fit.misfit
                 hope = max(least, _hope(base.misfit - leader, s.score.drop))
-        groups = tuple(c for c in candidates if c.effect in self.factory.groups)
-        alone = ranked(c for c in candidates if c.effect not in self.factory.groups)
-        return Round(effects, base, base_held, tuple(s.score for s in screened), tuple(alone), groups=groups)
+        best = ranked(candidates)
+        alone, groups = (tuple(c for c in best if (len(c.members) > 1) == several) for several in (False, True))
+        return Round(effects, base, base_held, tuple(s.score for s in screened), alone, groups=groups)
 
 
 def _hope(fall: float, promised: float) -> float:
