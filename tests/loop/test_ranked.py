@@ -11,6 +11,7 @@ from wheelchair_fmu.loop.diagnose import Candidate, Round, ranked
 from wheelchair_fmu.loop.fit import Fit
 from wheelchair_fmu.loop.likelihood import Evidence
 from wheelchair_fmu.loop.marginal import LARGE
+from wheelchair_fmu.loop.probability import _rivals, instead
 
 NONE = Fit((), {}, np.zeros((0, 0)), Evidence((), ()), 0.0, np.zeros(0))
 
@@ -89,3 +90,15 @@ def test_a_group_may_be_what_a_round_finds():
     assert r.winner.effect == "a+b"
     assert replace(r, groups=(replace(joined, drop=42.0),)).winner.effect == "a"
     assert replace(r, groups=(replace(joined, large=False, small=True),), candidates=()).winner is None
+
+
+def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
+    certain = 0.01 * np.eye(2)
+    lone = candidate("c", 30.0, np.array([0.5]), certain[:1, :1])
+    joined, other = (candidate(e, 36.0, np.array([0.4, 0.4]), certain) for e in ("a+b", "d"))
+    r = Round((), NONE, Evidence((), ()), (None,) * 12, (lone,), groups=(joined,))  # scores only count here
+    by = instead(_rivals(r, "c", {"c"}))
+    assert 0.02 < by["a+b"].there < by["c"].there
+    as_one = instead(replace(r, candidates=(lone, other), groups=()))
+    assert by["a+b"].there == pytest.approx(as_one["d"].there) and by["c"].there == pytest.approx(as_one["c"].there)
+    assert set(instead(_rivals(r, "c", {"c", "b"}))) == {"c"}, "a member was found beside it"

@@ -32,7 +32,7 @@ class Belief:
 def beliefs(found: Mapping[str, Round], last: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
     """Of every effect that was scored. What was `found`, by effect, stands against its rivals in the round that decides on it;
     others may be there beside all that was found, by the `last` round, or in the place of what they rival."""
-    rounds = {effect: instead(_rivals(r, effect, found), one_sided) for effect, r in found.items()}
+    rounds = {effect: instead(_rivals(r, effect, found)) for effect, r in found.items()}
     besides = beside(last, one_sided)
     out = {}
     for effect in dict.fromkeys([*found, *besides, *(e for by in rounds.values() for e in by)]):
@@ -53,7 +53,7 @@ def _either(chances: Iterable[float]) -> float:
     return 1 - float(np.prod([1 - c for c in chances]))
 
 
-def instead(r: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
+def instead(r: Round) -> dict[str, Belief]:
     """Of the refitted effects of a round, of which one is what its model lacks, or none: the mean of the posterior over
     measurements resampled by blocks of time. Where no model is exact, odds between two of them owe more to chance than
     their likelihoods say (Huggins and Miller 2023)."""
@@ -68,9 +68,9 @@ def instead(r: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
     return {s.effect: Belief(w, s.beyond * w) for s, w in zip(supports, map(float, shares), strict=True)}
 
 
-def shared(group: Sequence[str], r: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, float]:
+def shared(group: Sequence[str], r: Round) -> dict[str, float]:
     """Of effects of which one is missing, and that a round cannot tell apart, the probability that it is each."""
-    found = instead(replace(r, candidates=tuple(c for c in r.candidates if c.effect in group)), one_sided)
+    found = instead(replace(r, candidates=tuple(c for c in r.candidates if c.effect in group)))
     whole = sum(b.there for b in found.values())
     return {e: found[e].there / whole for e in group}
 

@@ -94,7 +94,7 @@ class Diagnosis:
     @property
     def odds(self) -> tuple[dict[str, float], ...]:
         """Of each group of effects that are tied, the probability that it is each of them."""
-        return tuple(shared(group, self._decided(group[0]), self._one_sided) for group in self.ties)
+        return tuple(shared(group, self._decided(group[0])) for group in self.ties)
 
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
