@@ -93,9 +93,9 @@ def test_a_group_may_be_what_a_round_finds():
 
 
 def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
-    certain = 0.01 * np.eye(2)
-    lone = candidate("c", 30.0, np.array([0.5]), certain[:1, :1])
-    joined, other = (candidate(e, 36.0, np.array([0.4, 0.4]), certain) for e in ("a+b", "d"))
+    certain = 0.16 * np.eye(2)
+    lone = candidate("c", 36.0, np.array([2.4]), certain[:1, :1])
+    joined, other = (candidate(e, 40.5, np.array([1.8, 1.8]), certain) for e in ("a+b", "d"))
     r = Round((), NONE, Evidence((), ()), (None,) * 12, (lone,), groups=(joined,))  # scores only count here
     by = instead(_rivals(r, "c", {"c"}))
     assert 0.02 < by["a+b"].there < by["c"].there
