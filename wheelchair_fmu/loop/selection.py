@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from ..errors import SimulationError
 from .diagnose import SURELY, VISIBLE, Candidate, Round, Search
 from .fit import Fit
 from .joint import parted, together
@@ -121,7 +122,7 @@ class StepwiseSelection:
         self.rounds.append(now)
         best = now.winner
         if best is not None and len(best.members) > 1:
-            best = self._parted(now, best)
+            best = self._parted(now, best) or replace(now, groups=()).winner
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
             best = self._together(now)
         if best is None and self.ladder[-1].fit > AT_THE_FLOOR and now.help:
@@ -129,9 +130,13 @@ class StepwiseSelection:
             self.helping.add(best.effect)
         return best
 
-    def _parted(self, now: Round, group: Candidate) -> Candidate:
-        """The last effect of a group that a round found; the others are steps by then."""
-        rounds = parted(self.search, now, group)
+    def _parted(self, now: Round, group: Candidate) -> Candidate | None:
+        """The last effect of a group that a round found; the others are steps by then. None where the model cannot run with a
+        part of the group: nobody can say what is needed of it."""
+        try:
+            rounds = parted(self.search, now, group)
+        except SimulationError:
+            return None
         self.rounds += rounds
         self.parts |= {c.effect for r in rounds for c in r.candidates}
         steps = rounds[-1].effects[len(now.effects) :]

@@ -53,11 +53,11 @@ def beside(
         return None
     base = replace(base, evidence=w.likelihood(others).restarted(base.evidence, base.values))
     without, without_held = search.rival_of(effect, others, base, base_held)
-    fall = without.misfit - search.compared(final, effect, without).misfit
+    as_known = search.compared(final, effect, without)
+    fall = without.misfit - as_known.misfit
     if before and _stands(effect, effects, fall, before):
         return None
     screened = search.screen(base, others)
-    as_known = search.compared(final, effect, without)
     own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
     promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
     tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
