@@ -104,6 +104,7 @@ LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
         (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
         (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
         (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
+        (replace(an(lambda q: q), through="caster_trail"), "record", "through is 'caster_trail'", "with the comma"),
         (an(lambda q, nonsense: q * nonsense), "equations", "reads 'nonsense', which is no quantity", "effects quantities"),
         (an(lambda q, u: -q * u, to="F_z"), "equations", "'F_z'", "did you mean"),
         (an(lambda q, u: -q * u if u > 0 else 0), "equations", "RuntimeError: Cannot compute the truth value", "without if"),

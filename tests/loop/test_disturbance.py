@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import moving
+from wheelchair_fmu.campaign.windows import between
 from wheelchair_fmu.loop.disturbance import acting, strength
 from wheelchair_fmu.loop.fit import fit
 from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel, disturbance
@@ -106,3 +107,30 @@ def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks
     assert 3.0 < found.force < 7.0 and found.moment == pytest.approx(0.5, rel=0.1)
     assert float(np.sqrt(np.mean(evidence.r**2))) == pytest.approx(1, abs=0.03)
     assert strength(likelihood.evidence(campaign.fit, wrong, ()), T_R).force > 100, "or nobody would need the way it went"
+
+
+def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_body(sample):
+    """The body has momentum then, which the chair gets back; without that, all that follows would be off by as much."""
+    rng, swings, momenta = np.random.default_rng(9), 6.0, {}
+
+    def pushes(run, without):
+        momenta[run.name] = swinging(rng, run.time, swings)
+        return -np.gradient(momenta[run.name], run.time), 0 * run.time
+
+    campaign = ridden(sample, rng, pushes)
+    begun = []
+    for run in campaign.fit[:4]:
+        early = run.time < run.time[0] + 2.0
+        at = run.time[np.argmax(np.where(early, np.abs(momenta[run.name]), 0.0))]
+        begun.append(between(run, float(at), float(run.time[-1])))
+    cut = replace(campaign, runs=tuple(begun))
+    noise = replace(NoiseModel(cut.noise), body=swings)
+    likelihood = Likelihood(cut, Variant(), noise).led(cut)
+    with_it, without = [], []
+    for e in likelihood.evidence(cut.fit, {}, ()).runs:
+        wheels = [i for i, c in enumerate(e.channels) if c.startswith("wheel_speed")]
+        with_it.append(e.measured[:, wheels] - e.predicted[:, wheels])
+        without.append(e.measured[:, wheels] - likelihood.readings(e.run, {}, e.start)[2][:, wheels])
+    left, naive = (float(np.sqrt(np.mean(np.concatenate(errors) ** 2))) for errors in (with_it, without))
+    swing = swings / likelihood.chair({})["chair.m"]
+    assert left < 1.15 * np.hypot(swing, cut.noise["wheel_speed_l"]) and naive > 1.5 * left

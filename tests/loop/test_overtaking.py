@@ -13,13 +13,7 @@ from wheelchair_fmu.loop.likelihood import Evidence
 from wheelchair_fmu.loop.selection import StepwiseSelection
 from wheelchair_fmu.loop.ties import beside, overtaker, tied
 
-MARGIN = 9.2
 WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
-
-
-@pytest.fixture(autouse=True)
-def a_margin(monkeypatch):
-    monkeypatch.setattr(ties, "margin", lambda evidence: MARGIN)
 
 
 def fit(misfit):
@@ -27,7 +21,8 @@ def fit(misfit):
 
 
 def one(effect, misfit):
-    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=None)
+    support = Some(fitted=-misfit / 2, large=-misfit / 2)
+    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=None, support=support, scale=1.0)
 
 
 @pytest.mark.parametrize(
@@ -41,7 +36,8 @@ def one(effect, misfit):
     ],
 )
 def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again, expected):
-    assert overtaker(Some(winner=ahead, again=again), "gain", fit(0.0)) is (ahead if expected else None)
+    r = Some(winner=ahead, again=again, candidates=[one("gain", 0.0)])
+    assert overtaker(r, "gain") is (ahead if expected else None)
 
 
 class Known:
@@ -63,6 +59,9 @@ class Known:
 
     def heldout(self, likelihood, values):
         return Evidence((), ())
+
+    def compared(self, found, effect, base):
+        return found
 
     def rival_of(self, effect, effects, base, held):
         return base, held
@@ -86,6 +85,7 @@ def before(*others, alone=0.0, small=False):
 @pytest.fixture
 def search(monkeypatch):
     monkeypatch.setattr(ties, "shortlist", lambda screened, most, alike: screened)
+    monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.drop))
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from wheelchair_fmu.loop.probability import LARGE, SLIGHT, support
+from wheelchair_fmu.loop.marginal import LARGE, SLIGHT, support
 
 FREE, POSITIVE = np.array([False]), np.array([True])
 

@@ -32,6 +32,9 @@ def _types(effect: Effect) -> list[tuple[str, str]]:
             found.append((f"{role} is {_short(members)}", f"write {role}=({kind.__name__}(...),) with the comma"))
     if not isinstance(effect.needs, dict) or not all(law in LAWS.get(kind, ()) for kind, law in effect.needs.items()):
         found.append((f"needs is {effect.needs!r}", 'write for example needs={"caster": "swivelling"}'))
+    others = effect.through if isinstance(effect.through, tuple | list) else (effect.id,)
+    if not all(isinstance(id, str) and id != effect.id for id in others):
+        found.append((f"through is {effect.through!r}", 'write for example through=("caster_trail",), with the comma'))
     if found:
         return found
     found += [fault for p in (*effect.parameters, *effect.constants) for fault in _of_parameter(p)]

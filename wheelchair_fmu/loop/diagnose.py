@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ..errors import SimulationError
 from ..quantities import Parameter
 from .chance import chance_beyond
+from .factory import TOGETHER
 from .fit import Fit
 from .likelihood import Evidence, Likelihood
+from .marginal import Support, support_of
 from .parallel import parallel_map
 from .score import RUNS, Score
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
@@ -42,15 +45,16 @@ GRID = (1.0, 2.0, 4.0)  # of δ as well
 
 @dataclass(frozen=True)
 class Candidate:
-    """One effect added to the model at hand and refitted."""
+    """One effect, or a group of them, added to the model at hand and refitted."""
 
-    effect: str
+    effect: str  # or the group's name
     fit: Fit
     drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
     estimate: np.ndarray
     covariance: np.ndarray  # (k, k) of the estimate
     between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
     delta: np.ndarray
+    one_sided: np.ndarray  # (k,) which of its parameters may only be positive
     dispersion: float  # mean square innovation
     correlation: float  # samples per independent one
     p: float
@@ -62,6 +66,24 @@ class Candidate:
     large: bool  # enough, by its estimate, to be named
     lawful: bool
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
+    beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The effects that it is of."""
+        return tuple(self.effect.split(TOGETHER))
+
+    @property
+    def scale(self) -> float:
+        """−2 log likelihood that counts as one, with residuals as large and as correlated as the likeliest model leaves."""
+        dispersion, correlation = self.beside or (self.dispersion, self.correlation)
+        return dispersion * correlation
+
+    @cached_property
+    def support(self) -> Support:
+        """What bears it out, beside the model without it, and however many parameters it has."""
+        fall, ahead = max(self.drop, 0.0) * self.dispersion / self.scale, self.gain[0] / self.scale if self.gain else 0.0
+        return support_of(self.effect, self.estimate, (self.covariance, self.between), self.delta, self.one_sided, fall, ahead)
 
     @property
     def se(self) -> np.ndarray:
@@ -81,10 +103,21 @@ class Candidate:
         return self.proven and self.large
 
 
+def ranked(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Candidates of one model, best first: by marginal likelihood, with residuals as the likeliest leaves them."""
+    found = list(candidates)
+    likeliest = max(found, key=lambda c: c.drop * c.dispersion, default=None)
+    if likeliest is None:
+        return []
+    beside = likeliest.dispersion, likeliest.correlation
+    return sorted((replace(c, beside=beside) for c in found), key=lambda c: -c.support.large)
+
+
 @dataclass(frozen=True)
 class Round:
-    """One round of search: the model it started from, all scores, and the refitted candidates, best first. `again`: it is
-    for what an earlier round found, beside all that was found later."""
+    """One round of search: the model it started from, all scores, and the refitted candidates, best first; `groups` are those
+    of several effects together. `again`: it is for what an earlier round found, beside all that was found later. `contested`:
+    it judges one effect of a group that others came near to, and nobody asked whether they do so in the place of this one."""
 
     effects: tuple[str, ...]
     fit: Fit
@@ -92,11 +125,14 @@ class Round:
     scores: tuple[Score, ...]
     candidates: tuple[Candidate, ...]
     again: bool = False
+    groups: tuple[Candidate, ...] = ()
+    contested: bool = False
 
     @property
     def winner(self) -> Candidate | None:
-        """The best candidate found, unless one that is not large explains the data better by far."""
-        best = next((c for c in self.candidates if c.found), None)
+        """The best candidate found, or group of them, unless one that is not large explains the data better by far."""
+        every = sorted((*self.candidates, *self.groups), key=lambda c: -c.support.large) if self.groups else self.candidates
+        best = next((c for c in every if c.found), None)
         if best is None:
             return None
         far = best.drop + decisive(best.fit.evidence)
@@ -150,9 +186,7 @@ class Search(Screen):
             if signs not in others:
                 ended.append(self.refit((*effects, effect), ahead.values, ahead.evidence, rival=rival))
                 rival = min(rival, ended[-1].misfit)
-        found = min(ended, key=lambda f: f.misfit)
-        if w.leads:
-            found = replace(found, misfit=base.misfit - self.weight(found, effect))
+        found = self.compared(min(ended, key=lambda f: f.misfit), effect, base)
         found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
         held = (
             likelihood.restarted(likelihood.evidence(w.campaign.holdout, found.values), found.values)
@@ -167,11 +201,14 @@ class Search(Screen):
         """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
         in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
         change, both signs of δ, and larger ones."""
-        if s.score.drop < (least if s.linear else least / BEYOND):
+        group = s.score.effect in self.factory.groups
+        if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
             return []
         names = [*base.names, *self.factory.parameters(s.score.effect)]
-        if self.factory.leads:  # where forces make up for what is missing, slopes say about how much that is
-            return [({**base.values, **self._expected(s)}, None)]
+        if self.factory.leads:  # where forces make up for what is missing, slopes say about how much that is,
+            of_interest = dict(zip(s.score.names, map(float, s.delta), strict=True))
+            sizes = [self._expected(s), *([of_interest] if group else [])]  # but where a member seems to be nothing
+            return [({**base.values, **size}, None) for size in sizes]
         at_prior_mean = self.at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
         calibrations = [[values[n] for n in base.names] for values in (base.values, *at_prior_mean)]
         if s.linear and len(calibrations) == 1:
@@ -203,7 +240,9 @@ class Search(Screen):
     ) -> list[tuple[float, ...]]:
         """The most promising calibrations and sizes of an effect together, by `names`."""
         records = [self.records[n] for n in self.factory.parameters(s.score.effect)]
-        record, known, calibrated = self.factory.catalogue[s.score.effect], s.evidence.only(base.names), len(base.names)
+        known, calibrated = s.evidence.only(base.names), len(base.names)
+        members = [self.factory.catalogue[member] for member in self.factory.members(s.score.effect)]
+        states, laws = (any(getattr(record, what) for record in members) for what in ("rows", "needs"))
         tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
         many = len(records) > 1 and not s.linear
         wanted = 1 if s.linear else DIRECTIONS if many else STARTS
@@ -213,14 +252,14 @@ class Search(Screen):
         if s.linear:
             hopeful = (o for o in best if o.misfit <= without - HALFWAY * least)
             return [o.theta for o in hopeful if self._shows(likelihood, known, names, s, o, visible)]
-        if not (record.needs or record.rows):  # with another law or more states runs may go another way altogether
+        if not (states or laws):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:
             most = min(most, without - HALFWAY * (without - best[0].misfit))
         found = [o.theta for o in best if o.misfit <= most and self._shows(likelihood, known, names, s, o, visible)]
         as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
         negligible = s.negligible and as_expected
-        if record.rows and s.nonlinear_candidate and (visible == 0 if negligible else found and not as_expected):
+        if states and s.nonlinear_candidate and (visible == 0 if negligible else found and not as_expected):
             # the error may fall only close to the truth
             return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
         return [] if negligible else found
@@ -260,6 +299,7 @@ class Search(Screen):
             covariance=covariance,
             between=_between(found, names, covariance),
             delta=delta,
+            one_sided=one_sided,
             dispersion=dispersion,
             correlation=correlation,
             p=min(1.0, tests * p),
@@ -275,9 +315,16 @@ class Search(Screen):
 
     def small(self, found: Fit, effect: str) -> bool:
         """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
+        return _small(*seen_directions(*self._in_deltas(found, effect)))
+
+    def size(self, found: Fit, effect: str) -> float:
+        """How large an effect is in such a fit, in δ; see `size_seen`."""
+        return size_seen(*self._in_deltas(found, effect))
+
+    def _in_deltas(self, found: Fit, effect: str) -> tuple[np.ndarray, np.ndarray]:
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
-        return _small(*seen_directions(estimate / delta, covariance / np.outer(delta, delta)))
+        return estimate / delta, covariance / np.outer(delta, delta)
 
     def round(
         self,
@@ -293,20 +340,22 @@ class Search(Screen):
     ) -> Round:
         """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, or −2 log likelihood by
         `least`, as far as slopes tell, is not refitted; what looks like the leader, by a cosine above `twin`, is, however many
-        there are. `rival` is the misfit of another model to be compared with."""
-        screened = self.screen(base, effects, among)
+        there are; and groups of effects, where the whole catalogue is asked. `rival` is the misfit of another model to be
+        compared with."""
+        screened, joined = self.screen_groups(base, effects) if among is None else (self.screen(base, effects, among), [])
         candidates: list[Candidate] = []
-        leader, hope = math.inf, least
-        for s in shortlist([s for s in screened if not s.linear or s.shows(visible)], most, twin):
-            c = self.candidate(base, base_held, effects, s, len(screened), min(leader, rival), hope, visible)
+        leader, hope, tests = math.inf, least, len(screened) + len(joined)
+        for s in (*shortlist([s for s in screened if not s.linear or s.shows(visible)], most, twin), *joined):
+            c = self.candidate(base, base_held, effects, s, tests, min(leader, rival), hope, visible)
             if c is None:
                 continue
             candidates.append(c)
             if c.fit.misfit < leader:
                 leader = c.fit.misfit
                 hope = max(least, _hope(base.misfit - leader, s.score.drop))
-        candidates.sort(key=lambda c: -c.drop)
-        return Round(effects, base, base_held, tuple(s.score for s in screened), tuple(candidates))
+        best = ranked(candidates)
+        alone, groups = (tuple(c for c in best if (len(c.members) > 1) == several) for several in (False, True))
+        return Round(effects, base, base_held, tuple(s.score for s in screened), alone, groups=groups)
 
 
 def _hope(fall: float, promised: float) -> float:

@@ -24,6 +24,7 @@ CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", 
 
 
 SCALE = "rider.scale"
+TOGETHER = "+"  # between the names of effects in that of their group
 
 
 def _of_the_body(campaign: Campaign) -> tuple[str, ...]:
@@ -45,6 +46,7 @@ class ModelFactory:
         self.campaign = campaign
         self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
         self.catalogue: dict[str, Effect] = dict(variant.catalogue)
+        self.groups = groups_of(self.catalogue)
         self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
         self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
         self.light = [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
@@ -66,17 +68,25 @@ class ModelFactory:
 
     def likelihood(self, effects: Iterable[str] = ()) -> Likelihood:
         """The likelihood on which these effects may be on."""
-        wanted = {*effects, *self.variant.effects}
+        wanted = self._members(effects)
         heavy = wanted.difference(self.light)
         return self._likelihood(wanted if heavy and heavy == wanted else {*self.light, *heavy})
 
     def wide(self, effects: Iterable[str] = ()) -> Likelihood:
         """The likelihood on which these effects, and all light ones, may be on."""
-        return self._likelihood({*self.light, *effects, *self.variant.effects})
+        return self._likelihood({*self.light, *self._members(effects)})
 
     def rerun(self, effects: Iterable[str] = ()) -> Likelihood:
         """A likelihood on which these effects may be on, and that only runs evidence again: it is compiled in half the time."""
-        return self._likelihood({*effects, *self.variant.effects}, derives=False)
+        return self._likelihood(self._members(effects), derives=False)
+
+    def _members(self, effects: Iterable[str]) -> set[str]:
+        """These effects, the members of those that are groups, and the variant's own."""
+        return {member for e in (*effects, *self.variant.effects) for member in self.members(e)}
+
+    def members(self, effect: str) -> tuple[str, ...]:
+        """The effects of a group, or the one effect that this is."""
+        return self.groups.get(effect, (effect,))
 
     def _likelihood(self, effects: set[str], derives: bool = True) -> Likelihood:
         key = frozenset(effects), derives
@@ -117,5 +127,12 @@ class ModelFactory:
         return other
 
     def parameters(self, effect: str) -> tuple[str, ...]:
-        """Full names of an effect's parameters that a fit estimates."""
-        return tuple(p.name for p in self.catalogue[effect].owned if p.estimated and p.name not in self.fixed)
+        """Full names of the parameters of an effect, or of a group of them, that a fit estimates."""
+        owned = (p for member in self.members(effect) for p in self.catalogue[member].owned)
+        return tuple(p.name for p in owned if p.estimated and p.name not in self.fixed)
+
+
+def groups_of(catalogue: Mapping[str, Effect]) -> dict[str, tuple[str, ...]]:
+    """By name, effects that may show only together, as records say: each with those through which it acts, these first."""
+    groups = ((*(other for other in record.through if other in catalogue), e) for e, record in catalogue.items())
+    return {TOGETHER.join(group): group for group in groups if len(group) > 1}

@@ -1,8 +1,8 @@
-"""Effects that ask for one law, put in together.
+"""Effects that are put in together: a group that was found as one, and those that ask for one law.
 
 Where a law has several effects of its own, one alone may leave the model as far off as none: simulations go another way
-altogether until all are about right. So where much is left and no single effect is found, their sizes are tried together, and
-stay if they explain most of it.
+altogether until all are about right. So where much is left and nothing is found, their sizes are tried together, and stay if
+they explain most of it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from ..errors import SimulationError
-from .diagnose import Round, Search
+from .diagnose import HALFWAY, Candidate, Round, Search
 from .fit import Fit
 from .score import Score
 from .starts import most_promising
@@ -47,6 +47,26 @@ def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequen
             except SimulationError:
                 continue  # with some of these and not the others the model cannot run: nobody can say which are needed
     return []
+
+
+def parted(search: Search, now: Round, group: Candidate) -> list[Round]:
+    """Rounds that judge each effect of a group that a round found, beside the rest of the group, the most needed last. What the
+    others make needless is left out, so that a group of which one does all comes to that one."""
+    w, known = search.factory, now.effects
+    whole = search.refit((*known, *w.members(group.effect)), group.fit.values)
+    order = sorted(w.members(group.effect), key=lambda e: search.weight(whole, e))
+    every, found = search.pruned((*known, *order), whole, known)
+    near = (c for c in now.candidates if c.lawful and c.drop >= HALFWAY * group.drop)
+    contested = bool({c.effect for c in near}.difference(every))
+    found = replace(found, evidence=w.likelihood(every).restarted(found.evidence, found.values))
+    held, rounds = search.heldout(w.likelihood(every), found.values), []
+    for effect in every[len(known) :]:
+        others = tuple(e for e in every if e != effect)
+        without = search.refit(others, found.values) if others != known else now.fit
+        before, names = search.heldout(w.likelihood(others), without.values), w.parameters(effect)
+        judged = search.judge(without, before, search.compared(found, effect, without), held, effect, names, len(now.scores))
+        rounds.append(Round(others, without, before, now.scores, (judged,), contested=contested))
+    return rounds
 
 
 def explains(base: Fit, found: Fit) -> bool:

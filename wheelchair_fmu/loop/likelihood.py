@@ -43,6 +43,7 @@ FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as lo
 # s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
 SWUNG = (0.1, 0.2)
 MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
+SWINGS = [2, 3]  # and are the two by which a body swings
 MOST_STEPS = 12  # steps that lead a run along the forces which nobody recorded, at most,
 FARTHEST, ARRIVED = 3.0, 0.03  # standard deviations of a force: slopes hold over the former, the latter leads nowhere else
 
@@ -523,8 +524,17 @@ class Likelihood:
         of_run = run, channels, r[:, :, 0], S, start_S, start
         if path is None:
             return RunEvidence(*of_run, simulated.results, driven, measured, whitener, offset)
-        alone = self._simulated(run, values, start)
+        alone = self._simulated(run, values, self._without_swing(start, path, given, values, len(pushes)))
         return RunEvidence(*of_run, *alone, measured, whitener, offset, path, added, driven)
+
+    def _without_swing(
+        self, start: Mapping[str, float], path: np.ndarray, given: np.ndarray, values: Mapping[str, float], pushes: int
+    ) -> dict[str, float]:
+        """The start of a run on which no body swings. A run that begins in the middle of a stroke begins at a speed that the
+        body's momentum takes off, and gives back before the stroke is over: without, it begins at the speed of both."""
+        as_push = self._unknown(pushes, given, values).as_push
+        momentum = as_push[:2, SWINGS].sum(axis=0) @ (np.array(SWUNG) * path[0, SWINGS])
+        return {**start, "start.u": start["start.u"] + float(momentum) / self.chair(values)[MASS]}
 
     def _as_before(
         self, filter_: Whitener, given: np.ndarray, values: Mapping[str, float], path: np.ndarray, by: tuple[str, ...]

@@ -139,9 +139,16 @@ class Models:
         return self._without[key]
 
     def linear(self, effect: str) -> bool:
-        """Does the slope at zero tell what the effect does at the size it has?"""
+        """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
+        if effect in self.factory.groups:
+            return False
         record = self.factory.catalogue[effect]
         return not (record.even or record.rows or record.needs)
+
+    def compared(self, found: Fit, effect: str, base: Fit) -> Fit:
+        """A fit as it compares with one that lacks an effect of it. Where forces lead the runs, how likely these are is no
+        measure: there the misfit is less by as much as the effect's estimate is from zero."""
+        return replace(found, misfit=base.misfit - self.weight(found, effect)) if self.factory.leads else found
 
     def deltas(self, names: Sequence[str]) -> np.ndarray:
         """Smallest interesting sizes (k,)."""

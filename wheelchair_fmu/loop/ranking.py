@@ -25,6 +25,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ties": [list(t) for t in d.ties],
         "odds": list(d.odds),
         "ranking": ranking(d),
+        "groups": groups(d),
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
@@ -57,13 +58,31 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
         key=lambda e: (
             e not in d.effects,
             e not in candidates,
-            -(candidates[e][0].drop if e in candidates else scores[e].drop),
+            -(candidates[e][0].support.large if e in candidates else scores[e].drop),
         ),
     )
     rivals = _rivals(first.scores)
     nobody: tuple[Candidate | None, Round] = (None, first)
     seen = {e: candidates.get(e, nobody) for e in order}
     return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, [])) for e in order]
+
+
+def groups(d: Diagnosis) -> list[dict[str, Any]]:
+    """Effects that were refitted together, as they may show only so: `beside` which others, their parameters by full name, and
+    the p and fall of −2 log likelihood of all of them."""
+    return [
+        {
+            "effects": list(c.members),
+            "beside": list(r.effects),
+            "parameters": {n: {"estimate": float(v), "se": finite(e)} for n, v, e in zip(names, c.estimate, c.se, strict=True)},
+            "p": c.p,
+            "lr": c.drop,
+            "found": c.found,
+        }
+        for r in d.rounds
+        for c in r.groups
+        if (names := d.search.factory.parameters(c.effect))
+    ]
 
 
 def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:

@@ -70,6 +70,20 @@ class Screen(Models):
     def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
         """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or
         may mislead."""
+        return self._screen(base, effects, among)[0]
+
+    def screen_groups(self, base: Fit, effects: Sequence[str]) -> tuple[list[Screened], list[Screened]]:
+        """The same, and score tests of effects that may show only together: of groups none of which is in the model, where they
+        promise more than one of them does alone."""
+        w = self.factory
+        screened, here = self._screen(base, effects)
+        alone = {s.score.effect: s.score.drop for s in screened}
+        groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
+        joined = self._by_secants(w.rerun((*effects, *groups)), base, here, groups) if groups else []
+        more = (s for s in joined if s.score.drop > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
+        return screened, sorted(more, key=lambda s: -s.score.drop)
+
+    def _screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> tuple[list[Screened], Evidence]:
         w = self.factory
         free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
         found, here = self._by_slopes(effects, base, [e for e in free if e in w.light])
@@ -77,7 +91,7 @@ class Screen(Models):
             more = [e for e in free if e in group]
             if more:
                 found += self._by_secants(w.rerun((*effects, *more)), base, here, more)
-        return sorted(found, key=lambda s: -s.score.drop)
+        return sorted(found, key=lambda s: -s.score.drop), here
 
     def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
         """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
@@ -176,18 +190,38 @@ class Screen(Models):
 
     def _secants(self, likelihood: Likelihood, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
         """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
-        (N, k) per unit, each. `known` is the evidence at `values`, where it is off."""
+        (N, k) per unit, each. `known` is the evidence at `values`, where it is off. Of a group each member is tried beside
+        those before it, by which it acts."""
         records = [self.records[n] for n in self.factory.parameters(effect)]
         found = []
         for sign in (1.0,) if self.linear(effect) else (1.0, -1.0):
             sizes = {r.name: sign * r.delta for r in records if r.lower <= sign * r.delta}
             try:
-                columns = [(known.r - likelihood.resimulated(known, {**values, n: size}).r) / size for n, size in sizes.items()]
+                columns = self._one_by_one(likelihood, known, values, sizes, self.factory.members(effect))
             except SimulationError:
                 continue
             if len(columns) == len(records):
                 found.append(np.stack(columns, axis=1))
         return found
+
+    def _one_by_one(
+        self,
+        likelihood: Likelihood,
+        known: Evidence,
+        values: Mapping[str, float],
+        sizes: Mapping[str, float],
+        members: Sequence[str],
+    ) -> list[np.ndarray]:
+        """What each parameter does (N,) per unit at its size, beside the members before its own at theirs."""
+        columns: list[np.ndarray] = []
+        before, r = dict(values), known.r
+        for i, member in enumerate(members):
+            own = {n: sizes[n] for n in self.factory.parameters(member) if n in sizes}
+            columns += [(r - likelihood.resimulated(known, {**before, n: size}).r) / size for n, size in own.items()]
+            before |= own
+            if i < len(members) - 1:
+                r = likelihood.resimulated(known, before).r
+        return columns
 
 
 def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:

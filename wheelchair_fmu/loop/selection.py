@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from .diagnose import VISIBLE, Candidate, Round, Search
+from ..errors import SimulationError
+from .diagnose import SURELY, VISIBLE, Candidate, Round, Search
 from .fit import Fit
-from .joint import together
+from .joint import parted, together
 from .preflight import begin, first_steps
 from .screen import AT_THE_FLOOR
 from .staircase import Step
@@ -23,7 +24,8 @@ class StepwiseSelection:
     """A model on its way up: its `effects`, the fit `base` with all of them, the `held`-out evidence, the staircase `ladder`
     that led there, the `rounds` of search, and for an effect that was found the one that judges it `beside` all others.
 
-    `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named.
+    `already` are the effects that the variant came with; of others `helping` are in though they may be too small to be named,
+    and `parts` as members of a group.
     `stepped` is told the staircase whenever it has changed.
     """
 
@@ -33,6 +35,7 @@ class StepwiseSelection:
         self.rounds: list[Round] = []
         self.beside: dict[str, Round | None] = {}
         self.helping: set[str] = set()
+        self.parts: set[str] = set()
         self._tried_together = False
         self._noise_known_since = 0  # rounds that were searched with other noise than is known now
         self.base, self.held, self.ladder = begin(search, search.say)
@@ -68,6 +71,15 @@ class StepwiseSelection:
         self._prune()
         return True
 
+    def named(self) -> tuple[str, ...]:
+        """The effects that were found, without those that only help: what is surely small, and of groups those members that
+        are not as large as an effect is that is named, unless none is."""
+        found = [e for e in self.effects if e not in self.already]
+        small = {e for e in self.helping.intersection(found) if self.search.small(self.base, e)}
+        parts = [e for e in found if e in self.parts]
+        large = {e for e in parts if self.search.size(self.base, e) >= SURELY}
+        return tuple(e for e in found if e not in small and (e not in parts or e in large or not large))
+
     def _prune(self) -> None:
         """The model without what its last effect makes needless."""
         needed, fewer = self.search.pruned(self.effects, self.base, self.already)
@@ -81,7 +93,7 @@ class StepwiseSelection:
         self.beside = {}
         for effect in self.effects[len(self.already) :]:
             self.beside[effect] = r = self._beside(effect)
-            if r and (ahead := overtaker(r, effect, self.base)):
+            if r and (ahead := overtaker(r, effect)):
                 self.search.say(f"starting again with {ahead.effect} in the place of {effect}")
                 self.rounds.append(r)
                 self.effects = (*r.effects, ahead.effect)
@@ -94,25 +106,46 @@ class StepwiseSelection:
         """The round that found an effect beside all others of the model, or else a search again."""
         latest = max(i for i, r in enumerate(self.rounds) if any(c.effect == effect for c in r.candidates))
         before = self.rounds[latest]
-        if before.winner and before.winner.effect == effect and {*before.effects, effect} == set(self.effects):
+        whole = not before.contested and {*before.effects, effect} == set(self.effects)
+        if whole and before.winner and before.winner.effect == effect:
             return before
         self.search.say(f"searching for {effect} again, beside all others")
-        known = before if latest >= self._noise_known_since else None
+        known = before if latest >= self._noise_known_since and not before.contested else None
         return beside(self.search, effect, self.effects, self.base, self.held, known)
 
     def _found(self) -> Candidate | None:
-        """What a round of search finds: one effect; failing that, several of one law; failing that, one that only helps."""
+        """What a round of search finds: one effect, or a group; failing that, several of one law; failing that, one that only
+        helps."""
         self.search.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
         visible = VISIBLE if self.rounds else 0.0  # the first round may find what is small
         now = self.search.round(self.effects, self.base, self.held, visible=visible)
         self.rounds.append(now)
         best = now.winner
+        if best is not None and len(best.members) > 1:
+            best = self._parted(now, best) or replace(now, groups=()).winner
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
             best = self._together(now)
         if best is None and self.ladder[-1].fit > AT_THE_FLOOR and now.help:
             best = now.help
             self.helping.add(best.effect)
         return best
+
+    def _parted(self, now: Round, group: Candidate) -> Candidate | None:
+        """The last effect of a group that a round found; the others are steps by then. None where the model cannot run with a
+        part of the group: nobody can say what is needed of it."""
+        try:
+            rounds = parted(self.search, now, group)
+        except SimulationError:
+            return None
+        self.rounds += rounds
+        self.parts |= {c.effect for r in rounds for c in r.candidates}
+        steps = rounds[-1].effects[len(now.effects) :]
+        for i, effect in enumerate(steps, len(now.effects) + 1):
+            fewer, fit = rounds[-1].effects[:i], rounds[-1].fit
+            fit = fit if fewer == rounds[-1].effects else self.search.refit(fewer, fit.values)
+            held = self.search.heldout(self.search.factory.likelihood(fewer), fit.values)
+            self.ladder.append(Step.of(f"+{effect}", fit.evidence, held))
+        return rounds[-1].candidates[0]
 
     def _together(self, now: Round) -> Candidate | None:
         """The last of several effects of one law that explain something only together; the others are steps by then."""

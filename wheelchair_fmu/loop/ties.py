@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..errors import SimulationError
-from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search
+from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search, ranked
 from .fit import Fit
 from .likelihood import Evidence
 from .screen import shortlist
-from .statistics import difference_blocks, margin, resampled_totals
+from .statistics import TIED, difference_blocks, resampled_totals
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
@@ -27,12 +27,13 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     predicts held-out runs better is so much likelier, if it was found. In a search again, beside all that was found,
     fitted runs alone tell."""
     leader = _of(r, effect)
-    group, farthest = [leader.effect], leader.fit.misfit + margin(leader.fit.evidence)
+    group = [leader.effect]
     for c in r.candidates:
         if c is leader or not c.lawful:
             continue
         ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
-        near = c.fit.misfit <= farthest or (c.fit.misfit - ahead <= farthest and c.found)
+        behind = _behind(c, leader)
+        near = behind <= TIED or (behind - ahead / leader.scale <= TIED and c.found)
         same = abs(ahead) < se and c.found and c.drop >= NEARLY * leader.drop
         if near or same:
             group.append(c.effect)
@@ -52,14 +53,15 @@ def beside(
         return None
     base = replace(base, evidence=w.likelihood(others).restarted(base.evidence, base.values))
     without, without_held = search.rival_of(effect, others, base, base_held)
-    fall = without.misfit - final.misfit
+    as_known = search.compared(final, effect, without)
+    fall = without.misfit - as_known.misfit
     if before and _stands(effect, effects, fall, before):
         return None
     screened = search.screen(base, others)
-    own = search.judge(without, without_held, final, held, effect, w.parameters(effect), len(screened))
+    own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
     promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
     tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
-    candidates = sorted([own, *(c for c in tried if c)], key=lambda c: -c.drop)
+    candidates = ranked([own, *(c for c in tried if c)])
     base = replace(base, evidence=base.evidence.summary())
     return Round(others, base, base_held.summary(), tuple(s.score for s in screened), tuple(candidates), again=True)
 
@@ -77,11 +79,16 @@ def _of(r: Round, effect: str) -> Candidate:
     return next(c for c in r.candidates if c.effect == effect)
 
 
-def overtaker(r: Round, effect: str, final: Fit) -> Candidate | None:
-    """What a search again for one effect of the `final` model found, if it is another, with which that explains more by far."""
+def overtaker(r: Round, effect: str) -> Candidate | None:
+    """What a search again for one effect of a model found, if it is another, with which that explains more by far."""
     ahead = r.winner
-    far = final.misfit - margin(final.evidence)
-    return ahead if r.again and ahead and ahead.effect != effect and ahead.fit.misfit < far else None
+    another = r.again and ahead is not None and ahead.effect != effect
+    return ahead if another and ahead and _behind(_of(r, effect), ahead) > TIED else None
+
+
+def _behind(one: Candidate, other: Candidate) -> float:
+    """How much less likely one is than another by fitted runs, whatever their sizes, in −2 log likelihood."""
+    return 2 * (other.support.fitted - one.support.fitted)
 
 
 def _ahead_on_heldout(one: Candidate, other: Candidate) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from .disturbance import Strength, acting, strength
 from .experiment import Experiment, reveal, separate
 from .factory import CALIBRATED, MEASURED, ModelFactory
 from .fit import Fit
+from .foretold import on_led_runs, worsened
 from .interval import profile_interval
 from .joint import explains
 from .lead import lead
@@ -93,7 +94,7 @@ class Diagnosis:
     @property
     def odds(self) -> tuple[dict[str, float], ...]:
         """Of each group of effects that are tied, the probability that it is each of them."""
-        return tuple(shared(group, self._decided(group[0]), self._one_sided) for group in self.ties)
+        return tuple(shared(group, self._decided(group[0])) for group in self.ties)
 
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
@@ -142,7 +143,8 @@ def diagnose(
     found = _with_forces(found, lambda search: _searched(search, {}, experiments, stepped), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    return replace(found, seconds=time.monotonic() - began)
+    notes = (*found.notes, *worsened(found.ladder))
+    return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
 def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
@@ -159,8 +161,10 @@ def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Ca
     left = _left(second, before)
     if left.ordered or not left.like_a_floor:
         return replace(found, unexplained=left)
+    nominal, calibrated = found.ladder[:2]
+    calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.search)
     with_forces = replace(second.ladder[1], name=FORCES)
-    return replace(second, ladder=(*found.ladder[:2], with_forces, *second.ladder[2:]), unexplained=left)
+    return replace(second, ladder=(nominal, calibrated, with_forces, *second.ladder[2:]), unexplained=left)
 
 
 def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Search:
@@ -206,8 +210,7 @@ def _searched(
         included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
         stepped(tuple(ladder))
     beside = {e: r for e, r in selection.beside.items() if r} if proposal is None else {}
-    helping = {e for e in selection.helping.intersection(included) if search.small(base, e)}
-    effects = tuple(e for e in included if e not in selection.already and e not in helping)
+    effects = tuple(e for e in selection.named() if e in included)
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties = tuple(group for group, _ in groups)
     values = calibration(search.factory.likelihood(included), proposal.fit if proposal else base)

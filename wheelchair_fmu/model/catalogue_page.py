@@ -75,7 +75,12 @@ def _quantities(effect: Effect) -> dict[str, Quantity]:
 def _needs(effect: Effect) -> str:
     needs = "".join(f" Needs the {kind} law `{name}`." for kind, name in effect.needs.items())
     states = ", ".join(f"`{row.state.name}`" for row in effect.rows)
-    return needs + (f" Brings the state {states}." if states else "")
+    through = " and ".join(f"`{other}`" for other in effect.through)
+    return (
+        needs
+        + (f" Brings the state {states}." if states else "")
+        + (f" Acts through {through}, and is looked for together with it as well." if through else "")
+    )
 
 
 if __name__ == "__main__":

@@ -142,6 +142,7 @@ class Effect:
     delays_record: bool = False  # its parameter shifts the recorded inputs in time; no part of the FMU
     absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
     alike: tuple[Alike, ...] = ()  # what it does that others do as well
+    through: tuple[str, ...] = ()  # ids of effects by which it reaches the chair: it may show only together with these
     program: Program | None = field(default=None, compare=False, repr=False)  # of a user's own, once it was read
 
     @cached_property

@@ -1,4 +1,7 @@
-"""Dry friction in the swivel bearings: M_w = −M sign(δ'), smooth within a small swivel rate."""
+"""Dry friction in the swivel bearings: M_w = −M sign(δ'), smooth within a small swivel rate.
+
+The bearing holds back a caster that its trail swings, and a lateral force at the patch, whose lever is that trail, holds it.
+"""
 
 from ...quantities import N_M, Parameter
 from ..smooth import grip
@@ -27,4 +30,5 @@ EFFECT = Effect(
     parameters=(FRICTION,),
     contributions=(adds("M_w", friction, opposes="swivel_rate"),),
     needs={"caster": "swivelling"},
+    through=("caster_trail",),
 )

@@ -61,5 +61,6 @@ EFFECT = Effect(
     contributions=(adds("M_p", reaction),),
     rows=(Row(RATE, lambda: 1.0, acceleration),),
     needs={"caster": "swivelling"},
+    through=("caster_trail",),
     absorbs=spun,
 )

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...campaign.channels import CHANNEL_NAMES
 from ...loop.calibration import DOUBTED
-from ...loop.probability import LARGE, SLIGHT
+from ...loop.marginal import LARGE, SLIGHT
 from ..told import NAMED, Told, near_rivals
 from ..words import listed, sentence, title_of
 from .case import EFFECT, PROFILE, Case, interval
