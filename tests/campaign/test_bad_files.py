@@ -228,6 +228,23 @@ def test_markers_renamed(tmp_path):
     ]
 
 
+@pytest.mark.parametrize("kind", ["trc", "c3d"])
+def test_a_marker_renamed_half_way(kind, tmp_path):
+    if kind == "c3d":
+        pytest.importorskip("ezc3d")
+    path, way = tmp_path / f"m.{kind}", np.linspace([0.0, 300, 0], [900, 300, 100], 90)
+    before, after, far = way.copy(), way.copy(), way + 400
+    before[40:], after[:42], far[:42] = np.nan, np.nan, np.nan
+    getattr(loggers, kind)(path, 100.0, {"RHUB": before, "LHUB": way + 560, "STERNUM": far, "RHUB_2": after})
+    assert said(path) == [
+        f"warning: run m.{kind}: RHUB ends at 0.39 s, where RHUB_2 begins: a marker renamed half-way; "
+        "give both one name, or only the first part is read"
+    ]
+    after[:60] = np.nan
+    getattr(loggers, kind)(path, 100.0, {"RHUB": before, "LHUB": way + 560, "RHUB_2": after[:, ::-1] * [1, 1, -1]})
+    assert said(path) == [], "another one, elsewhere"
+
+
 def sheets(tmp_path, **more):
     pytest.importorskip("openpyxl")
     frame = pd.DataFrame({"time [s]": np.arange(30) / 10, "F [N]": np.arange(30.0)})

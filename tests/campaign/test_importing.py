@@ -284,11 +284,6 @@ def test_no_recording_and_no_file(tmp_path):
         find([tmp_path / "empty"], None)
 
 
-def test_a_recording_without_time_is_said_with_a_cure(tmp_path):
-    pd.DataFrame({"gyro_z [deg/s]": np.arange(50.0), "acc_x [g]": np.arange(50.0)}).to_csv(tmp_path / "a.csv", index=False)
-    assert ["no time column" in f.fact and "rate = ..." in f.cure for f in find([tmp_path], None).faults] == [True]
-
-
 def test_a_thousand_columns_are_read(tmp_path):
     rng = np.random.default_rng(0)
     table = {"time [s]": np.arange(300) / 100} | {f"channel {i}": rng.normal(size=300) for i in range(1000)}

@@ -6,6 +6,7 @@ import json
 import tomllib
 
 import numpy as np
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -113,13 +114,40 @@ def test_recordings_that_lie_in_the_campaign_stay_where_they_are(raw, tmp_path):
     assert content["run"][0]["files"]["swl"] == "data/run01_SWL.csv"
 
 
+def test_a_recording_without_time_is_said_once_with_a_cure(tmp_path):
+    pd.DataFrame({"gyro_z [deg/s]": np.arange(50.0), "acc_x [g]": np.arange(50.0)}).to_csv(tmp_path / "a.csv", index=False)
+    said = imported(tmp_path / "a.csv", "-o", tmp_path / "c").output
+    assert said.count("no time column among 'gyro_z [deg/s]', 'acc_x [g]'") == 1 and "write rate = ... in Hz" in said
+
+
+def test_wheels_that_were_exchanged_in_one_run_are_said(tmp_path):
+    """Their instruments mirror each other, so that the chair seems to go backwards in it; or they do not, and it seems to turn
+    the other way."""
+    rng = np.random.default_rng(3)
+    for mirrored, odd in (
+        (True, "the wheels gain speed where a_x has the chair lose it"),
+        (False, "the wheels' speeds differ against the chair's turning"),
+    ):
+        raw, out = tmp_path / f"raw {mirrored}", tmp_path / f"made {mirrored}"
+        raw.mkdir()
+        for i, s in enumerate(lab.rides(1), 1):
+            names = ("right", "left") if i == 2 else ("left", "right")
+            for name, side, late in zip(names, "lr", (0.5, 0.1), strict=True):
+                lab.spoke(raw / f"run{i:02d}_{name}.csv", s, late, side, -1 if mirrored and side == "r" else 1, rng)
+            lab.frame(raw / f"run{i:02d}_frame.csv", s, 0.3, rng)
+        said = [line for line in imported(raw, "-o", out, "--radius", lab.RADIUS).output.splitlines() if "exchanged;" in line]
+        assert len(said) == 1 and said[0].startswith(f"warning: run run02: {odd}"), said
+        assert said[0].endswith("exchange the files of left and right in this run")
+
+
 def test_devices_that_share_nothing_are_said(tmp_path):
     rng = np.random.default_rng(3)
     one, other = lab.rides(3, 1)[0], lab.rides(4, 1)[0]
     lab.rim(tmp_path / "run1_SWL.csv", one, 0.1, "l", rng)
     lab.frame(tmp_path / "run1_imu.csv", other | {"a_x": 0 * other["t"], "yaw_rate": 0 * other["t"]}, 0.2, rng)
     done = imported(tmp_path, "-o", tmp_path / "c", "--radius", lab.RADIUS)
-    assert "give its offset by hand" in done.output
+    told = "run1: imu measured nothing that sets its clock beside that of any other device; give its offset by hand"
+    assert told in " ".join(done.output.split())
     assert "is not sure: give it in clocks" in (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")
 
 

@@ -17,6 +17,7 @@ from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
+from .checks.sides import exchanged
 from .devices import Part, parts, point_of
 from .document import FILE, Document, Entry, flatten, load, numbers
 from .draft import prepare
@@ -57,7 +58,8 @@ def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
         return Judged(None, (), faults)
     wrong = any(fault.severity == ERROR for fault in faults)
     campaign = None if wrong else _campaign(assembly, known_parameters, tuple(faults))
-    return Judged(campaign, assembly.runs, [*faults, *unasked(assembly.runs, _asked(assembly.doc))])
+    more = [*exchanged(assembly.runs), *unasked(assembly.runs, _asked(assembly.doc))]
+    return Judged(campaign, assembly.runs, [*faults, *more])
 
 
 def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:

@@ -70,10 +70,10 @@ def find(paths: Sequence[Path], radius: float | None) -> Found:
         raise Failure(
             "\n".join([f"{what} in {', '.join(map(str, paths))}; give the files that the loggers wrote", *map(str, others)])
         )
-    devices, runs, odd = sources(tables)
+    devices, runs = sources(tables)
     plans = decide(devices, runs, radius)
     of = {run: {s.name: (s.files[run].path, s.files[run].file) for s in devices if run in s.files} for run in runs}
-    return Found(plans, runs, of, [*twice, *others, *odd])
+    return Found(plans, runs, of, [*twice, *others])
 
 
 def held_out(runs: Sequence[str], named: Sequence[str]) -> list[str]:
