@@ -210,6 +210,36 @@ def test_columns_between_spaces(tmp_path):
     assert table.headers == ("Time (s)", "F_left (N)") and table.rows([1]).values[1][3] == 3.5
 
 
+GROUPS = [
+    ["", "Left wheel", "", "Right wheel", ""],
+    ["Time", "Torque", "Speed", "Torque", "Speed"],
+    ["s", "N m", "m/s", "N m", "m/s"],
+]
+APART = ("Time", "Left wheel.Torque", "Left wheel.Speed", "Right wheel.Torque", "Right wheel.Speed")
+
+
+@pytest.mark.parametrize("kind", ["csv", "xlsx"])
+def test_names_that_stand_twice_are_told_apart_by_the_groups_above(kind, tmp_path):
+    numbers = [[i / 100, 1.5, 0.5 + i, 2.5, 0.7 + i] for i in range(30)]
+    path = tmp_path / f"a.{kind}"
+    if kind == "csv":
+        lines = [["Subject", "P07"], *GROUPS, *numbers]
+        path.write_text("\n".join(";".join(map(str, row)) for row in lines))
+    else:
+        pytest.importorskip("openpyxl")
+        pd.DataFrame([*GROUPS, *numbers]).to_excel(path, header=False, index=False)
+    table, faults = open_recording(path, path.name, {})
+    assert faults == [] and table.headers == APART and table.units == ("s", "N m", "m/s", "N m", "m/s")
+    assert table.rows([3]).values[3].tolist() == [2.5] * 30
+    assert [note for note in table.notes if "told apart by the row above" in note]
+
+
+def test_a_row_above_that_tells_no_names_apart_is_none_of_groups(tmp_path):
+    assert text(tmp_path, "Subject;P07;\ntime [s];F [N];F [N]\n" + "".join(f"{i};1;2\n" for i in range(30))) == []
+    table, _ = open_recording(tmp_path / "a.csv", "a.csv", {})
+    assert table.headers == ("time [s]", "F [N]", "F [N]")
+
+
 def marked(tmp_path, change):
     loggers.trc(tmp_path / "m.trc", 100.0, {"A": np.ones((20, 3)), "B": np.ones((20, 3))})
     lines = (tmp_path / "m.trc").read_text().split("\n")

@@ -86,6 +86,8 @@ def test_recordings_without_a_pattern_are_runs_of_one_device():
         ("wheelR_radps", "speed", "", "r"),
         ("FTan_L [N]", "force", "", "l"),
         ("F_rl [N]", "F_rl", "", ""),
+        ("Left wheel.Torque", "torque", "", "l"),
+        ("rec.right.M_Nm", "torque", "", "r"),
     ],
 )
 def test_headers_of_usual_loggers_are_understood(header, quantity, axis, side):
