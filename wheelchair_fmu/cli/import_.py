@@ -168,8 +168,9 @@ def _on_one_clock(
     if sure:
         seen = judged(output, known_parameters())
     said = show(clocks)
+    noise = {} if seen.campaign is None or standing_in else {c: seen.campaign.noise[c] for c in seen.campaign.noise_estimated}
+    write(replace(wanted, clocks=sure, noise=noise))
     if standing_in:
-        write(replace(wanted, clocks=sure))
         said.append(
             "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
             f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...faults import WARNING, Fault
+from ...faults import NOTE, WARNING, Fault
 from ...tables import Table
 from ...units import UnitError, factor
 from ..formats import open_recording, read_head
@@ -120,7 +120,8 @@ def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]
                 if met and not prose
                 else Fault(file, None, None, "the file is text, no recording", "nothing is to be done")
             )
-            faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, WARNING))
+            kind = NOTE if prose else WARNING
+            faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, kind))
             continue
         found.append(Opened(path, file, table))
     return found, faults
