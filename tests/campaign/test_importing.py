@@ -266,13 +266,13 @@ def test_bad_input_is_said_in_one_sentence_each(tmp_path):
     (folder / "empty.csv").write_bytes(b"")
     (folder / "copy.csv").write_bytes((folder / "run01_SWL.csv").read_bytes())
     said = [str(f) for f in find([folder, folder], None).faults]
-    for file, words in (
-        ("broken.csv", "HDF5"),
-        ("README.md", "text"),
-        ("empty.csv", "empty"),
-        ("run01_SWL.csv", "the same as copy.csv"),
+    for place, words in (
+        ("warning: broken.csv", "HDF5"),
+        ("note: README.md", "text"),
+        ("warning: empty.csv", "empty"),
+        ("warning: run01_SWL.csv", "the same as copy.csv"),
     ):
-        assert len([line for line in said if line.startswith(f"warning: {file}") and words in line]) == 1, (file, said)
+        assert len([line for line in said if line.startswith(place) and words in line]) == 1, (place, said)
 
 
 def test_no_recording_and_no_file(tmp_path):

@@ -156,9 +156,13 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
         fingerprint=_fingerprint(doc),
         warnings=warnings,
         rims={
-            name: {push: rim.as_json() for push, rim in of.items()}
+            name: taken
             for run, name in zip(runs, names, strict=True)
-            if (of := assembly.rims.get(run.entry.place))
+            if (
+                taken := {
+                    push: rim.as_json() for push, rim in assembly.rims.get(run.entry.place, {}).items() if rim.found.enough
+                }
+            )
         },
     )
 
