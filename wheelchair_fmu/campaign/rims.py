@@ -28,8 +28,8 @@ LARGE = 0.3  # N m
 
 @dataclass(frozen=True, eq=False)
 class Rim:
-    """What one rim shows in one run, in N m; the radius by which its recorded push becomes a torque; and the wheel's angle where
-    anything tells it, as times by its own clock (s) and rad, (n,) each."""
+    """What one rim shows in one run, in N m; the radius by which its recorded push becomes a torque; and the wheel's angle,
+    where anything tells it, as times by its own clock (s) and rad, (n,) each."""
 
     found: baselines.Baseline
     arm: float
