@@ -104,6 +104,27 @@ def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
     assert "the wheels' radius is missing" in done.output and "plausible" not in done.output, "what was left open is said"
 
 
+def test_at_a_terminal_it_asks_for_the_wheel_and_the_unit_that_no_file_tells(tmp_path, monkeypatch):
+    monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
+    rng = np.random.default_rng(2)
+    for i, s in enumerate(lab.rides(2), 1):
+        lab.rim(tmp_path / f"run{i}_wheel.csv", s, 0.5, "l", rng)
+        time, right = lab.seen(s, 100, 0.2, "wheel_speed_r")
+        pd.DataFrame({"t [s]": time, "speed right": right / 0.3}).to_csv(tmp_path / f"run{i}_tacho.csv", index=False)
+    words = ["import", str(tmp_path), "-o", str(tmp_path / "c"), "--mass", "90", "--radius", "0.3", "--track", "0.56"]
+    done = CliRunner().invoke(app, words, input="left\nkg\nrad/s\n")
+    assert done.exit_code == 0, done.output
+    assert (
+        "wheel: on which wheel is it" in done.output and "'kg' is no unit of it; give one such as m/s or rad/s" in done.output
+    )
+    content = tomllib.loads((tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8"))
+    tacho, wheel = sorted(content["recording"], key=lambda one: one["device"])
+    assert tacho["columns"]["wheel_speed_r"] == {"column": "speed right", "unit": "rad/s"}
+    assert set(wheel["columns"]) >= {"F_rl", "wheel_angle_l"}
+    done = CliRunner().invoke(app, [*words, "--force"], input="\n\n")
+    assert "no name tells of which wheel" in done.output and "next: fill in what is open" in done.output
+
+
 def test_recordings_that_lie_in_the_campaign_stay_where_they_are(raw, tmp_path):
     (tmp_path / "data").mkdir()
     for file in raw.glob("run0*_SW*"):

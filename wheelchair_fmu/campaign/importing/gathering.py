@@ -148,13 +148,13 @@ def kinds(files: Sequence[Opened]) -> dict[str, int]:
     return found
 
 
-def sources(files: Sequence[Opened]) -> tuple[list[Source], list[str]]:
-    """The devices, and the names of the runs in order."""
+def sources(files: Sequence[Opened], on: Mapping[str, str] = {}) -> tuple[list[Source], list[str]]:
+    """The devices, and the names of the runs in order. `on` is the side of devices of which somebody has said it."""
     by_file = {one.file: one for one in files}
     places = placed(list(by_file), kinds(files))
     runs = sorted({place.run for place in places}, key=_natural)
     devices = list(dict.fromkeys(place.device for place in sorted(places, key=lambda p: _natural(p.run))))
-    told = sides(devices)
+    told = {**sides(devices), **on}
     found = [_source(name, told[name], {p.run: by_file[p.file] for p in places if p.device == name}) for name in devices]
     return found, runs
 
