@@ -58,8 +58,8 @@ def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
         return Judged(None, (), faults)
     wrong = any(fault.severity == ERROR for fault in faults)
     campaign = None if wrong else _campaign(assembly, known_parameters, tuple(faults))
-    more = [*exchanged(assembly.runs), *unasked(assembly.runs, _asked(assembly.doc))]
-    return Judged(campaign, assembly.runs, [*faults, *more])
+    every = [*exchanged(assembly.runs), *faults, *unasked(assembly.runs, _asked(assembly.doc))]
+    return Judged(campaign, assembly.runs, every)
 
 
 def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:

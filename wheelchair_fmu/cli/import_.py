@@ -34,7 +34,7 @@ from ..campaign.importing import (
 )
 from ..campaign.syncing import find as find_clocks
 from ..errors import UsageError
-from ..faults import ERROR, Fault
+from ..faults import ERROR, NOTE, Fault
 from ..loop.subject import known_parameters
 from ..units import same_dimension
 from ..writing import written
@@ -244,7 +244,7 @@ def _column(choice: Choice) -> str:
 def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault], link: bool) -> None:
     out = console()
     errors = [fault for fault in faults if fault.severity == ERROR]
-    warnings = [fault for fault in faults if fault.severity != ERROR]
+    warnings = sorted((fault for fault in faults if fault.severity != ERROR), key=lambda fault: fault.severity == NOTE)
     for fault in (*found.faults, *errors, *warnings[:MOST]):
         out.print(str(fault))
     if len(warnings) > MOST:
