@@ -55,13 +55,13 @@ def test_no_sample_is_used_whose_push_was_not_recorded(sample, late):
 def test_one_run_that_is_unlike_all_others_is_named(sample):
     evidence = ModelFactory(sample, Variant()).likelihood().evidence(sample.runs, {}, ())
     quiet = [replace(e, r=e.r / np.sqrt(np.nanmean(e.r**2))) for e in evidence.runs]
-    assert unlike_the_others(Evidence(tuple(quiet), ())) == ""
+    assert unlike_the_others(Evidence(tuple(quiet), ())) == ()
     odd = [replace(e, r=2.5 * e.r) if e.run.name == "slalom-slow" else e for e in quiet]
-    said = unlike_the_others(Evidence(tuple(odd[:4]), ()), Evidence(tuple(odd[4:]), ()))
+    (said,) = unlike_the_others(Evidence(tuple(odd[:4]), ()), Evidence(tuple(odd[4:]), ()))
     assert said.startswith(
         "slalom-slow: of this run the last model leaves 2.5 times the noise, and of no other one more than 1.00"
     )
-    assert unlike_the_others(Evidence(tuple(replace(e, r=2 * e.r) for e in odd), ())) == "", "of others much is left as well"
+    assert unlike_the_others(Evidence(tuple(replace(e, r=2 * e.r) for e in odd), ())) == (), "of others much is left as well"
 
 
 def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):

@@ -11,7 +11,7 @@ from .diagnose import Search
 from .fit import Fit, Problem
 from .likelihood import Evidence
 from .staircase import Step
-from .timing import Late, by_model, by_signals, by_slopes, clocks, unlike_the_others
+from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring
 
 LED = 3  # times that forces, noise and calibration are found one from another, at most
@@ -74,10 +74,8 @@ def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
 
 
 def settle_clocks(search: Search, *evidence: Evidence) -> None:
-    """Keep what clocks are by this evidence, of fitted and of held-out runs, and say which pushes were read at another time,
-    and which run is unlike all others."""
+    """Keep what clocks are by this evidence, of fitted and of held-out runs, and say which pushes were read at another time."""
     search.clocks = {run: of for e in evidence for run, of in clocks(e).items()}
-    search.notes += filter(None, [unlike_the_others(*evidence)])
     search.notes += [_late(run, search.clocks[run][PUSHES_CLOCK], late.unique) for run, late in search.retimed.items()]
 
 

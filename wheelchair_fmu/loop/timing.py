@@ -133,18 +133,18 @@ def retimed(run: Run, late: Late) -> Run:
     return covered(replace(run, inputs={**run.inputs, **inputs}, clocks=(*run.clocks, clock)), late.seconds, late.sd)
 
 
-def unlike_the_others(*evidence: Evidence) -> str:
-    """A sentence on the one run of which a model leaves much, where it leaves next to nothing of all others: what a chair does
-    in one run only, it does not do. Nothing where there is none, or where so many runs as tell nothing of the others."""
+def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
+    """A sentence on the one run of which a model leaves much, where it leaves next to nothing of all others: no chair does
+    something in one run only. None where there is no such run, or too few others."""
     left = {e.run.name: float(np.sqrt(np.nanmean(e.r**2))) for some in evidence for e in some.runs}
     worst = max(left, key=lambda name: left[name], default="")
     others = [rms for name, rms in left.items() if name != worst]
     if len(others) < ENOUGH or left[worst] < SUSPECT or max(others) > LIKE_NOISE:
-        return ""
+        return ()
     return (
         f"{worst}: of this run the last model leaves {left[worst]:.1f} times the noise, and of no other one more than "
         f"{max(others):.2f} times, which no effect of the chair does; see whether its files and clocks are of one ride, and "
-        "whether its pushes are recorded from their beginning"
+        "whether its pushes are recorded from their beginning",
     )
 
 
