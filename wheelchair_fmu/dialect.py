@@ -13,6 +13,7 @@ from .units import UnitError, coherent, is_unit, split
 
 GAPS = ("", "NaN", "nan", "NAN")
 SEPARATORS = ("\t", ";", ",", "|")
+GROUPED = "names that stand twice are told apart by the row above the header"  # a note
 SPACES = " "
 _NAMES = {"\t": "tab", SPACES: "spaces"}
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|[-+]?inf(inity)?", re.IGNORECASE)
@@ -164,6 +165,17 @@ def find(rows: Sequence[Sequence[str]], first: int, width: int) -> Layout:
     if len(above) > 1 and is_unit_row(rows[last]) and _filled(rows[above[-2]]) >= max(_filled(rows[last]), width // 2 + 1):
         return Layout(above[-2], last, first)
     return Layout(last, None, first)
+
+
+def told_apart(headers: Sequence[str], groups: Sequence[str]) -> tuple[str, ...]:
+    """Headers of which some stand there twice, each of these with the group that the row above gives it, as in `Left.F [N]`: a
+    group reaches to where the next one begins. As they are, where that does not tell them apart."""
+    group, found = "", []
+    for i, header in enumerate(headers):
+        group = (groups[i] if i < len(groups) else "") or group
+        found.append(f"{group}.{header}" if header and group and headers.count(header) > 1 else header)
+    named = [header for header in found if header]
+    return tuple(found if len(set(named)) == len(named) else headers)
 
 
 def _filled(row: Sequence[str]) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-ERROR, WARNING = "error", "warning"
+ERROR, WARNING, NOTE = "error", "warning", "note"
 SHOWN = 10  # faults of one kind listed for one column; the rest are counted
 LONG = 500  # characters of a fact; a cell may hold a million
 
@@ -17,7 +17,7 @@ class Fault:
     """What is wrong, where, and what to do about it.
 
     `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
-    `column` is a whole header. An error stops `read`; a warning does not.
+    `column` is a whole header. An error stops `read`; a warning does not; of a note nothing is to be done.
     """
 
     file: str
@@ -29,11 +29,11 @@ class Fault:
     in_run: bool = False  # the file is a recording of a campaign
 
     def __str__(self) -> str:
-        warning = "warning: " if self.severity == WARNING else ""
+        kind = "" if self.severity == ERROR else f"{self.severity}: "
         place = f"run {self.file}" if self.in_run else self.file
         line = f" line {self.line}" if self.line is not None else ""
         column = f" column {short(repr(self.column))}" if self.column is not None else ""
-        return f"{warning}{place}{line}{column}: {short(self.fact)}; {self.cure}"
+        return f"{kind}{place}{line}{column}: {short(self.fact)}; {self.cure}"
 
 
 def short(text: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .dialect import (
+    GROUPED,
     SPACES,
     bare,
     cells,
@@ -23,6 +24,7 @@ from .dialect import (
     same_unit,
     sample,
     separator_of,
+    told_apart,
     uncommented,
 )
 from .faults import Fault, run_fault
@@ -90,7 +92,8 @@ def _parsed(file: str, text: str, options: Mapping[str, Any], notes: list[str]) 
     body, header_line = lines[-1], layout.header + 1
     if not body.strip():
         return None, [run_fault(file, "the file has a header but no rows", _EMPTY)]
-    headers = _untrailed(_header(lines[layout.header], separator, above[layout.header], width), rows)
+    own = _untrailed(_header(lines[layout.header], separator, above[layout.header], width), rows)
+    headers = told_apart(own, above[layout.header - 1]) if layout.header and separator != SPACES else own
     units_row = above[layout.units] if layout.units is not None else []
     units, faults = _units(file, headers, units_row, layout.units)
     if faults:
@@ -101,6 +104,7 @@ def _parsed(file: str, text: str, options: Mapping[str, Any], notes: list[str]) 
     if refused := _thousands(file, lines[-1], separator, numeric, rows, layout_first):
         return None, [refused]
     notes += _said(separator, decimal, layout.header, lines, layout.units)
+    notes += [GROUPED] if headers != own else []
     body, comments = _body(body, separator)
     notes += [f"{comments} line{'s' * (comments > 1)} of comment among the rows skipped"] if comments else []
     first_rows = tuple(tuple(cells(line, separator)) for line in body[:20000].split("\n")[:200] if line.strip())

@@ -18,7 +18,7 @@ def motion(n: int = 200, seed: int = 0) -> np.ndarray:
     t = np.arange(n) * 0.01
     rng = np.random.default_rng(seed)
     push, yaw_rate = 5 + 3 * np.sin(2 * t), 0.3 * np.sin(2 * t)
-    clean = [push, push, 1 - 0.25 * yaw_rate, 1 + 0.25 * yaw_rate, yaw_rate, yaw_rate]
+    clean = [push, push, 1 + 0.25 * yaw_rate, 1 - 0.25 * yaw_rate, yaw_rate, yaw_rate]
     sd = (0.4, 0.4, 0.01, 0.01, 0.006, 0.05)
     return np.column_stack([t, *(c + s * rng.standard_normal(n) for c, s in zip(clean, sd, strict=True))]).round(6)
 

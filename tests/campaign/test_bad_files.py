@@ -210,6 +210,36 @@ def test_columns_between_spaces(tmp_path):
     assert table.headers == ("Time (s)", "F_left (N)") and table.rows([1]).values[1][3] == 3.5
 
 
+GROUPS = [
+    ["", "Left wheel", "", "Right wheel", ""],
+    ["Time", "Torque", "Speed", "Torque", "Speed"],
+    ["s", "N m", "m/s", "N m", "m/s"],
+]
+APART = ("Time", "Left wheel.Torque", "Left wheel.Speed", "Right wheel.Torque", "Right wheel.Speed")
+
+
+@pytest.mark.parametrize("kind", ["csv", "xlsx"])
+def test_names_that_stand_twice_are_told_apart_by_the_groups_above(kind, tmp_path):
+    numbers = [[i / 100, 1.5, 0.5 + i, 2.5, 0.7 + i] for i in range(30)]
+    path = tmp_path / f"a.{kind}"
+    if kind == "csv":
+        lines = [["Subject", "P07"], *GROUPS, *numbers]
+        path.write_text("\n".join(";".join(map(str, row)) for row in lines))
+    else:
+        pytest.importorskip("openpyxl")
+        pd.DataFrame([*GROUPS, *numbers]).to_excel(path, header=False, index=False)
+    table, faults = open_recording(path, path.name, {})
+    assert faults == [] and table.headers == APART and table.units == ("s", "N m", "m/s", "N m", "m/s")
+    assert table.rows([3]).values[3].tolist() == [2.5] * 30
+    assert [note for note in table.notes if "told apart by the row above" in note]
+
+
+def test_a_row_above_that_tells_no_names_apart_is_none_of_groups(tmp_path):
+    assert text(tmp_path, "Subject;P07;\ntime [s];F [N];F [N]\n" + "".join(f"{i};1;2\n" for i in range(30))) == []
+    table, _ = open_recording(tmp_path / "a.csv", "a.csv", {})
+    assert table.headers == ("time [s]", "F [N]", "F [N]")
+
+
 def marked(tmp_path, change):
     loggers.trc(tmp_path / "m.trc", 100.0, {"A": np.ones((20, 3)), "B": np.ones((20, 3))})
     lines = (tmp_path / "m.trc").read_text().split("\n")
@@ -226,6 +256,23 @@ def test_markers_renamed(tmp_path):
     assert marked(tmp_path, lambda lines: lines.__setitem__(3, lines[3].replace("B", "A"))) == [
         "run m.trc line 4: the marker A stands there 2 times; rename one of them"
     ]
+
+
+@pytest.mark.parametrize("kind", ["trc", "c3d"])
+def test_a_marker_renamed_half_way(kind, tmp_path):
+    if kind == "c3d":
+        pytest.importorskip("ezc3d")
+    path, way = tmp_path / f"m.{kind}", np.linspace([0.0, 300, 0], [900, 300, 100], 90)
+    before, after, far = way.copy(), way.copy(), way + 400
+    before[40:], after[:42], far[:42] = np.nan, np.nan, np.nan
+    getattr(loggers, kind)(path, 100.0, {"RHUB": before, "LHUB": way + 560, "STERNUM": far, "RHUB_2": after})
+    assert said(path) == [
+        f"warning: run m.{kind}: RHUB ends at 0.39 s, where RHUB_2 begins: a marker renamed half-way; "
+        "give both one name, or only the first part is read"
+    ]
+    after[:60] = np.nan
+    getattr(loggers, kind)(path, 100.0, {"RHUB": before, "LHUB": way + 560, "RHUB_2": after[:, ::-1] * [1, 1, -1]})
+    assert said(path) == [], "another one, elsewhere"
 
 
 def sheets(tmp_path, **more):

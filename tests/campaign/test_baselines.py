@@ -98,12 +98,16 @@ def test_only_a_check_looks_at_rims_that_nobody_asked_about(campaign):
 
 
 @pytest.mark.parametrize("late", [0.0, 0.1])
-def test_a_ripple_is_taken_out_where_it_was_recorded(campaign, late):
-    """Also where the pushes are read later than their file says: the wheel's angle goes with them."""
+@pytest.mark.parametrize("told", ["wheel_angle_l [rad]", "wheel_speed_l [m/s]"])
+def test_a_ripple_is_taken_out_where_it_was_recorded(campaign, late, told):
+    """Also where the pushes are read later than their file says: the wheel's angle goes with them. Where nobody recorded it,
+    its speed tells it."""
     time, recorded, angle, true = rim(0)
-    speed = 0.31 * np.gradient(angle, time) + np.random.default_rng(1).normal(0, 0.01, len(time))
-    headers = ["time [s]", "M_rl [N.m]", "wheel_angle_l [rad]", "wheel_speed_l [m/s]"]
-    files = {"a.csv": csv_text(headers, rows(np.column_stack([time, recorded, angle, speed])))}
+    speed = 0.31 * np.interp(time - late * ("speed" in told), time, np.gradient(angle, time))
+    speed += np.random.default_rng(1).normal(0, 0.01, len(time))
+    columns = {"time [s]": time, "M_rl [N.m]": recorded, "wheel_angle_l [rad]": angle, "wheel_speed_l [m/s]": speed}
+    columns = {name: values for name, values in columns.items() if name != "wheel_angle_l [rad]" or name == told}
+    files = {"a.csv": csv_text([*columns], rows(np.column_stack([*columns.values()])))}
     entry = RUNS.partition('[[run]]\nfile = "b.csv"')[0] + f"constant = {{ M_rr = 0 }}\nclocks = {{ pushes = {late} }}\n"
     (run,) = read(campaign(HEAD + "[nuisance]\nM_rl = true\n" + entry, files=files)).runs
     left = run.inputs["push.M_rl"] - np.interp(run.time - late, time, true)

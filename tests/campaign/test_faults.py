@@ -285,7 +285,7 @@ CELL_FAULTS = [
         put(0, 0, "moment [s]"),
         "run a.csv line 1: no time column among 'moment [s]', 'F_rl [N]', 'F_rr [N]', 'wheel_speed_l [m/s]', "
         "'wheel_speed_r [m/s]', 'yaw_rate [rad/s]', 'a_y [m/s2]'; "
-        "name it 'time [s]', or give its header in [columns] time",
+        "name it 'time [s]', give its header in [columns] time, or write rate = ... in Hz",
     ),
     (
         "no push",
@@ -351,6 +351,20 @@ def test_faults_of_a_recording(campaign, change, line):
     found = data_fault(campaign, change)
     assert line in found
     assert len([s for s in found if not s.startswith("warning")]) <= 1
+
+
+def test_a_clock_that_runs_backwards_is_said_once(campaign):
+    def back(cells):
+        cells[1:] = [[first[0], *row[1:]] for first, row in zip(cells[:0:-1], cells[1:], strict=True)]
+
+    said = [line for line in data_fault(campaign, back) if "a.csv" in line and not line.startswith("warning")]
+    assert said == ["run a.csv line 3: time runs backwards, from 1.99 to 0 s; sort the rows, the earliest first"]
+
+
+def test_of_a_thousand_columns_without_a_time_some_are_named(campaign):
+    cells = [[f"c{i} [N]" for i in range(1000)], *[["1.5"] * 1000] * 30]
+    (said,) = [line for line in lines(campaign(files={"a.csv": csv_text(*cells[:1], cells[1:])})) if "no time column" in line]
+    assert "'c9 [N]' and 990 more; name it" in said
 
 
 def test_long_gap_of_an_input(campaign):

@@ -157,7 +157,7 @@ def test_check_finds_nothing_in_the_sample_campaign():
     done = wheelchair("check", SAMPLE)
     assert done.exit_code == 0 and "no faults" in done.output and "holdout-slalom" in done.output
     told = json.loads(wheelchair("check", SAMPLE, "--json").output)
-    assert told == {"campaign": str(SAMPLE), "errors": 0, "warnings": 0, "faults": []}
+    assert told == {"campaign": str(SAMPLE), "errors": 0, "warnings": 0, "notes": 0, "faults": []}
 
 
 def test_check_wants_a_campaign_toml(tmp_path):

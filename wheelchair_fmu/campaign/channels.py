@@ -18,7 +18,8 @@ class Channel:
     ISO 8855 to SAE J670. `low` and `high` bound what is plausible. A wheel turns `rotary` units into this
     channel's unit: value = rotary value · radius ** rotary_power. In one that `drifts`, whatever pushed the chair a little
     stays for good. `starts` is the start parameter that its first readings tell; `side` is "l" or "r" where the other side
-    has one like it. From this record follow starts, wiring checks, tables of what a column may be, and the page's.
+    has one like it. From this record follow starts, wiring checks, at which level two signals are compared for their clocks,
+    tables of what a column may be, and the page's.
     """
 
     name: str
@@ -36,12 +37,18 @@ class Channel:
     side: str = ""
 
     @property
+    def integrals(self) -> int:
+        """How often it has to be differentiated to be an acceleration."""
+        return _INTEGRALS.get(self.unit.name, 0)
+
+    @property
     def confused(self) -> tuple[float, str]:
         """How many times as large the readings are in the unit they are most often left in, and that unit in words."""
         return _CONFUSED.get(self.unit.name, (1000.0, f"thousandths of {self.unit.name}"))
 
 
 # by SI unit
+_INTEGRALS = {"m": 2, "rad": 2, "m/s": 1, "rad/s": 1}
 _CONFUSED = {
     "rad": (180 / pi, "degrees"),
     "rad/s": (180 / pi, "deg/s"),
@@ -204,6 +211,7 @@ SOURCES: tuple[Channel, ...] = tuple(
 BY_NAME: dict[str, Channel] = {channel.name: channel for channel in CHANNELS + INPUTS}
 BY_FMU_NAME: dict[str, Channel] = {channel.fmu: channel for channel in CHANNELS + INPUTS}
 TELLS: dict[str, Channel] = {channel.starts: channel for channel in CHANNELS if channel.starts}
+INTEGRALS: dict[str, int] = {channel.name: channel.integrals for channel in CHANNELS}
 SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.side)  # the left one first
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)

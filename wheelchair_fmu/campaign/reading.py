@@ -17,6 +17,7 @@ from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
+from .checks.sides import exchanged
 from .devices import Part, parts, point_of
 from .document import FILE, Document, Entry, flatten, load, numbers
 from .draft import prepare
@@ -57,7 +58,8 @@ def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
         return Judged(None, (), faults)
     wrong = any(fault.severity == ERROR for fault in faults)
     campaign = None if wrong else _campaign(assembly, known_parameters, tuple(faults))
-    return Judged(campaign, assembly.runs, [*faults, *unasked(assembly.runs, _asked(assembly.doc))])
+    every = [*exchanged(assembly.runs), *faults, *unasked(assembly.runs, _asked(assembly.doc))]
+    return Judged(campaign, assembly.runs, every)
 
 
 def check(path: str | Path, known_parameters: Known | None = None) -> list[Fault]:
@@ -154,9 +156,13 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
         fingerprint=_fingerprint(doc),
         warnings=warnings,
         rims={
-            name: {push: rim.as_json() for push, rim in of.items()}
+            name: taken
             for run, name in zip(runs, names, strict=True)
-            if (of := assembly.rims.get(run.entry.place))
+            if (
+                taken := {
+                    push: rim.as_json() for push, rim in assembly.rims.get(run.entry.place, {}).items() if rim.found.enough
+                }
+            )
         },
     )
 

@@ -82,7 +82,8 @@ FORMAT_WORDS = """## Formats
 A file is recognised by its content, then by its ending; `format` in `[[run]]` or `[[recording]]` says it where neither tells.
 Units are taken from headers (`yaw_rate [deg/s]`, `Time (s)`, `gyr_dps`), from a row of units or from an attribute, and never
 guessed: a column that `[columns]` names and that has none is a fault, and `unit = "..."` cures it. `pip install
-"wheelchair-fmu[files]"` brings the libraries of the formats that need one, `[mdf]` that of MDF.
+"wheelchair-fmu[files]"` brings the libraries of the formats that need one, `[mdf]` that of MDF. In tables of text and of
+spreadsheets names that stand there twice get that of the group in the row above: `Left wheel.Torque`, `Right wheel.Torque`.
 
 [A format of your own](your-own-format.md) is a Python file with a record `FORMAT` in the folder `formats` of your configuration
 of wheelchair-fmu (a program that runs with your rights), or an entry point of the group `wheelchair_fmu.formats`.

@@ -18,7 +18,9 @@ from .document import FILE
 from .draft import Draft
 from .recorded import Recorded
 from .records import Baseline
+from .series import integral
 
+Series = tuple[np.ndarray, np.ndarray]
 ARM = DEFAULTS["wheel.R"]  # m: a force at the rim of contact as a torque, where the campaign gives no radius
 SURE = 5.0  # standard errors from which a baseline that nobody asked to be taken out is mentioned,
 LARGE = 0.3  # N m
@@ -26,10 +28,12 @@ LARGE = 0.3  # N m
 
 @dataclass(frozen=True, eq=False)
 class Rim:
-    """What one rim shows in one run, in N m, and the radius by which its recorded push becomes a torque."""
+    """What one rim shows in one run, in N m; the radius by which its recorded push becomes a torque; and the wheel's angle,
+    where anything tells it, as times by its own clock (s) and rad, (n,) each."""
 
     found: baselines.Baseline
     arm: float
+    angle: Series | None
 
     def as_json(self) -> dict[str, float]:
         """The baseline, the amplitude of its ripple, and the baseline's standard error, in N m."""
@@ -40,11 +44,13 @@ def rims(runs: Sequence[Recorded], pushes: Collection[str]) -> dict[int, dict[st
     """For each run by its place in campaign.toml, and each of these pushes that it recorded, what its rim shows."""
     found: dict[int, dict[str, Rim]] = {run.entry.place: {} for run in runs}
     for name in pushes:
-        recorded = {run.entry.place: d for run in runs if (d := run.draft_of(name)) is not None and d.time is not None}
-        arms = {place: _arm(draft, name) for place, draft in recorded.items()}
-        series = {str(place): _recording(draft, name, arms[place]) for place, draft in recorded.items()}
-        for place, baseline in (baselines.baselines(series) if series else {}).items():
-            found[int(place)][name] = Rim(baseline, arms[int(place)])
+        of = {str(run.entry.place): (run, d) for run in runs if (d := run.draft_of(name)) is not None and d.time is not None}
+        alone = {place: by_speed for place, (run, d) in of.items() if (by_speed := _by_speed(run, d, name)) is not None}
+        angles = {place: alone[place] if place in alone else _measured(d, name) for place, (_, d) in of.items()}
+        for places in ([place for place in of if place not in alone], *([place] for place in alone)):
+            series = {place: _recording(of[place][1], name, angles[place]) for place in places}
+            for place, baseline in (baselines.baselines(series) if series else {}).items():
+                found[int(place)][name] = Rim(baseline, _arm(of[place][1], name), angles[place])
     return found
 
 
@@ -52,14 +58,31 @@ def _arm(draft: Draft, name: str) -> float:
     return (draft.part.device.radius or ARM) if name.startswith("F_") else 1.0
 
 
-def _recording(draft: Draft, name: str, arm: float) -> baselines.Recording:
+def _recording(draft: Draft, name: str, angle: Series | None) -> baselines.Recording:
     assert draft.time is not None
-    return draft.time, arm * draft.values[name], _angle(draft, name)
+    turned = None if angle is None else np.interp(draft.time, *angle, left=np.nan, right=np.nan)
+    return draft.time, _arm(draft, name) * draft.values[name], turned
 
 
-def _angle(draft: Draft, name: str) -> np.ndarray | None:
-    """The angle of the wheel, where the same device tells it."""
-    return draft.angles.get(f"wheel_angle_{name[-1]}")
+def _measured(draft: Draft, name: str) -> Series | None:
+    """The angle of the wheel, where the same device tells it: in every run it counts from one place on the wheel."""
+    angle = draft.angles.get(f"wheel_angle_{name[-1]}")
+    if angle is None:
+        return None
+    assert draft.time is not None
+    there = np.isfinite(angle)
+    return draft.time[there], angle[there]
+
+
+def _by_speed(run: Recorded, draft: Draft, name: str) -> Series | None:
+    """Where the device does not tell it, the wheel's angle by its speed, from where it stood when the run began: a wheel that
+    stands shows its ripple as a baseline, and nobody could tell the two apart."""
+    speed = run.channels.get(f"wheel_speed_{name[-1]}")
+    if _measured(draft, name) is not None or speed is None or run.time is None:
+        return None
+    there = np.isfinite(speed)
+    time, turned = run.time[there] - run.late, speed[there] / (draft.part.device.radius or ARM)
+    return (time, integral(time, turned, time)) if len(time) > 1 else None
 
 
 def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarray], tuple[Baseline, ...]]:
@@ -69,23 +92,20 @@ def corrected(run: Recorded, of: Mapping[str, Rim]) -> tuple[dict[str, np.ndarra
         draft = run.draft_of(name)
         if not rim.found.enough or draft is None or draft.time is None or run.time is None:
             continue
-        shapes, sizes, covariance = _shapes(run.time - run.late, draft, name, rim)
+        shapes, sizes, covariance = _shapes(run.time - run.late, rim)
         inputs[name] = inputs[name] - shapes @ sizes
         if covariance.any():
             unsure.append(Baseline(BY_NAME[name].fmu, shapes, covariance))
     return inputs, tuple(unsure)
 
 
-def _shapes(time: np.ndarray, draft: Draft, name: str, rim: Rim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _shapes(time: np.ndarray, rim: Rim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What a baseline and a ripple of 1 add to the push that was recorded at `time` (n, m), how much there is of each (m,), its
     covariance."""
-    angle, found = _angle(draft, name), rim.found
-    one = np.ones((len(time), 1)) / rim.arm
-    if angle is None or not found.covariance[1, 1]:
+    found, one = rim.found, np.ones((len(time), 1)) / rim.arm
+    if rim.angle is None or not found.covariance[1, 1]:
         return one, np.array([found.offset]), found.covariance[:1, :1]
-    assert draft.time is not None
-    there = np.isfinite(angle)
-    turned = np.interp(time, draft.time[there], angle[there])[:, None]
+    turned = np.interp(time, *rim.angle)[:, None]
     shapes = np.hstack([one, np.sin(turned) / rim.arm, np.cos(turned) / rim.arm])
     return shapes, np.array([found.offset, found.ripple_sin, found.ripple_cos]), found.covariance
 

@@ -262,7 +262,8 @@ OPEN = (
     TableRecord(
         "nuisance",
         "Sensor offsets to be estimated beside everything else: true, or the standard deviation about zero. For a push (F_rl, "
-        "F_rr, M_rl, M_rr) the baseline of an instrumented wheel, and its ripple once per turn.",
+        "F_rr, M_rl, M_rr) the baseline of an instrumented wheel, and its ripple once per turn "
+        "by the wheel's angle, or where that was not recorded by its speed.",
         (),
         open=True,
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from .recorded import PUSHES_CLOCK, Recorded
 
 CURE = f"give clocks = {{ {PUSHES_CLOCK} = … }} in the run if you know which it is"
 PLACES = 5  # decimals of a second that are written
+LONGEST = 300.0  # s of a run of one file that are looked at
 DRIFTS = 3.0  # standard errors from which a drift is written
 
 
@@ -70,6 +71,12 @@ def signals(run: Recorded) -> Iterator[Signal]:
             yield Signal(device.name, name.replace("angle", "speed"), middle, (device.radius or 1.0) * speed)
 
 
+def _beginning(signal: Signal) -> Signal:
+    """As much of it as tells the clock of a file's pushes, which is the same all along."""
+    early = signal.time <= signal.time[:1] + LONGEST
+    return replace(signal, time=signal.time[early], values=signal.values[early])
+
+
 SHOWN = ("wheel_speed_l", "wheel_speed_r", "u", "x", "yaw_rate", "a_x", "F_rl", "F_rr", "M_rl", "M_rr")  # the first there is
 
 
@@ -100,7 +107,7 @@ def find(runs: tuple[Recorded, ...]) -> list[RunClocks]:
         reference = run.drafts[0].part.device.name
         known = offsets(signals(run), reference=reference)
         found.append(RunClocks(run, reference, {d: c for d, c in known.items() if d != reference}))
-    alone = {str(i): tuple(signals(r)) for i, r in enumerate(runs) if len(r.drafts) == 1}
+    alone = {str(i): tuple(map(_beginning, signals(r))) for i, r in enumerate(runs) if len(r.drafts) == 1}
     for i, shift in odd_ones_out(alone).items():
         found.append(RunClocks(runs[int(i)], "readings", {PUSHES_CLOCK: shift}))
     return found

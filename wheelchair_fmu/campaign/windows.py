@@ -62,10 +62,10 @@ def pieces(run: Run, seconds: float) -> list[Run]:
     return [_cut(*cell) for cell in _cells(run, seconds)]
 
 
-def covered(run: Run, late: float) -> Run:
+def covered(run: Run, late: float, doubt: float = 0.0) -> Run:
     """The run where its pushes are known, once they are read `late` seconds later than recorded: less that much of its
-    beginning, or of its end."""
-    return between(run, run.time[0] + max(late, 0.0), run.time[-1] + min(late, 0.0))
+    beginning, or of its end, and less what a clock that is off by `doubt` seconds more, either way, leaves unknown."""
+    return between(run, run.time[0] + max(late + doubt, 0.0), run.time[-1] + min(late - doubt, 0.0))
 
 
 def between(run: Run, first: float, last: float) -> Run:

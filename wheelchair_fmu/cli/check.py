@@ -14,7 +14,7 @@ from rich.table import Table
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, judged, read
 from ..contracts.own import catalogue
-from ..faults import ERROR
+from ..faults import ERROR, WARNING
 from ..loop.subject import known_parameters
 from ..model.choice import Choice
 from ..model.stage import Effect
@@ -58,7 +58,8 @@ def check(
     if plot:
         draw(campaign.name, found.runs, faults, out or output)
     errors = sum(fault.severity == ERROR for fault in faults)
-    counts = {"errors": errors, "warnings": len(faults) - errors}
+    warnings = sum(fault.severity == WARNING for fault in faults)
+    counts = {"errors": errors, "warnings": warnings, "notes": len(faults) - errors - warnings}
     if as_json:
         print_json({"campaign": str(campaign), **counts, "faults": [asdict(fault) for fault in faults]})
     else:
@@ -95,8 +96,10 @@ def _show(campaign: Path, faults: list[Fault], counts: dict[str, int]) -> None:
     out = console()
     for fault in faults:
         out.print(str(fault))
-    tally = " and ".join(f"{n} {word if n != 1 else word[:-1]}" for word, n in counts.items() if n)
-    out.print(f"{campaign}: {tally or 'no faults'}")
+    said = {word: f"{n} {word if n != 1 else word[:-1]}" for word, n in counts.items() if n}
+    notes = said.pop("notes", "")
+    tally = " and ".join(said.values()) or "no faults"
+    out.print(f"{campaign}: {tally}{f', {notes}' if notes else ''}")
 
 
 def _tell(campaign: Campaign) -> None:

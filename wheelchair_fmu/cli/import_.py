@@ -34,8 +34,9 @@ from ..campaign.importing import (
 )
 from ..campaign.syncing import find as find_clocks
 from ..errors import UsageError
-from ..faults import ERROR, Fault
+from ..faults import ERROR, NOTE, Fault
 from ..loop.subject import known_parameters
+from ..units import same_dimension
 from ..writing import written
 from .check import MOST, draw
 from .group import console, working
@@ -72,6 +73,7 @@ def import_(
     kept = held_out(found.runs, holdout or [])
     wanted = Wanted(output.resolve().name, mass, person, radius, track, axes, kept)
     if _at_terminal() and not yes:
+        found = _told(files, radius, found)
         wanted = _asked(wanted, found)
     with working("writing"):
         names = _placed(found, output, link)
@@ -116,6 +118,35 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
             typer.prompt("no signal tells: does y point to the right or left", "right"), ""
         )
     return replace(wanted, axes=axes, mass=answers["mass"], radius=answers["radius"], track=answers["track"])
+
+
+def _told(files: Sequence[Path], radius: float | None, found: Found) -> Found:
+    """What was found, with the wheels and the units that no file tells from the person at the terminal."""
+    on = {plan.name: side for plan in found.plans if plan.sideless and (side := _side(plan.name))}
+    if on:
+        found = find(files, radius, on)
+    for plan in found.plans:
+        for choice in [c for c in plan.choices if not c.settled and not c.beside]:
+            plan.put(_unit(plan.name, choice))
+    return found
+
+
+def _side(device: str) -> str:
+    answer = typer.prompt(
+        f"{device}: on which wheel is it, left or right (empty: fill in later)", default="", show_default=False
+    )
+    return {"left": "l", "l": "l", "right": "r", "r": "r"}.get(answer.strip().lower(), "")
+
+
+def _unit(device: str, choice: Choice) -> Choice:
+    """The choice in a unit of the right dimension; as it is where that is left open."""
+    units = (choice.si, "rad/s") if choice.channel.startswith("wheel_speed") else (choice.si,)
+    words = f"{device}: the unit of {choice.header!r}, which is {choice.channel} (empty: fill in later)"
+    while answer := typer.prompt(words, default="", show_default=False).strip():
+        if si := next((one for one in units if same_dimension(answer, one)), ""):
+            return replace(choice.because("in the unit that you said"), unit=answer, si=si, settled=True)
+        console(stderr=True).print(f"{answer!r} is no unit of it; give one such as {' or '.join(units)}")
+    return choice
 
 
 def _number(words: str) -> float | None:
@@ -168,8 +199,9 @@ def _on_one_clock(
     if sure:
         seen = judged(output, known_parameters())
     said = show(clocks)
+    noise = {} if seen.campaign is None or standing_in else {c: seen.campaign.noise[c] for c in seen.campaign.noise_estimated}
+    write(replace(wanted, clocks=sure, noise=noise))
     if standing_in:
-        write(replace(wanted, clocks=sure))
         said.append(
             "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
             f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
@@ -212,7 +244,7 @@ def _column(choice: Choice) -> str:
 def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault], link: bool) -> None:
     out = console()
     errors = [fault for fault in faults if fault.severity == ERROR]
-    warnings = [fault for fault in faults if fault.severity != ERROR]
+    warnings = sorted((fault for fault in faults if fault.severity != ERROR), key=lambda fault: fault.severity == NOTE)
     for fault in (*found.faults, *errors, *warnings[:MOST]):
         out.print(str(fault))
     if len(warnings) > MOST:
@@ -225,6 +257,7 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
         f"runs: {len(found.runs)}; devices: {len(found.plans)}; recordings are {how} {output / RUNS}"
         + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else "")
     )
-    left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "look at"
+    unknown = any(not choice.settled and not choice.beside for plan in found.plans for choice in plan.choices)
+    left = "fill in what is open in" if errors or unknown or None in (wanted.mass, wanted.radius) else "look at"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
     out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")

@@ -31,6 +31,7 @@ APART = 0.3  # s from the best shift, from where another
 UNIQUE = 2.0  # must leave so many times as much, or nobody knows which of them it was
 MOST_OF = 0.5  # of what a model leaves above the noise
 LEAST_SD = 0.002  # s: no smoother tells a clock better
+LIKE_NOISE = 1.1  # RMS innovation of runs of which a model leaves next to nothing
 
 
 @dataclass(frozen=True)
@@ -124,11 +125,27 @@ def _explaining(A: np.ndarray, r: np.ndarray, names: Sequence[str], squares: flo
 
 
 def retimed(run: Run, late: Late) -> Run:
-    """The run with its pushes when the chair felt them; what is left unsure of that stays with it as a clock."""
+    """The run with its pushes when the chair felt them, where they are known; what is left unsure of that stays with it as a
+    clock, and no sample is used whose push this may put outside the record."""
     pushes = _pushes(run)
     inputs = {name: np.interp(run.time - late.seconds, run.time, push) for name, push in pushes.items()}
     clock = Clock(PUSHES_CLOCK, frozenset(), frozenset(pushes), late.sd, late.seconds)
-    return covered(replace(run, inputs={**run.inputs, **inputs}, clocks=(*run.clocks, clock)), late.seconds)
+    return covered(replace(run, inputs={**run.inputs, **inputs}, clocks=(*run.clocks, clock)), late.seconds, late.sd)
+
+
+def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
+    """A sentence on the one run of which a model leaves much, where it leaves next to nothing of all others: no chair does
+    something in one run only. None where there is no such run, or too few others."""
+    left = {e.run.name: float(np.sqrt(np.nanmean(e.r**2))) for some in evidence for e in some.runs}
+    worst = max(left, key=lambda name: left[name], default="")
+    others = [rms for name, rms in left.items() if name != worst]
+    if len(others) < ENOUGH or left[worst] < SUSPECT or max(others) > LIKE_NOISE:
+        return ()
+    return (
+        f"{worst}: of this run the last model leaves {left[worst]:.1f} times the noise, and of no other one more than "
+        f"{max(others):.2f} times, which no effect of the chair does; see whether its files and clocks are of one ride, and "
+        "whether its pushes are recorded from their beginning",
+    )
 
 
 def clocks(evidence: Evidence) -> dict[str, dict[str, Late]]:

@@ -36,6 +36,7 @@ from .selection import StepwiseSelection
 from .staircase import Step
 from .statistics import correlation_time, decisive, estimates, standard_errors
 from .ties import NEARLY, grouped, tied
+from .timing import unlike_the_others
 from .unexplained import Unexplained, unexplained
 
 ENOUGH_POWER = 0.8
@@ -223,7 +224,8 @@ def _searched(
     thinned = (campaign.thinned,) if campaign.thinned else ()
     beyond_limits = beyond(search.factory.likelihood(selection.effects), base.evidence)
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
-    notes = (*thinned, *search.notes, *search.noise_notes, *doubtful, *beyond_limits)
+    odd = unlike_the_others(base.evidence, selection.held)
+    notes = (*thinned, *search.notes, *odd, *search.noise_notes, *doubtful, *beyond_limits)
     return Diagnosis(
         campaign.name,
         verdict,

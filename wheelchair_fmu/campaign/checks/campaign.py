@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from ...faults import ERROR, WARNING, Fault
+import numpy as np
+
+from ...faults import ERROR, NOTE, WARNING, Fault
+from ..angles import TURN
 from ..binding import absent_fault
 from ..channels import BY_NAME
 from ..document import FILE, Document
@@ -87,16 +90,28 @@ def noise_against_data(all_: Assembly) -> Iterator[Fault]:
 
 
 def glitches(all_: Assembly) -> Iterator[Fault]:
-    """Once for each wheel: encoders spoil a reading where a turn ends, and there are as many as turns."""
-    found: dict[str, list[tuple[str, int]]] = {}
+    """Once for each wheel: encoders spoil a reading where a turn ends, and there are as many as turns; of more something is
+    wrong."""
+    found: dict[str, list[tuple[str, int, float]]] = {}
     for draft in (d for run in all_.runs for d in run.drafts):
         for name, places in draft.glitches.items():
-            found.setdefault(name, []).append((draft.file, len(places)))
-    for name, counts in found.items():
-        if total := sum(n for _, n in counts):
-            file = next(file for file, n in counts if n)
+            found.setdefault(name, []).append((draft.file, len(places), _turns(draft.angles[name])))
+    for name, of in found.items():
+        if total := sum(n for _, n, _ in of):
+            file = next(file for file, n, _ in of if n)
             fact = f"{name} has {total} readings far from both neighbours, the first in {file}, which are left out"
-            yield Fault(FILE, None, None, fact, "none is needed if there is one for each turn", WARNING)
+            more = sum(n > turns + 1 for _, n, turns in of)
+            if more:
+                fact = f"{fact}; in {more} of {len(of)} recordings they are more than the wheel turned"
+                yield Fault(FILE, None, None, fact, "look at its encoder, or its wiring", WARNING)
+            else:
+                yield Fault(FILE, None, None, f"{fact}: about one each turn", "nothing is to be done", NOTE)
+
+
+def _turns(angle: np.ndarray) -> float:
+    """Of a wheel, by its angle (n,) in rad without jumps."""
+    there = angle[np.isfinite(angle)]
+    return float(np.ptp(there)) / TURN if there.size else 0.0
 
 
 CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...faults import ERROR, SHOWN, WARNING, Fault, run_fault
+from ...faults import ERROR, SHOWN, WARNING, Fault, run_fault, some
 from ..draft import COARSE, Draft
 
 LONGEST = 600.0  # s without a sample, over which nobody can foretell where the chair is
@@ -15,9 +15,9 @@ _UNEVEN = 0.5  # share of the usual step by which one may differ
 
 def no_time(draft: Draft) -> Iterator[Fault]:
     if draft.whole_time is None:
-        headers = ", ".join(repr(header) for header in draft.table.headers)
-        fact = f"no time column among {headers}"
-        yield run_fault(draft.file, fact, "name it 'time [s]', or give its header in [columns] time", 1)
+        fact = f"no time column among {some(map(repr, draft.table.headers))}"
+        home = "[columns] time" if draft.part.alone else f"columns.time of the [[recording]] of {draft.part.device.name}"
+        yield run_fault(draft.file, fact, f"name it 'time [s]', give its header in {home}, or write rate = ... in Hz", 1)
 
 
 def empty_time(draft: Draft) -> Iterator[Fault]:
@@ -31,6 +31,10 @@ def empty_time(draft: Draft) -> Iterator[Fault]:
 def time_goes_back(draft: Draft) -> Iterator[Fault]:
     time, rows = _finite(draft)
     steps = np.flatnonzero(np.diff(time) < 0) + 1
+    if 2 * len(steps) > len(time):
+        fact = f"time runs backwards, from {time[0]:.10g} to {time[-1]:.10g} s"
+        yield run_fault(draft.file, fact, "sort the rows, the earliest first", draft.rows.line(int(rows[steps[0]])))
+        return
     yield from _listed(
         draft,
         rows[steps],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ...faults import ERROR, WARNING, Fault, run_fault
+from ...faults import ERROR, NOTE, WARNING, Fault, run_fault
 from ..channels import BY_NAME, MOMENTUM, POSITION, PUSHES
 from ..document import number
 from ..recorded import Recorded
@@ -46,7 +46,7 @@ def body_partly_seen(run: Recorded) -> Iterator[Fault]:
     elif first - run.time[0] + run.time[-1] - last > SHORTEST:
         whole = f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
         fact = f"the rider's body is seen from {first:.4g} to {last:.4g} s; the rest of {whole} is left out"
-        yield run_fault(run.file, fact, "nothing is to be done", severity=WARNING)
+        yield run_fault(run.file, fact, "nothing is to be done", severity=NOTE)
 
 
 def silent(run: Recorded) -> Iterator[Fault]:

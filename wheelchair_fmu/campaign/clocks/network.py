@@ -141,8 +141,8 @@ def _doubt(
         return ""
     best = max((p for p in evidence if not p.unique), key=lambda p: p.ahead, default=None)
     if best is None:
-        others = "nobody else's clock" if len(own) < 2 else f"the clock of {reference}"
-        return f"{name} measured nothing that leads to {others}; {CURE}"
+        other = reference if len(own) > 1 else "any other device"
+        return f"{name} measured nothing that sets its clock beside that of {other}; {CURE}"
     other = f", and {best.rival:+.2f} s nearly as well" if best.rival is not None else ""
     return f"{best.words} fit best with {best.lag:+.2f} s between their clocks{other}; {CURE}"
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..channels import INTEGRALS
 from .equation import Equation
 from .lag import CRYSTAL, Lag, find
 from .signals import Device, Signal, band, rate
 from .views import BODY_LAG, PUSHES, equation, views
-
-LEVELS = {"x": 2, "y": 2, "yaw": 2, "wheel_speed_l": 1, "wheel_speed_r": 1, "u": 1, "v": 1, "yaw_rate": 1}  # else 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,11 +93,11 @@ def alike(a: Signal, b: Signal, width: float | None = None) -> Match | None:
     """Whether, and with what lag and gain, one signal is the other: for guessing what a column is. Positions are differentiated
     to speeds, and speeds to accelerations where the other signal is an acceleration or a push. None where the records share
     too little."""
-    level = min(LEVELS.get(s.quantity, 0) for s in (a, b))
+    level = min(INTEGRALS.get(s.quantity, 0) for s in (a, b))
     series = []
     for s in (a, b):
         time, values = np.asarray(s.time, float), np.asarray(s.values, float)
-        for _ in range(max(LEVELS.get(s.quantity, 0) - min(level, 1), 0)):
+        for _ in range(max(INTEGRALS.get(s.quantity, 0) - min(level, 1), 0)):
             time, values = rate(time, values)
         series.append((time, values))
     slowest = max(float(np.median(np.diff(time))) for time, _ in series)

@@ -55,6 +55,8 @@ def odd_ones_out(runs: Mapping[str, Iterable[Signal]]) -> dict[str, Shift]:
     One after the other, the oddest first: it spoils what the others are compared with. Empty where less than ENOUGH runs tell
     their shift, and where half of them would be odd.
     """
+    if len(runs) < ENOUGH:
+        return {}
     ready = _ready(runs)
     odd: list[str] = []
     while True:

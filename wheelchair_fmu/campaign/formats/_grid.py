@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...dialect import GAPS, columns_of_numbers, find, is_data, same_unit
+from ...dialect import GAPS, GROUPED, columns_of_numbers, find, is_data, same_unit, told_apart
 from ...units import split
 from ._record import DATES, RATE, Option, Read
 from ._support import EMPTY, framed, one, stated
@@ -76,7 +76,8 @@ def _table(file: str, grid: pd.DataFrame, options: Mapping[str, Any], notes: lis
     touched = next((first for first, last in merged if last >= layout.header), None)
     if touched is not None:
         return one(file, "merged cells in the header or among the rows", "unmerge them in the spreadsheet", touched + 1)
-    headers = above[layout.header]
+    headers = list(told_apart(above[layout.header], above[layout.header - 1] if layout.header else ()))
+    notes += [GROUPED] if headers != above[layout.header] else []
     places = [i for i, header in enumerate(headers) if header or any(map(_text, grid.iloc[layout.first :, i]))]
     headers = [headers[i] for i in places]
     body = grid.iloc[layout.first :, places].reset_index(drop=True)

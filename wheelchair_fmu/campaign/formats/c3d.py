@@ -11,6 +11,7 @@ import pandas as pd
 
 from ...tables import FrameTable
 from ._defined import read_head
+from ._markers import doubled, renamed
 from ._record import Format, Option, Read
 from ._support import by_library, one
 
@@ -52,13 +53,18 @@ def _points(file: str, parameters: Any, points: np.ndarray, analogs: int) -> Rea
     if not unit or not rate > 0 or len(names) < points.shape[1]:
         missing = "unit of its points" if not unit else "rate of its points" if not rate > 0 else "name for each point"
         return one(file, f"the file gives no {missing}", "export it again")
+    if twice := list(doubled(file, names)):
+        return None, twice
     xyz = np.where((points[:3] == 0).all(axis=0), np.nan, points[:3])
-    columns = {"time [s]": np.arange(points.shape[2]) / rate}
+    time = np.arange(points.shape[2]) / rate
+    columns = {"time [s]": time}
     columns |= {f"{name}.{axis} [{unit}]": xyz[k, i] for i, name in enumerate(names) for k, axis in enumerate(_AXES)}
     notes = [f"{len(names)} markers at {rate:g} Hz"]
     notes += [f'{analogs} analogue channels are left out; part = "analogs" reads them'] if analogs else []
     frame = pd.DataFrame(columns)
-    return FrameTable(file, tuple(columns), ("s", *[unit] * (len(columns) - 1)), tuple(notes), time=0, frame=frame), []
+    units = ("s", *[unit] * (len(columns) - 1))
+    odd = list(renamed(file, names, time, np.moveaxis(xyz, 0, 2).swapaxes(0, 1), unit))
+    return FrameTable(file, tuple(columns), units, tuple(notes), time=0, frame=frame), odd
 
 
 def _analogs(file: str, parameters: Any, analogs: np.ndarray) -> Read:

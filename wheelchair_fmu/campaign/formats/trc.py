@@ -12,6 +12,7 @@ import pandas as pd
 from ...dialect import decode, is_number
 from ...faults import run_fault
 from ...tables import FrameTable, read_bytes, unreadable
+from ._markers import doubled, renamed
 from ._record import Format, Read
 from ._support import EMPTY, one
 
@@ -43,8 +44,8 @@ def _read(path: Path, file: str, options: Mapping[str, Any]) -> Read:
     if not unit or not names:
         missing = "units" if not unit else "markers"
         return one(file, f"the header names no {missing}", "export it again", 3 if not unit else 4)
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        return one(file, f"the marker {twice[0]} stands there {names.count(twice[0])} times", "rename one of them", 4)
+    if twice := list(doubled(file, names, 4)):
+        return None, twice
     return _table(file, lines, names, unit, about)
 
 
@@ -76,7 +77,7 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, about: Mapp
     hidden = [name for i, name in enumerate(names) if np.isnan(values[:, 2 + 3 * i]).any()]
     notes = [f"{len(names)} markers at {about['DataRate']} Hz" if about.get("DataRate") else f"{len(names)} markers"]
     notes += [f"hidden at times: {', '.join(hidden)}"] if hidden else []
-    faults = []
+    faults = list(renamed(file, names, values[:, 1], values[:, 2:].reshape(len(values), -1, 3), unit))
     if np.isnan(values[:, 1]).any():
         first = places[int(np.flatnonzero(np.isnan(values[:, 1]))[0])]
         faults.append(run_fault(file, "the time is empty", "export it again", first))

@@ -61,8 +61,10 @@ class Found:
     faults: Sequence[Fault]
 
 
-def find(paths: Sequence[Path], radius: float | None) -> Found:
-    """Everything that recordings tell. Raises UsageError for a path that is none, Failure where there is no recording."""
+def find(paths: Sequence[Path], radius: float | None, on: Mapping[str, str] = {}) -> Found:
+    """Everything that recordings tell; `on` is which wheel ("l", "r") a device is on, where no name tells it.
+
+    Raises UsageError for a path that is none, Failure where there is no recording."""
     files, twice = taken(paths)
     tables, others = opened(files)
     if not tables:
@@ -70,10 +72,10 @@ def find(paths: Sequence[Path], radius: float | None) -> Found:
         raise Failure(
             "\n".join([f"{what} in {', '.join(map(str, paths))}; give the files that the loggers wrote", *map(str, others)])
         )
-    devices, runs, odd = sources(tables)
+    devices, runs = sources(tables, on)
     plans = decide(devices, runs, radius)
     of = {run: {s.name: (s.files[run].path, s.files[run].file) for s in devices if run in s.files} for run in runs}
-    return Found(plans, runs, of, [*twice, *others, *odd])
+    return Found(plans, runs, of, [*twice, *others])
 
 
 def held_out(runs: Sequence[str], named: Sequence[str]) -> list[str]:

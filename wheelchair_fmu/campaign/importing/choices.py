@@ -50,6 +50,7 @@ class Plan:
     why_axes: str = ""
     empty: dict[str, str] = field(default_factory=dict)
     doubts: list[str] = field(default_factory=list)
+    sideless: bool = False  # has it columns of a wheel, and nothing tells of which
 
     @property
     def name(self) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...faults import WARNING, Fault, some
+from ...faults import NOTE, WARNING, Fault
 from ...tables import Table
 from ...units import UnitError, factor
 from ..formats import open_recording, read_head
@@ -120,7 +120,8 @@ def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]
                 if met and not prose
                 else Fault(file, None, None, "the file is text, no recording", "nothing is to be done")
             )
-            faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, WARNING))
+            kind = NOTE if prose else WARNING
+            faults.append(Fault(file, why.line, None, f"left out: {why.fact}", why.cure, kind))
             continue
         found.append(Opened(path, file, table))
     return found, faults
@@ -147,15 +148,15 @@ def kinds(files: Sequence[Opened]) -> dict[str, int]:
     return found
 
 
-def sources(files: Sequence[Opened]) -> tuple[list[Source], list[str], list[Fault]]:
-    """The devices, the names of the runs in order, and what is odd about files of one device."""
+def sources(files: Sequence[Opened], on: Mapping[str, str] = {}) -> tuple[list[Source], list[str]]:
+    """The devices, and the names of the runs in order. `on` is the side of devices of which somebody has said it."""
     by_file = {one.file: one for one in files}
     places = placed(list(by_file), kinds(files))
     runs = sorted({place.run for place in places}, key=_natural)
     devices = list(dict.fromkeys(place.device for place in sorted(places, key=lambda p: _natural(p.run))))
-    told = sides(devices)
+    told = {**sides(devices), **on}
     found = [_source(name, told[name], {p.run: by_file[p.file] for p in places if p.device == name}) for name in devices]
-    return found, runs, [fault for one in found for fault in _without_time(one)]
+    return found, runs
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
@@ -196,12 +197,3 @@ def _written_side(one: Opened) -> str:
         return ""
     lines = [line for line in head.splitlines()[:20] if "side" in line.lower() and ":" in line]
     return next((side for line in lines if (side := side_of(line.partition(":")[2]))), "")
-
-
-def _without_time(source: Source) -> list[Fault]:
-    if source.time is not None:
-        return []
-    first = next(iter(source.files.values()))
-    fact = f"no time column among {some(repr(c.header) for c in source.columns)}"
-    cure = f'write rate = ... in Hz, or columns.time = "..." in the [[recording]] of {source.name}'
-    return [Fault(first.file, 1, None, fact, cure)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...units import same_dimension, split, suffixed
 from ..channels import BY_NAME, SOURCES, TIME
@@ -141,12 +141,12 @@ def sides(devices: list[str]) -> dict[str, str]:
 
 def guess(header: str, unit: str | None) -> Guess | None:
     """What a column is by its header; None where nothing is known by such a name."""
-    bare = split(header)[0].rpartition(".")[2]  # of a structure's fields the last
+    path, _, bare = split(header)[0].rpartition(".")  # of a structure's fields, or a group's columns, the last
     if (own := OWN.get("_".join(words(bare)))) and own != "time":
         return Guess(own, own=True)
     for text in dict.fromkeys((bare, suffixed(bare)[0])):
         if found := _read(words(text), unit):
-            return found
+            return replace(found, side=found.side or side_of(path))
     return None
 
 

@@ -28,7 +28,7 @@ def rims(plan: Plan) -> None:
         for column in axial if axial and quantity == "torque" else columns:
             side = sided(plan, column)
             if not side:
-                plan.doubts.append(_whose(plan, column, "F_rl or columns.F_rr"))
+                _leave(plan, column, "F_rl or columns.F_rr")
                 continue
             series = everything(source, column)
             unit, why = sized(column, (si,), size, series)
@@ -44,7 +44,7 @@ def angles(plan: Plan) -> None:
     for column in plan.source.of("wheel_angle"):
         side = sided(plan, column)
         if not side:
-            plan.doubts.append(_whose(plan, column, "wheel_angle_l or columns.wheel_angle_r"))
+            _leave(plan, column, "wheel_angle_l or columns.wheel_angle_r")
             continue
         unit, why = sized(column, ("rad",), angle_size, everything(plan.source, column))
         chosen = Choice(f"wheel_angle_{side}", column.header, unit=unit, settled=unit != "?", column=column, si="rad")
@@ -119,8 +119,12 @@ def unsided(plan: Plan) -> str:
     return f"{plan.name}: it is on the spokes, but neither its name nor a turn tells of which wheel: check its side"
 
 
-def _whose(plan: Plan, column: Column, cure: str) -> str:
-    return f"{plan.name}: no name tells of which wheel {column.header!r} is, so it is not used; write columns.{cure}"
+def _leave(plan: Plan, column: Column, cure: str) -> None:
+    """A column whose wheel nothing tells."""
+    plan.sideless = True
+    plan.doubts.append(
+        f"{plan.name}: no name tells of which wheel {column.header!r} is, so it is not used; write columns.{cure}"
+    )
 
 
 def _side_told(plan: Plan, column: Column, side: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..axes import AXES, SAE
+from ..channels import BY_NAME
 from .choices import NAMED, Choice, Plan
 from .guesses import OWN
 
@@ -44,6 +45,7 @@ class Wanted:
     holdout: Sequence[str] = ()
     at_rest: Mapping[str, bool] = field(default_factory=dict)
     clocks: Mapping[str, Mapping[str, Mapping[str, float]]] | None = None  # by run and device, where they were looked for
+    noise: Mapping[str, float] = field(default_factory=dict)  # SI, by channel, as the samples show it
 
 
 CHAIR = (
@@ -58,7 +60,7 @@ CHAIR = (
 def text(plans: Sequence[Plan], runs: Sequence[str], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     """The whole file. `files` are by run and device, as campaign.toml is to name them."""
     alone = len(plans) == 1 and not plans[0].markers
-    parts = [_head(plans, files, wanted), _chair(wanted), _rider(plans, wanted), _nuisance(plans)]
+    parts = [_head(plans, files, wanted), _chair(wanted), _rider(plans, wanted), _noise(wanted), _nuisance(plans)]
     parts += [_columns(plans[0])] if alone else [_recording(plan, wanted) for plan in plans]
     parts += [_run(run, files[run], wanted, alone) for run in runs]
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -132,6 +134,13 @@ def needs_radius(plans: Sequence[Plan]) -> bool:
     turned = ("wheel_angle_l", "wheel_angle_r")
     used = [choice for plan in plans for choice in plan.choices if choice.settled and not choice.beside]
     return any(through.get(choice.channel) == choice.si or choice.channel in turned for choice in used)
+
+
+def _noise(wanted: Wanted) -> str:
+    """What the samples show of the sensors' noise, to be put right by who knows better."""
+    lines = [f'# {name} = "{sd:.2g} {BY_NAME[name].unit.name}"' for name, sd in sorted(wanted.noise.items())]
+    head = "# [noise]  # one standard deviation of each sensor as the samples show it: write what you know better"
+    return "\n".join([head, *lines]) if lines else ""
 
 
 def _nuisance(plans: Sequence[Plan]) -> str:

@@ -76,7 +76,7 @@ class Workbench {
     const lines = (severity) => h("ul", {}, faults.filter((f) => f.severity === severity).map((f) => h("li", { "data-severity": severity }, f.text)));
     const remarks = faults.length - errors;
     byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), lines("error"),
-      remarks ? h("details", {}, h("summary", {}, `${remarks} remark${remarks > 1 ? "s" : ""}`), lines("warning")) : "");
+      remarks ? h("details", {}, h("summary", {}, `${remarks} remark${remarks > 1 ? "s" : ""}`), lines("warning"), lines("note")) : "");
     this.ready = files.length > 0 && !errors;
     this.enable();
   }

@@ -1,0 +1,115 @@
+"""Wheels under each other's name. In a turn the outer wheel goes farther, and an accelerometer feels which way it is pushed.
+
+The instruments of two wheels mirror each other as a rule: exchanged, they turn the chair rightly, but backwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...faults import WARNING, Fault, run_fault
+from ..channels import SIDES
+from ..clocks.smoothing import Smooth, smooth
+from ..document import FILE
+from ..draft import Draft
+from ..recorded import Recorded
+
+PLAIN = 0.5  # correlation from which a sign is told
+LONGEST = 300.0  # s of a run that are looked at
+STEP = 0.02  # s
+FEWEST = 50  # steps
+
+
+@dataclass(frozen=True)
+class Law:
+    """What two wheels (left, right) say of one `channel`: `of_wheels` is so many times `of_channel` as lies `between` two
+    numbers. `odd` is what it looks like where the sign is the other one, `cure` what helps where it is so in every run."""
+
+    channel: str
+    of_wheels: Callable[[Smooth, Smooth, np.ndarray], np.ndarray]
+    of_channel: Callable[[Smooth, np.ndarray], np.ndarray]
+    between: tuple[float, float]
+    odd: str
+    cure: str
+
+
+def _difference(left: Smooth, right: Smooth, at: np.ndarray) -> np.ndarray:
+    return left.at(at)[0] - right.at(at)[0]
+
+
+def _gain(left: Smooth, right: Smooth, at: np.ndarray) -> np.ndarray:
+    return 0.5 * (left.at(at)[1] + right.at(at)[1])
+
+
+def _value(s: Smooth, at: np.ndarray) -> np.ndarray:
+    return s.at(at)[0]
+
+
+def _slope(s: Smooth, at: np.ndarray) -> np.ndarray:
+    return s.at(at)[1]
+
+
+TRACK = (0.3, 1.0)  # m between the rear wheels of chairs
+TURNED = "the wheels' speeds differ against the chair's turning"
+EXCHANGED = "exchange left and right, or correct axes or the sign of {}"
+LAWS = (
+    Law("yaw_rate", _difference, _value, TRACK, TURNED, EXCHANGED),
+    Law("yaw", _difference, _slope, TRACK, TURNED, EXCHANGED),
+    Law("a_x", _gain, _value, (0.5, 2.0), "the wheels gain speed where a_x has the chair lose it", "correct the sign of {}"),
+)
+
+
+def exchanged(runs: Sequence[Recorded]) -> list[Fault]:
+    """A warning for each run in which left and right wheel seem to be exchanged; one for all together, where all are."""
+    faults: list[Fault] = []
+    for law in LAWS:
+        told = [(run, found) for run in runs if (found := _correlation(run, law)) is not None and abs(found) > PLAIN]
+        wrong = [(run, found) for run, found in told if found < 0]
+        if wrong and len(wrong) == len(told):
+            fact = f"{law.odd}, in every run that tells (correlation {min(found for _, found in wrong):.2f})"
+            faults.append(Fault(FILE, None, None, fact, law.cure.format(law.channel), WARNING))
+        else:
+            faults += _in_some(wrong, law, {fault.file for fault in faults})
+    return faults
+
+
+def _in_some(wrong: Sequence[tuple[Recorded, float]], law: Law, said: set[str]) -> Iterator[Fault]:
+    """A sentence for each run that nothing was said of."""
+    for run, found in wrong:
+        if run.file not in said:
+            what = "columns" if len(run.drafts) == 1 else "files"
+            fact = f"{law.odd} (correlation {found:.2f}), unlike in other runs: its wheels seem to be exchanged"
+            yield run_fault(run.file, fact, f"exchange the {what} of left and right in this run", severity=WARNING)
+
+
+def _correlation(run: Recorded, law: Law) -> float | None:
+    """Of what the wheels say with the channel; None where nothing tells it, or the two do not fit one another."""
+    needed = (*SIDES, law.channel)
+    if run.time is None or not set(needed) <= run.channels.keys() or not _on_one_clock(run, needed):
+        return None
+    if (np.diff(run.time) <= 0).any():
+        return None  # which has its own sentence
+    first = run.time <= run.time[0] + LONGEST
+    left, right, other = (smooth(run.time[first], run.channels[name][first]) for name in needed)
+    grid = np.arange(run.time[0], run.time[first][-1], STEP)
+    x, y = law.of_wheels(left, right, grid), law.of_channel(other, grid)
+    there = np.isfinite(x) & np.isfinite(y)
+    if there.sum() < FEWEST:
+        return None
+    x, y = x[there] - np.median(x[there]), y[there] - np.median(y[there])
+    xy, xx, yy = float(x @ y), float(x @ x), float(y @ y)
+    least, most = law.between
+    return xy / np.sqrt(xx * yy) if xx > 0 and yy > 0 and least < abs(xy) / yy < most else None
+
+
+def _on_one_clock(run: Recorded, names: Sequence[str]) -> bool:
+    """Are the clocks known of all devices that tell these? Turns to and fro look turned round where one is half a turn late."""
+    telling = {draft.file: draft for draft in (run.draft_of(name) for name in names) if draft is not None}
+    return len(telling) == 1 or all(_clock_known(run, draft) for draft in telling.values())
+
+
+def _clock_known(run: Recorded, draft: Draft) -> bool:
+    return draft is run.drafts[0] or draft.part.device.name in run.entry.table("clocks")
