@@ -37,6 +37,11 @@ typedef struct {
     lanes x[WC_MAX_STATES], w0[WC_MAX_INPUTS], w1[WC_MAX_INPUTS], wa[WC_MAX_INPUTS], wb[WC_MAX_INPUTS];
     lanes x1[WC_MAX_STATES], e[WC_MAX_STATES], d2[WC_MAX_STATES], d3[WC_MAX_STATES];
     lanes *p;
+    long chairs, next; /* all of them, and the next one to board */
+    const double *own; /* chairs x parameters */
+    double *y;
+    int *status;
+    long *reached;
 } carriage;
 
 static lanes shapes_of(lanes s, lanes a, lanes b) { return lanes_choose(a == b, a, (1 - s) * a + s * b); }
@@ -113,24 +118,27 @@ static void read_out(const course *c, const double *p, const double *rows, doubl
     }
 }
 
-/* The next chair that can start takes lane e. */
-static void board(carriage *a, int e, long *next, long chairs, const double *p, int *status) {
+/* The next chair that can start takes lane e. Says whether there was one. */
+static int board(carriage *a, int e) {
     const wc_kernel *k = a->c->k;
     rider *r = a->riders + e;
     double x[WC_MAX_STATES];
-    for (r->chair = -1; *next < chairs && r->chair < 0; ++*next) {
-        const double *own = p + *next * k->parameters;
-        status[*next] = wc_start(k, own, a->c->w, x);
-        if (status[*next] == WC_OK) status[*next] = wc_project(k, own, a->c->w, x); /* as wc_run does */
-        if (status[*next] != WC_OK) continue;
-        r->chair = *next;
+    r->chair = -1;
+    r->now = 1; /* something that can be divided by, where nobody is left */
+    for (; a->next < a->chairs && r->chair < 0; a->next++) {
+        const double *p = a->own + a->next * k->parameters;
+        wc_status status = wc_start(k, p, a->c->w, x);
+        if (status == WC_OK) status = wc_project(k, p, a->c->w, x); /* as wc_run does */
+        a->status[a->next] = status;
+        if (status != WC_OK) continue;
+        r->chair = a->next;
         for (int i = 0; i < k->states; i++) a->x[i][e] = x[i];
-        for (int i = 0; i < k->parameters; i++) a->p[i][e] = own[i];
+        for (int i = 0; i < k->parameters; i++) a->p[i][e] = p[i];
         keep(a, e, 0);
         r->h = a->c->t[1] - a->c->t[0];
         turn(a, e, 0);
     }
-    r->now = 1; /* something that can be divided by, where nobody is left */
+    return r->chair >= 0;
 }
 
 /* One step tried in every lane: its error, 1 being the tolerance, and by how much the next one may be longer. */
@@ -172,18 +180,57 @@ static wc_status refuse(rider *r, double factor, double error) {
     return isfinite(error) ? WC_STEP_TOO_SMALL : WC_NOT_FINITE;
 }
 
-static int find_moving(course *c) {
+/* After a step was tried: whoever is in lane e goes on, tries a shorter one, or makes room. Says whether somebody is in it. */
+static int go_on(carriage *a, int e, int accepted, double factor, double error) {
+    const course *c = a->c;
+    rider *r = a->riders + e;
+    long chair = r->chair;
+    if (!accepted) {
+        a->status[chair] = refuse(r, factor, error);
+        if (a->status[chair] == WC_OK) return 1;
+        a->reached[chair] = r->from + 1;
+        return board(a, e);
+    }
+    accept(r, factor);
+    if (r->done < r->length) return 1;
+    keep(a, e, r->to);
+    if (r->to + 1 < c->n) {
+        turn(a, e, r->to);
+        return 1;
+    }
+    a->reached[chair] = c->n;
+    read_out(c, a->own + chair * c->k->parameters, r->rows, a->y + chair * c->results * c->n);
+    return board(a, e);
+}
+
+/* One step in every lane. Says how many are still in use. */
+static int step_on(carriage *a) {
+    lanes error, factor;
+    attempt(a, &error, &factor);
+    masks accepted = error <= 1;
+    for (int e = 0; e < WC_LANES; e++)
+        if (a->riders[e].chair >= 0 && accepted[e]) fill(a, e, a->riders + e);
+    for (int i = 0; i < a->c->k->states; i++) {
+        lanes x1 = (lanes)(~(lanes_fabs(a->x1[i]) < WC_NOTHING) & (masks)a->x1[i]);
+        a->x[i] = lanes_choose(accepted, x1, a->x[i]);
+    }
+    int aboard = 0;
+    for (int e = 0; e < WC_LANES; e++)
+        if (a->riders[e].chair >= 0) aboard += go_on(a, e, accepted[e] != 0, factor[e], error[e]);
+    return aboard;
+}
+
+/* Inputs that move, each by itself. */
+static void find_moving(course *c) {
     int nw = c->k->inputs;
-    c->movings = 0;
     for (int q = 0; q < nw; q++) {
         long row = 1;
         while (row < c->n && c->w[row * nw + q] == c->w[q]) row++;
-        if (row < c->n) c->moving[c->movings++] = q;
+        if (row >= c->n) continue;
+        for (row = 0; row < c->n; row++) c->inputs[c->movings * c->padded + row] = c->w[row * nw + q];
+        c->moving[c->movings++] = q;
     }
-    return c->movings;
 }
-
-int wc_lanes(void) { return WC_LANES; }
 
 long wc_lanes_work(const wc_kernel *k, long n) { return (WC_LANES * k->states + k->inputs + 2) * (n + WC_LANES); }
 
@@ -191,57 +238,22 @@ long wc_lanes_work(const wc_kernel *k, long n) { return (WC_LANES * k->states + 
  * y: chairs x results x n. status: of each chair; reached: the number of rows it has done, n where all went well. */
 void wc_lanes_run(const wc_kernel *k, int results, double tolerance, long chairs, const double *p, long n, const double *t,
                   const double *w, double *y, int *status, long *reached, double *work) {
-    long padded = (n + WC_LANES - 1) / WC_LANES * WC_LANES, next = 0;
-    course c = {.k = k, .tolerance = tolerance, .n = n, .padded = padded, .t = t, .w = w, .results = results};
-    carriage a = {.c = &c};
+    long padded = (n + WC_LANES - 1) / WC_LANES * WC_LANES, *ends = (long *)(work + WC_LANES * k->states * padded);
+    double *shares = (double *)(ends + padded), *inputs = shares + padded;
+    course c = {.k = k, .tolerance = tolerance, .n = n, .padded = padded, .t = t, .w = w, .results = results,
+                .ends = ends, .shares = shares, .inputs = inputs};
     lanes own[k->parameters];
-    a.p = own;
+    carriage a = {.c = &c, .p = own, .chairs = chairs, .own = p, .y = y, .status = status, .reached = reached};
     memset(own, 0, sizeof own);
     memset(work, 0, sizeof(double) * (size_t)wc_lanes_work(k, n));
-    long *ends = (long *)(work + WC_LANES * k->states * padded);
-    c.ends = ends;
-    c.shares = (double *)(ends + padded);
-    c.inputs = c.shares + padded;
-    for (long i = 0, j = 0; i + 1 < n; i = j) ends[i] = j = straight_until(k, n, i, t, w);
-    for (int m = find_moving(&c) - 1; m >= 0; m--)
-        for (long row = 0; row < n; row++) c.inputs[m * padded + row] = w[row * k->inputs + c.moving[m]];
-    for (int q = 0; q < k->inputs; q++) a.wa[q] = a.wb[q] = WC_EVEN(w[q]);
     memset(reached, 0, sizeof(long) * (size_t)chairs);
+    for (long i = 0, j = 0; i + 1 < n; i = j) ends[i] = j = straight_until(k, n, i, t, w);
+    find_moving(&c);
+    for (int q = 0; q < k->inputs; q++) a.wa[q] = a.wb[q] = WC_EVEN(w[q]);
     int aboard = 0;
     for (int e = 0; e < WC_LANES; e++) {
         a.riders[e].rows = work + e * k->states * padded;
-        board(&a, e, &next, chairs, p, status);
-        aboard += a.riders[e].chair >= 0;
+        aboard += board(&a, e);
     }
-    while (aboard) {
-        lanes error, factor;
-        attempt(&a, &error, &factor);
-        masks accepted = error <= 1;
-        for (int e = 0; e < WC_LANES; e++)
-            if (a.riders[e].chair >= 0 && accepted[e]) fill(&a, e, a.riders + e);
-        for (int i = 0; i < k->states; i++) {
-            lanes x1 = (lanes)(~(lanes_fabs(a.x1[i]) < WC_NOTHING) & (masks)a.x1[i]);
-            a.x[i] = lanes_choose(accepted, x1, a.x[i]);
-        }
-        for (int e = 0; e < WC_LANES; e++) {
-            rider *r = a.riders + e;
-            if (r->chair < 0) continue;
-            int over = 0;
-            if (accepted[e]) accept(r, factor[e]);
-            else over = (status[r->chair] = refuse(r, factor[e], error[e])) != WC_OK;
-            if (over) reached[r->chair] = r->from + 1;
-            if (!over && r->done < r->length) continue;
-            if (!over) {
-                keep(&a, e, r->to);
-                if (r->to + 1 < n) {
-                    turn(&a, e, r->to);
-                    continue;
-                }
-                reached[r->chair] = n;
-                read_out(&c, p + r->chair * k->parameters, r->rows, y + r->chair * results * n);
-            }
-            board(&a, e, &next, chairs, p, status);
-            aboard -= r->chair < 0;
-        }
-    }
+    while (aboard) aboard = step_on(&a);
 }
