@@ -32,16 +32,18 @@ def whitened(
 ) -> tuple[dict[str, np.ndarray], list[str | None]]:
     """`rms`, `rms_fit` and `rms_holdout` (chairs,) of the chairs with these values, NaN where there are no such runs; and why
     one has none, naming the first run that cannot be simulated."""
+    channels = list(dict.fromkeys(channel for y in runs for channel in y.channels))  # of all runs: one library for all
     errors: list[dict[str, list[np.ndarray]]] = [{"fit": [], "holdout": []} for _ in chairs]
     why: list[str | None] = [None] * len(chairs)
     for y in runs:
         given = [encoded(variant, {**y.known, **variant.values, **values, **y.fixed}) for values in chairs]
-        found = engine.run(y.run.time, y.run.inputs, given, [PREDICTS[c] for c in y.channels])
+        found = engine.run(y.run.time, y.run.inputs, given, [PREDICTS[c] for c in channels])
+        own = [channels.index(c) for c in y.channels]
         for i, error in enumerate(found.errors):
             if error:
                 why[i] = why[i] or f"run {y.run.name}: {error}"
             else:
-                e = y.errors(found.results[i].T)
+                e = y.errors(found.results[i, own].T)
                 errors[i][y.run.role].append(e[np.isfinite(e)])
     roles = {"rms": ("fit", "holdout"), "rms_fit": ("fit",), "rms_holdout": ("holdout",)}
     return {
