@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import sys
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,11 +15,11 @@ from rich.console import Console
 from wheelchair_fmu.engine import compiler
 from wheelchair_fmu.writing import written
 
-from . import file_cost, growth, loop_cost, page_cost, run_cost, sensitivity_cost, step_cost, sweep_cost
 from .rows import table
 
 TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
-GROUPS = (step_cost, run_cost, sensitivity_cost, file_cost, sweep_cost, loop_cost, page_cost)
+# Imported where they run: the processes of a sweep begin with this file, and need none of what the others do.
+GROUPS = ("step_cost", "run_cost", "sensitivity_cost", "lanes_cost", "file_cost", "sweep_cost", "loop_cost", "page_cost")
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 
@@ -42,16 +43,20 @@ def _processor() -> str:
 
 
 def main() -> int:
-    console = Console(highlight=False, width=180)
+    from . import growth, limits
+
+    console = Console(highlight=False, width=200)
     on = machine()
     rows = []
     with Console(stderr=True).status("measuring") as status:
-        for group in GROUPS:
+        for name in GROUPS:
+            group = import_module(f".{name}", __package__)
             status.update(f"measuring: {(group.__doc__ or '').partition('.')[0].partition(':')[0]}")
             rows += list(group.rows())
         status.update("measuring how cost grows")
         lines = growth.lines()
         rows += list(growth.rows(lines))
+    on["core"] = f"{limits.core(1)}; {limits.widest()}"
     on["load"] = " ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "not known"
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))

@@ -16,7 +16,8 @@ class Row:
     """What was measured: `samples` in `unit`; the bound it has to keep, if any, and how.
 
     A row with a `peer` (a median in the same unit) has a target for how many times faster it is; any other for its
-    median itself.
+    median itself. `limit`, in the same unit, is what the arithmetic alone would take (`limits`), and `why` says what it
+    is made of and what is between.
     """
 
     what: str
@@ -25,6 +26,8 @@ class Row:
     target: float | None = None
     peer: float | None = None
     note: str = ""
+    limit: float | None = None
+    why: str = ""
 
     @property
     def median(self) -> float:
@@ -57,6 +60,8 @@ class Row:
             "target": self.target,
             "met": self.met,
             "note": self.note,
+            "limit": self.limit,
+            "why": self.why,
         }
 
 
@@ -74,7 +79,7 @@ def timed(call: Callable[[], object], repeats: int) -> list[float]:
 def table(rows: Sequence[Row]) -> Table:
     shown = Table(box=box.SIMPLE)
     shown.add_column("what")
-    for title in ("median", "least to greatest", "times faster", "target"):
+    for title in ("median", "least to greatest", "limit", "times faster", "target"):
         shown.add_column(title, justify="right")
     shown.add_column("verdict")
     shown.add_column("note")
@@ -84,6 +89,7 @@ def table(rows: Sequence[Row]) -> Table:
             row.what,
             f"{row.median:.3g} {row.unit}",
             f"{min(row.samples):.3g} to {max(row.samples):.3g}",
+            "" if row.limit is None else f"{row.limit:.3g} ({row.median / row.limit:.1f}×)",
             "" if row.ratio is None else f"{row.ratio:.1f}×",
             bound,
             "" if row.met is None else ("met" if row.met else "MISSED"),

@@ -23,9 +23,11 @@ import numpy as np
 from scipy.integrate import odeint, solve_ivp
 
 from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.engine.kernel import kernel
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.model.variant import Variant
 
+from . import limits
 from .rows import Row, timed
 
 TOLERANCE, REPEATS, TARGET = 1e-6, 9, 10.0
@@ -142,6 +144,13 @@ def radau(c: Case) -> np.ndarray:
     return np.array(rows)
 
 
+def work_of(c: Case) -> tuple[limits.Work, int]:
+    """What the run's own steps and results take, and how many steps they are."""
+    functions = kernel(c.simulator.model).functions
+    steps = c.simulator.run(c.t, c.w, c.p, tolerance=TOLERANCE).steps
+    return limits.of(functions["plain"]) * steps + limits.of(functions["output"]) * len(c.t), steps
+
+
 def rows() -> Iterator[Row]:
     c = case()
     truth = radau(c)
@@ -154,10 +163,19 @@ def rows() -> Iterator[Row]:
 
     calls = {name: cvodes(c, options) for name, options in METHODS.items()}
     own = timed(c.own, 3 * REPEATS)
+    work, steps = work_of(c)
     peers = {name: timed(call, REPEATS) for name, call in calls.items()}
     fastest = min(peers, key=lambda name: min(peers[name]))
     yield Row(
-        "20 s run, own step map", "ms", own, TARGET, float(np.median(peers[AS_IT_COMES])), f"beside CVODES; {error(c.own())}"
+        "20 s run, own step map",
+        "ms",
+        own,
+        TARGET,
+        float(np.median(peers[AS_IT_COMES])),
+        f"beside CVODES; {error(c.own())}",
+        1e3 * work.seconds(limits.core(1)),
+        f"{steps} steps and {len(c.t)} sets of results, {work.operations / 1e6:.1f} million operations one by one; the rest is "
+        "waiting for operands, and the C library's functions",
     )
     yield Row("20 s run, own step map", "ms", own, peer=float(np.median(peers[fastest])), note=f"beside CVODES ({fastest})")
     for name, samples in peers.items():

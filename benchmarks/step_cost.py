@@ -15,10 +15,13 @@ from tempfile import TemporaryDirectory
 import fmpy
 
 from wheelchair_fmu.engine import compiler
+from wheelchair_fmu.engine.kernel import kernel
+from wheelchair_fmu.fmu.build import with_chosen_effects
 from wheelchair_fmu.fmu.native import headers
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies import fmu_of
 
+from . import limits
 from .rows import Row
 
 HOST = Path(__file__).parent.parent / "tests" / "fmu" / "host.c"
@@ -35,7 +38,17 @@ def rows() -> Iterator[Row]:
         host = host_program(Path(folder))
         for effects, target in MEDIAN_TARGETS.items():
             medians, worsts = zip(*(_run(host, Path(folder), effects) for _ in range(RUNS)), strict=True)
-            yield Row(f"FMU step, --effects {effects}: median", "µs", medians, target)
+            functions = kernel(with_chosen_effects(Variant(), effects).model()).functions
+            work = limits.of(functions["bare"]) + limits.of(functions["output"])
+            yield Row(
+                f"FMU step, --effects {effects}: median",
+                "µs",
+                medians,
+                target,
+                limit=1e6 * work.seconds(limits.core(1)),
+                why=f"one step and one set of results, {work.operations:.0f} operations one by one; the rest is waiting for "
+                "operands, the C library's functions, and FMI's calls",
+            )
             yield Row(f"FMU step, --effects {effects}: worst", "µs", worsts, WORST_TARGET)
         medians = [run_host(host, Path(folder), "default", "time", STEPS, ONE_ON)[0] / 1e3 for _ in range(RUNS)]
         yield Row("FMU step, --effects default, one of them on: median", "µs", medians)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.kit import variant_with
+from wheelchair_fmu.engine import cache
 from wheelchair_fmu.engine.sensitivities import Sensitivities
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.engine.tangent import sensed
@@ -146,3 +147,31 @@ def test_a_riders_momentum_is_a_noisy_input_where_it_moves_and_costs_nothing_whe
     np.testing.assert_allclose(moved.by_parameter[:, sensor, 0], slope, atol=1e-3 * np.abs(slope).max())
     still = simulator.inputs(len(t), {"push.F_rl": SLALOM[1](t)})
     assert Sensitivities(Variant(), by).run(t, still, p, by).by_push.shape[2] == 4
+
+
+@pytest.mark.nightly  # compiles derivatives anew
+def test_stages_together_are_as_one_by_one(tmp_path, monkeypatch, caplog):
+    """With every width that this processor has, and by a compiler without vectors."""
+    variant = variant_with("rolling_resistance_asymmetry")
+    t = np.linspace(0, 3, 121)
+    runs = []
+
+    def run():
+        sensitivities = Sensitivities(variant)
+        w = sensitivities.simulator.inputs(len(t), {"push.F_rl": 8 + 6 * np.sin(3 * t), "push.F_rr": 8 - 6 * np.sin(3 * t)})
+        runs.append(sensitivities.run(t, w, variant.vector(), sensitivities.columns))
+
+    widths = [n for n in cache.VECTORS if n <= cache.width()]
+    for width in widths:
+        monkeypatch.setattr(cache, "width", lambda width=width: width)
+        run()
+    monkeypatch.setenv("WHEELCHAIR_CACHE", str(tmp_path))
+    text_of = cache.of_stages
+    monkeypatch.setattr(cache, "of_stages", lambda *given: ("#error no vectors\n", text_of(*given)[1]))
+    with caplog.at_level("INFO"):
+        run()
+    assert "stages are evaluated one by one" in caplog.text
+    for name in ("states", "by_parameter", "transition", "push_before", "push_after", "by_state", "by_push", "start"):
+        alone = getattr(runs[-1], name)
+        for together in runs[:-1]:
+            np.testing.assert_allclose(getattr(together, name), alone, rtol=0, atol=1e-12 * np.abs(alone).max())

@@ -5,12 +5,15 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import linecache
+import logging
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
+
+import casadi as cs
 
 from ..children import side_by_side
 from ..configuration import OF_MODELS, digest
@@ -20,14 +23,21 @@ from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import compiler, shipped
 from .kernel import at_rest, kernel, seldom_among
+from .lanes import lanes_source, of_stages
 from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
 from .tangent import noisy, tangent
 
+log = logging.getLogger(__name__)
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
-LEVELS = {"model": "-O2", "tangent_model": "-O1", "advance": "-O2", "tangent": "-O3", "rodas": "-O3"}
+LEVELS = {
+    **{"model": "-O2", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
+    **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
+}
+VECTORS = {8: ("-mavx512f", "-mavx512dq", "-mavx512vl"), 4: ("-mavx2",), 2: ()}  # flags by how many numbers a vector holds
+ANYWHERE = 2  # numbers in a vector: what every processor of a system has
 
 
 @dataclass(frozen=True)
@@ -67,8 +77,28 @@ def library(
     wanted = Wanted.of(choice, effects, columns, moving)
     if there := shipped.library(_independent(wanted.words)):
         return there
-    key = hashlib.sha256(f"{_toolchain()}\n{wanted.words}".encode()).hexdigest()[:24]
-    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(wanted, path)))
+    wide = width()
+    key = hashlib.sha256(f"{_toolchain()}\n{wide}\n{wanted.words}".encode()).hexdigest()[:24]
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile(wanted, path, wide)))
+
+
+def lanes(choice: Choice, effects: Iterable[Effect], step: str, results: Sequence[str]) -> ctypes.CDLL:
+    """The loaded shared library of `lanes.c` for a model: this `step` of its kernel, and the `results` of these names.
+
+    Raises BuildError where the compiler has no vectors.
+    """
+    wanted, wide = Wanted.of(choice, effects), width()
+    words = "\n".join((_toolchain(), str(wide), step, repr(tuple(results)), wanted.words))
+    key = hashlib.sha256(words.encode()).hexdigest()[:24]
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile_lanes(wanted, step, results, wide, path)))
+
+
+def width() -> int:
+    """How many numbers fit into a vector of this processor; as many as anywhere where that cannot be asked."""
+    try:
+        return int(helper("processor").wc_width())
+    except BuildError:
+        return ANYWHERE
 
 
 def helper(name: str) -> ctypes.CDLL:
@@ -80,7 +110,7 @@ def helper(name: str) -> ctypes.CDLL:
 
 def ship(wanted: Wanted, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
     """What `library` would load on another system, by the compiler for that, where an installed package looks for it."""
-    return shipped.put(_independent(wanted.words), system, suffix, partial(_compile, wanted, cross=cross))
+    return shipped.put(_independent(wanted.words), system, suffix, partial(_compile, wanted, wide=ANYWHERE, cross=cross))
 
 
 def ship_helper(name: str, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
@@ -101,35 +131,66 @@ def _loaded(path: Path) -> ctypes.CDLL:
         ) from error
 
 
-def _compile(wanted: Wanted, target: Path, cross: tuple[str, ...] | None = None) -> None:
+def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
     model, pushes, columns = assemble(wanted.choice, wanted.effects), noisy(wanted.moved or ()), wanted.columns
     if wanted.moved is not None:
         model = at_rest(model, wanted.moved)
-    texts, by_hand = {"model": c_source(kernel(model), "model")}, ["advance"]
-    if columns is not None:
-        texts["tangent_model"] = tangent_source(tangent(model, columns, pushes), "tangent")
-        by_hand = ["tangent", "rodas"]
+    texts = {"model": c_source(kernel(model), "model")}
+    if columns is None:
+        _link(texts, ["advance"], pushes, target, wide, cross)
+        return
+    by, by_hand = tangent(model, columns, pushes), ["tangent", "rodas"]
+    of_several, names = of_stages(by, "tangent")
+    together = {"tangent_lanes": of_several, "tangent_model": tangent_source(by, "tangent", names, wide)}
+    try:
+        _link({**texts, **together}, by_hand, pushes, target, wide, cross)
+    except BuildError as error:
+        log.info("stages are evaluated one by one: %s", error)
+        _link({**texts, "tangent_model": tangent_source(by, "tangent")}, by_hand, pushes, target, wide, cross)
+
+
+def _link(
+    texts: Mapping[str, str], by_hand: Sequence[str], pushes: int, target: Path, wide: int, cross: tuple[str, ...] | None
+) -> None:
+    """Generated C by name, and files of `csrc`, as one library."""
     with side_by_side(os.cpu_count()) as pool:
-        objects = [pool.submit(compiled, name, text, _flags(name, pushes), cross) for name, text in texts.items()]
-        objects += [pool.submit(_by_hand, name, pushes, cross) for name in by_hand]
+        objects = [pool.submit(compiled, name, text, _flags(name, pushes, wide), cross) for name, text in texts.items()]
+        objects += [pool.submit(_by_hand, name, pushes, wide, cross) for name in by_hand]
         compiler.compile_shared([o.result() for o in objects], target, (), cross)
 
 
-def _by_hand(name: str, pushes: int, cross: tuple[str, ...] | None) -> Path:
+def _compile_lanes(wanted: Wanted, step: str, results: Sequence[str], wide: int, target: Path) -> None:
+    model = assemble(wanted.choice, wanted.effects)
+    places = {o.name: i for i, o in enumerate(model.outputs)}
+    some = cs.densify(model.y[[places[name] for name in results]])
+    output = cs.Function("output", [model.x, model.w, model.p], cs.cse([some]))
+    _link(
+        {"model_lanes": lanes_source({"step": kernel(model).functions[step], "output": output})},
+        ["lanes"],
+        0,
+        target,
+        wide,
+        None,
+    )
+
+
+def _by_hand(name: str, pushes: int, wide: int, cross: tuple[str, ...] | None) -> Path:
     """A file of `csrc` that all models with so many noisy inputs share, compiled once."""
 
     def make(path: Path) -> None:
         header = path.with_name("coefficients.h")
         header.write_text(coefficients())
-        flags = ["-include", str(header), f"-I{CSRC}", *_flags(name, pushes)]
+        flags = ["-include", str(header), f"-I{CSRC}", *_flags(name, pushes, wide)]
         compiler.compile_object(CSRC / f"{name}.c", path, flags, cross)
 
-    return kept(_name(f"{name}-{pushes}", ".o", cross), ".o", make)
+    return kept(_name(f"{name}-{pushes}-{wide}", ".o", cross), ".o", make)
 
 
-def _flags(name: str, pushes: int) -> list[str]:
-    """How one of the files of a library is compiled."""
-    return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}"]
+def _flags(name: str, pushes: int, wide: int) -> list[str]:
+    """How one of the files of a library is compiled. Those of one chair, whose rows of derivatives are short, need no vectors
+    longer than four; no number depends on it, as nothing is contracted."""
+    longest = wide if name.endswith("lanes") else min(wide, 4)
+    return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}", f"-DWC_LANES={wide}", *VECTORS[longest]]
 
 
 def _name(name: str, suffix: str, cross: tuple[str, ...] | None = None) -> str:

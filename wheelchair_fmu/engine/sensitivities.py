@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..model.variant import Variant
 from . import cache
-from .simulate import WHY, Simulator, refuse_unrest
+from .simulate import Simulator, refuse_unrest, stopped
 from .tangent import differentiable, noisy, sensed
 
 
@@ -109,8 +109,5 @@ class Sensitivities:
             ctypes.byref(reached),
         )
         if status:
-            when = t[min(max(reached.value, 1), n) - 1]
-            raise SimulationError(
-                f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
-            )
+            raise SimulationError(stopped(status, t, reached.value))
         return Linearised(t, x, y, y[:, list(self.rows)], **out)

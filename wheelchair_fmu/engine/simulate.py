@@ -110,14 +110,16 @@ class Simulator:
                 ctypes.byref(steps),
             )
         if status:
-            when = t[min(max(reached.value, 1), len(t)) - 1]
-            raise SimulationError(
-                f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
-            )
+            raise SimulationError(stopped(status, t, reached.value))
         return Trajectory(t, x, y, tuple(o.name for o in self.model.outputs), steps.value)
 
     def _start(self, p: np.ndarray, w: np.ndarray, x: np.ndarray) -> int:
         return self._library.wc_start(self._at(self._kernel), _of(p), _of(w), _of(x))
+
+    @property
+    def kernel(self) -> ctypes.c_void_p:
+        """Where the model's `wc_kernel` is."""
+        return self._at(self._kernel)
 
     @staticmethod
     def _given(start: np.ndarray, x: np.ndarray) -> int:
@@ -127,6 +129,12 @@ class Simulator:
     @staticmethod
     def _at(symbol: ctypes.c_char) -> ctypes.c_void_p:
         return ctypes.c_void_p(ctypes.addressof(symbol))
+
+
+def stopped(status: int, time: np.ndarray, reached: int) -> str:
+    """What is told of a run over `time` that has reached so many of its samples."""
+    when = time[min(max(reached, 1), len(time)) - 1]
+    return f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
 
 
 def refuse_unrest(model: Model, inputs: np.ndarray, moving: Container[str]) -> None:

@@ -33,7 +33,7 @@ TANGENT_RECORD = """
 
 static const int {prefix}_rows[] = {{{rows}}}, {prefix}_places[] = {{{places}}}, {prefix}_touched[] = {{{touched}}};
 const wc_tangent {prefix}_tangent = {{
-    {columns}, {sensors}, {prepared}, {touches}, {prefix}_touched, {prefix}_rows, {prefix}_places,
+    {columns}, {sensors}, {prepared}, {side}, {touches}, {prefix}_touched, {prefix}_rows, {prefix}_places,
     {functions}}};
 """
 
@@ -65,8 +65,8 @@ def c_source(kernel: Kernel, prefix: str, by_hand: Mapping[str, str] | None = No
     )
 
 
-def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | None = None) -> str:
-    """C text that defines `const wc_tangent <prefix>_tangent`; `by_hand` as in `c_source`."""
+def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | None = None, side: int = 1) -> str:
+    """C text that defines `const wc_tangent <prefix>_tangent`; `by_hand` as in `c_source`, `side` as in `tangent.h`."""
     by_hand = by_hand or {}
     names = [name for name in TANGENT_NAMES if name not in by_hand]
     return (
@@ -79,6 +79,7 @@ def tangent_source(tangent: Tangent, prefix: str, by_hand: Mapping[str, str] | N
             columns=len(tangent.columns),
             sensors=len(tangent.rows),
             prepared=max(tangent.length(name) for name in ("prepare", "prepare_all")),
+            side=side,
             touches=len(tangent.touched),
             touched=", ".join(map(str, tangent.touched)) or "0",
             functions=", ".join(by_hand.get(name, f"{prefix}_{name}") for name in TANGENT_NAMES),

@@ -1,7 +1,10 @@
 #include "advance.c" /* for `go`, which tells of each step it accepts */
 #include "rodas.h"
 
+#include <stdint.h>
+
 #define STEPWISE 1e-6 /* of a stage: how far a derivative is taken by difference */
+#define WHOLE 8       /* numbers in the longest vectors */
 #define LANE 4        /* rows of numbers by states now are padded to whole lanes, which compilers make vectors of */
 
 /* Where the equations move with a parameter: in this row, by this column, the so-manieth of those asked for. */
@@ -24,8 +27,10 @@ typedef struct {
     double *through; /* nx x active: x(i) by the parameters */
     double *next;
     double *dM, *moved; /* nx x columns, parameters */
-    double *slopes;     /* WC_STAGES x nx x span: states, pushes and, where any is asked for, all columns */
-    double *bend;       /* nx x span */
+    int side;           /* stages that are evaluated in one call: a number of each of them stands beside that of the next */
+    double *slopes;     /* of each stage nx x span: states, pushes and, where any is asked for, all columns */
+    double *bend;       /* the same */
+    double *xs, *ws, *along, *dw; /* where stages are taken, and along what they bend: nx and inputs of each */
     double *prepared;   /* what bends of a step have in common, where the model brings it */
     touch *touched;
     int touches;
@@ -46,11 +51,23 @@ static inline void add(int n, double factor, const double *restrict from, double
         for (int e = 0; e < LANE; e++) to[c + e] += factor * from[c + e];
 }
 
+/* Where number `at` of stage i stands among `size` numbers of each stage. */
+static inline long of_stage(const carrier *c, int i, int at, int size) {
+    return ((long)(i / c->side) * size + at) * c->side + i % c->side;
+}
+
+/* Puts `size` numbers of stage i where they belong; the last stage also where there would be more. */
+static void place(const carrier *c, int i, int size, const double *from, double *to) {
+    int beyond = i + 1 == WC_STAGES ? (WC_STAGES + c->side - 1) / c->side * c->side : i + 1;
+    for (int j = i; j < beyond; j++)
+        for (int at = 0; at < size; at++) to[of_stage(c, j, at, size)] = from[at];
+}
+
 /* G of stage i from those of the stages after it: what its U moves in them and in the end, through W. */
 static void backward(carrier *c, const wc_rodas *s, int i, double h) {
     int nx = c->nx, stride = c->stride, size = nx * stride;
     double *G = c->G + i * size, *P = c->P + i * size;
-    const double *slopes = c->slopes + i * nx * c->span;
+    const double *slopes = c->slopes + of_stage(c, i, 0, nx * c->span);
     memset(G, 0, sizeof(double) * (size_t)size);
     for (int r = 0; r < nx; r++) G[r * stride + r] = i + 1 == WC_STAGES ? 1 : wc_A[WC_STAGES - 1][i];
     for (int j = i + 1; j < WC_STAGES; j++) {
@@ -60,48 +77,59 @@ static void backward(carrier *c, const wc_rodas *s, int i, double h) {
     wc_rodas_solve_transposed(s, stride, G);
     memset(P, 0, sizeof(double) * (size_t)size);
     for (int r = 0; r < nx; r++)
-        for (int k = 0; k < nx; k++) add(stride, slopes[r * c->span + k], G + r * stride, P + k * stride);
+        for (int k = 0; k < nx; k++) add(stride, slopes[(r * c->span + k) * c->side], G + r * stride, P + k * stride);
 }
 
 /* What stage i adds to the derivatives of the step. V is what stands beside dM. */
 static void gather(carrier *c, int i, const double *V, const double *first) {
     int nx = c->nx, stride = c->stride, span = c->span, motion = nx + WC_PUSHES;
     double *by_push = c->step + nx * stride, *by_parameter = by_push + 2 * WC_PUSHES * stride;
-    const double *G = c->G + i * nx * stride, *F = c->slopes + i * nx * span, *B = c->bend;
+    long begin = of_stage(c, i, 0, nx * span);
+    const double *G = c->G + i * nx * stride, *F = c->slopes + begin, *B = c->bend + begin;
     add(nx * stride, 1, c->P + i * nx * stride, c->step);
     for (int r = 0; r < nx; r++) {
-        for (int k = 0; k < nx; k++) add(stride, B[r * span + k], G + r * stride, c->step + k * stride);
+        for (int k = 0; k < nx; k++) add(stride, B[(r * span + k) * c->side], G + r * stride, c->step + k * stride);
         for (int q = 0; q < WC_PUSHES; q++) {
-            int at = r * span + nx + q;
+            int at = (r * span + nx + q) * c->side;
             double later = F[at] * wc_ALPHA[i] + wc_GAMMA_I[i] * first[r * motion + nx + q];
             add(stride, F[at] + B[at] - later, G + r * stride, by_push + q * stride);
             add(stride, later, G + r * stride, by_push + (WC_PUSHES + q) * stride);
         }
     }
     for (const touch *e = c->touched; e < c->touched + c->touches; e++) {
-        int at = e->row * span + motion + e->column;
+        int at = (e->row * span + motion + e->column) * c->side;
         double moved = F[at] + B[at] + c->dM[e->row * c->g->columns + e->column] * V[e->row];
         add(stride, moved, G + e->row * stride, by_parameter + e->place * stride);
     }
 }
 
 /* d[J U + F_w dw] by states and pushes at the step's beginning, where the model does not bring it. */
-static void bend_by_difference(carrier *c, const wc_rodas *s, const double *U, const double *dw) {
+static void bend_by_difference(const carrier *c, const wc_rodas *s, const double *U, const double *dw, double *bend) {
     int nx = c->nx, size = nx * (nx + WC_PUSHES);
     double xs[WC_MAX_STATES], ws[WC_MAX_INPUTS];
     for (int r = 0; r < nx; r++) xs[r] = s->of.x[r] + STEPWISE * U[r];
     for (int q = 0; q < c->k->inputs; q++) ws[q] = s->of.w0[q] + STEPWISE * dw[q];
-    call(c->g->slopes, xs, ws, c->p, c->bend);
-    for (int e = 0; e < size; e++) c->bend[e] = (c->bend[e] - s->first[e]) / STEPWISE;
+    call(c->g->slopes, xs, ws, c->p, bend);
+    for (int e = 0; e < size; e++) bend[e] = (bend[e] - s->first[e]) / STEPWISE;
 }
 
-/* How J U + F_w dw of stage i moves. */
-static void find_bend(carrier *c, const wc_rodas *s, int i) {
-    const double *U = s->U + i * c->nx;
-    double dw[WC_MAX_INPUTS];
-    for (int q = 0; q < c->k->inputs; q++) dw[q] = wc_GAMMA_I[i] * (s->of.w1[q] - s->of.w0[q]);
-    if (c->bent) call(c->bent, c->prepared, U, dw, c->bend);
-    else bend_by_difference(c, s, U, dw);
+/* Slopes where stage i is taken, and how J U + F_w dw of it moves. */
+static void evaluate(carrier *c, const wc_rodas *s, int i, const double *dw) {
+    int nx = c->nx, size = nx * c->span;
+    const double *U = s->U + i * nx;
+    if (i == 0 && !c->out->forced) memcpy(c->slopes, s->first, sizeof(double) * (size_t)size);
+    else call(c->sloped, s->xs, s->ws, c->p, c->slopes + i * size);
+    if (c->bent) call(c->bent, c->prepared, U, dw, c->bend + i * size);
+    else bend_by_difference(c, s, U, dw, c->bend + i * size);
+}
+
+/* The same for all stages, several in a call. */
+static void evaluate_together(carrier *c) {
+    int nx = c->nx, nw = c->k->inputs, size = nx * c->span;
+    for (int i = 0; i < WC_STAGES; i += c->side) {
+        call(c->sloped, c->xs + i * nx, c->ws + i * nw, c->p, c->slopes + i * size);
+        call(c->bent, c->prepared, c->along + i * nx, c->dw + i * nw, c->bend + i * size);
+    }
 }
 
 /* D goes on over a step from and to these parts of the interval. */
@@ -126,23 +154,30 @@ static void compose(carrier *c, double from, double to) {
 
 static void carry(void *context, const double *x, const double *wa, const double *wb, double done, double h) {
     carrier *c = context;
-    int nx = c->nx, size = nx * c->span;
+    int nx = c->nx, nw = c->k->inputs;
     wc_rodas s;
-    double V[WC_MAX_STATES];
+    double V[WC_MAX_STATES], dw[WC_MAX_INPUTS];
     wc_rodas_begin(&s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
     if (c->prepare) call(c->prepare, x, wa, c->p, c->prepared);
     for (int i = 0; i < WC_STAGES; i++) {
         wc_rodas_stage(&s, i);
-        if (i == 0 && !c->out->forced) memcpy(c->slopes, s.first, sizeof(double) * (size_t)size);
-        else call(c->sloped, s.xs, s.ws, c->p, c->slopes + i * size);
+        for (int q = 0; q < nw; q++) dw[q] = wc_GAMMA_I[i] * (wb[q] - wa[q]);
+        if (c->side == 1) {
+            evaluate(c, &s, i, dw);
+            continue;
+        }
+        place(c, i, nx, s.xs, c->xs);
+        place(c, i, nw, s.ws, c->ws);
+        place(c, i, nx, s.U + i * nx, c->along);
+        place(c, i, nw, dw, c->dw);
     }
+    if (c->side > 1) evaluate_together(c);
     memset(c->step, 0, sizeof(double) * (size_t)(c->m * c->stride));
     for (int i = WC_STAGES - 1; i >= 0; i--) {
         memset(V, 0, sizeof V);
         wc_add_stages(nx, wc_C[i], i, s.U, V);
         for (int r = 0; r < nx; r++) V[r] = (V[r] - s.U[i * nx + r] / wc_GAMMA) / h;
         backward(c, &s, i, h);
-        find_bend(c, &s, i);
         gather(c, i, V, s.first);
     }
     compose(c, done / c->length, (done + h) / c->length);
@@ -214,13 +249,22 @@ static int find_touched(const wc_tangent *g, const wc_derivatives *out, touch *t
     return n;
 }
 
+/* As many stages as are evaluated, in whole calls. */
+static long evaluated(int side) { return (WC_STAGES + side - 1) / side * side; }
+
+/* The next place that is on a whole vector. */
+static double *aligned(double *at) {
+    uintptr_t whole = WHOLE * sizeof(double);
+    return (double *)(((uintptr_t)at + whole - 1) / whole * whole);
+}
+
 static int padded(int n) { return (n + LANE - 1) / LANE * LANE; }
 
 long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) {
     long nx = k->states, stride = padded(k->states), m = nx + 2 * WC_PUSHES + active /* at most */, nc = g->columns;
     long span = nx + WC_PUSHES + nc;
-    return 3 * m * stride + 2 * WC_STAGES * nx * stride + (WC_STAGES + 1) * nx * span + nx * nc + g->prepared + k->parameters +
-           2 * nx * active + g->sensors * span + 2 * g->touches; /* a touch is smaller than two numbers */
+    return 3 * m * stride + 2 * WC_STAGES * nx * stride + 2 * evaluated(g->side) * (nx * span + nx + k->inputs) + 6 * WHOLE + nx * nc +
+           g->prepared + k->parameters + 2 * nx * active + g->sensors * span + 2 * g->touches; /* a touch is smaller than two */
 }
 
 wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
@@ -229,6 +273,7 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     int nx = k->states, nw = k->inputs, forced = out->forced, widest = nx + WC_PUSHES + g->columns, stride = padded(nx);
     int m = nx + 2 * WC_PUSHES + (forced ? out->active : 0), span = forced ? widest : nx + WC_PUSHES;
     carrier c = {.k = k, .g = g, .out = out, .p = p, .nx = nx, .stride = stride, .m = m, .span = span,
+                 .side = forced ? g->side : 1,
                  .sloped = forced ? g->slopes_all : g->slopes,
                  .prepare = forced ? g->prepare_all : g->prepare,
                  .bent = forced ? g->bend_all : g->bend};
@@ -237,9 +282,14 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
     c.spare = c.step + m * stride;
     c.G = c.spare + m * stride;
     c.P = c.G + WC_STAGES * nx * stride;
-    c.slopes = c.P + WC_STAGES * nx * stride;
-    c.bend = c.slopes + WC_STAGES * nx * widest;
-    c.dM = c.bend + nx * widest;
+    long stages = evaluated(c.side);
+    c.slopes = aligned(c.P + WC_STAGES * nx * stride);
+    c.bend = aligned(c.slopes + stages * nx * widest);
+    c.xs = aligned(c.bend + stages * nx * widest);
+    c.ws = aligned(c.xs + stages * nx);
+    c.along = aligned(c.ws + stages * k->inputs);
+    c.dw = aligned(c.along + stages * nx);
+    c.dM = c.dw + stages * k->inputs;
     c.prepared = c.dM + nx * g->columns;
     c.moved = c.prepared + g->prepared;
     c.through = c.moved + k->parameters;

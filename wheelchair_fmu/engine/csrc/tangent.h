@@ -13,6 +13,7 @@
 typedef struct {
     int columns, sensors; /* parameters that may be asked for, results that instruments read */
     int prepared;         /* numbers that `prepare` or `prepare_all` gives, at most */
+    int side;             /* how many stages one call of `slopes_all` and `bend_all` takes, each number of them in a vector */
     int touches;          /* places, row * columns + column, where an equation moves with a parameter */
     const int *touched;
     const int *rows;      /* places of those results */

@@ -1,13 +1,15 @@
-"""What simulates a sweep's chairs: the compiled kernel, or the FMU through fmpy. Both give results by FMI name."""
+"""What simulates a sweep's chairs: the compiled kernel, several at once, or the FMU through fmpy, one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 
+from ...engine.ensemble import Ensemble, Runs
 from ...engine.simulate import Simulator
+from ...errors import WheelchairError
 from ...model.choice import names
 from ...model.variant import Variant, number
 from ..archives import fmu_of
@@ -20,7 +22,9 @@ TOLERANCE = 1e-6  # of the kernel's steps, which are free of the FMU's grid
 class Engine(Protocol):
     """One variant, ready to run with any values (numbers, SI units; choices by their number)."""
 
-    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]: ...
+    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
+        """Chairs, by their values, through the same inputs; the results that are wanted, by FMI name."""
+        ...
 
 
 class KernelEngine:
@@ -33,14 +37,33 @@ class KernelEngine:
         self._simulators = {
             n: Simulator(variant.with_values({"tyre.law": names(variant.choice)["tyre"][n - 1]})) for n in {own, *laws}
         }
+        self._ensembles: dict[tuple[int, tuple[str, ...]], Ensemble] = {}
+        self._memory = np.empty(0)  # of the results, kept from run to run
 
-    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
-        p = self._own.copy()
-        for name, value in values.items():
-            p[self._places[name]] = value
-        simulator = self._simulators[int(p[self._places["tyre.law"]])]
-        trajectory = simulator.run(time, simulator.inputs(len(time), inputs), p, tolerance=TOLERANCE)
-        return dict(zip(trajectory.names, trajectory.results.T, strict=True))
+    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
+        p = np.tile(self._own, (len(chairs), 1))
+        for row, values in zip(p, chairs, strict=True):
+            for name, value in values.items():
+                row[self._places[name]] = value
+        laws = p[:, self._places["tyre.law"]].astype(int)
+        if len(set(laws)) == 1:
+            return self._of_law(int(laws[0]), time, inputs, p, tuple(wanted))
+        runs = Runs(np.empty((len(chairs), len(wanted), len(time))), [None] * len(chairs))
+        for law in sorted(set(laws)):
+            some = np.flatnonzero(laws == law)
+            runs.put(some, self._of_law(int(law), time, inputs, p[some], tuple(wanted)))
+        return runs
+
+    def _of_law(
+        self, law: int, time: np.ndarray, inputs: Mapping[str, np.ndarray], p: np.ndarray, wanted: tuple[str, ...]
+    ) -> Runs:
+        if (law, wanted) not in self._ensembles:
+            self._ensembles[law, wanted] = Ensemble(self._simulators[law], wanted)
+        ensemble = self._ensembles[law, wanted]
+        rows, numbers = ensemble.simulator.inputs(len(time), inputs), len(p) * len(wanted) * len(time)
+        if len(self._memory) < numbers:
+            self._memory = np.empty(numbers)
+        return ensemble.run(time, rows, p, tolerance=TOLERANCE, memory=self._memory)
 
 
 class FmuEngine:
@@ -51,9 +74,17 @@ class FmuEngine:
         self._own = {name: value for name, value in variant.values.items() if name in self._fmu.parameters}
         self._own["tyre.law"] = 1 + names(variant.choice)["tyre"].index(variant.choice.tyre)
 
-    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], values: Values) -> Mapping[str, np.ndarray]:
-        values = {name: value for name, value in values.items() if name in self._fmu.parameters}  # a record's delay is not
-        return self._fmu.run(time, inputs, {**self._own, **values}).columns
+    def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
+        runs = Runs(np.full((len(chairs), len(wanted), len(time)), np.nan), [None] * len(chairs))
+        for i, chair in enumerate(chairs):
+            values = {name: value for name, value in chair.items() if name in self._fmu.parameters}  # a record's delay is not
+            try:
+                columns = self._fmu.run(time, inputs, {**self._own, **values}).columns
+            except WheelchairError as error:
+                runs.errors[i] = str(error)
+            else:
+                runs.results[i] = [columns[name] for name in wanted]
+        return runs
 
 
 ENGINES: dict[str, type[KernelEngine] | type[FmuEngine]] = {"kernel": KernelEngine, "fmu": FmuEngine}

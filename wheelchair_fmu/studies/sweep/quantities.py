@@ -24,31 +24,46 @@ QUANTITIES: dict[str, tuple[str, str]] = {  # name: unit, meaning
     "rms_fit": ("1", "the same over its fitted runs"),
     "rms_holdout": ("1", "the same over its held-out runs"),
 }
-NONE = dict.fromkeys(QUANTITIES, nan)
+READS = ("chair.y", "chair.u", "chair.psi_dot", "chair.curvature", "slip.rl", "slip.rr", "push.total_needed", "load.lifted")
 
 
-def of_run(time: np.ndarray, inputs: Columns, y: Columns, *, held: bool, tread: float) -> dict[str, float]:
-    """Numbers of one manoeuvre from its times (n,), inputs (n,) and results (n,) by FMI name.
+def none(chairs: int) -> dict[str, np.ndarray]:
+    """Each quantity of chairs that have none, (chairs,)."""
+    return {name: np.full(chairs, nan) for name in QUANTITIES}
 
-    `held`: the speed is prescribed; `tread` is t_r [m].
+
+def of_runs(
+    time: np.ndarray, inputs: Columns, results: np.ndarray, *, held: np.ndarray, tread: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Numbers (chairs,) of one manoeuvre from its times (n,), inputs (n,) by FMI name and results (chairs, READS, n).
+
+    `held` (chairs,): the speed is prescribed; `tread` (chairs,) is t_r [m].
     """
-    last = float(y["chair.curvature"][-1])
+    y = dict(zip(READS, np.moveaxis(results, 1, 0), strict=True))
+    last = y["chair.curvature"][:, -1]
+    bent = np.abs(last) > 1 / STRAIGHT
     return {
-        **NONE,
-        "radius": 1 / last if abs(last) > 1 / STRAIGHT else inf,
+        **none(len(results)),
+        "radius": np.divide(1, last, out=np.where(np.isnan(last), nan, inf), where=bent),
         "curvature": last,
-        "slip_peak_rl": float(np.abs(y["slip.rl"]).max()),
-        "slip_peak_rr": float(np.abs(y["slip.rr"]).max()),
-        "drift": float(y["chair.y"][-1] - y["chair.y"][0]),
-        "speed_end": float(y["chair.u"][-1]),
+        "slip_peak_rl": _greatest(y["slip.rl"]),
+        "slip_peak_rr": _greatest(y["slip.rr"]),
+        "drift": y["chair.y"][:, -1] - y["chair.y"][:, 0],
+        "speed_end": y["chair.u"][:, -1],
         "push_work": _work(time, inputs, y, held, tread),
-        "lifted": float(np.mean(y["load.lifted"])),
+        "lifted": np.mean(y["load.lifted"], axis=1),
     }
 
 
-def _work(time: np.ndarray, inputs: Columns, y: Columns, held: bool, tread: float) -> float:
+def _greatest(y: np.ndarray) -> np.ndarray:
+    """Size, of each row."""
+    return np.maximum(y.max(axis=1), -y.min(axis=1))
+
+
+def _work(time: np.ndarray, inputs: Columns, y: Columns, held: np.ndarray, tread: np.ndarray) -> np.ndarray:
     """∫ (F_rl v_rl + F_rr v_rr) dt with the wheels' speeds v = u ± ψ' t_r/2: total push times u and couple times ψ'."""
     left, right = inputs.get("push.F_rl", 0.0), inputs.get("push.F_rr", 0.0)
-    total = y["push.total_needed"] if held else np.add(left, right)
-    couple = np.subtract(left, right) * tread / 2
-    return float(np.trapezoid(total * y["chair.u"] + couple * y["chair.psi_dot"], time))
+    total = np.where(held[:, None], y["push.total_needed"], np.add(left, right))
+    couple = np.multiply.outer(tread / 2, np.subtract(left, right))
+    couple = couple if couple.ndim == 2 else couple[:, None]
+    return np.trapezoid(total * y["chair.u"] + couple * y["chair.psi_dot"], time, axis=1)

@@ -4,27 +4,30 @@ from __future__ import annotations
 
 import hashlib
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
 import pyarrow as pa
 
 from ... import __version__
 from ...chunks import ERROR
 from ...configuration import MANOEUVRES, digest
 from ...engine.cache import sources
-from ...errors import WheelchairError
 from ...handling.manoeuvres import Manoeuvre
+from .columns import column, woven
 from .engines import ENGINES, Engine, encoded
 from .plan import Chair, Plan
-from .quantities import NONE, QUANTITIES, of_run
+from .quantities import QUANTITIES, READS, none, of_runs
 
 if TYPE_CHECKING:
     from .yardstick import Yardstick
 
 CHUNK = 256  # runs, about: what is lost when a sweep is killed, and what a worker holds in memory
+NUMBERS = 500_000  # results of chairs that run side by side, about: what a processor keeps at hand
+LEAST = 16  # chairs, so that no lane waits for long at the end
 
 
 @dataclass(frozen=True)
@@ -91,32 +94,41 @@ class Job:
 
     def table(self, chunk: int) -> pa.Table:
         """The runs of one chunk: chairs in order, of each chair every variant, of each variant every manoeuvre."""
-        axes = self.plan.design.axes
         start, stop = self.bounds(chunk)
-        points = self.plan.design.points(start, stop)
-        shown = [axis.shown(points[:, i]) for i, axis in enumerate(axes)]
-        rows = []
-        for i in range(stop - start):
-            values = {axis.name: float(points[i, k]) for k, axis in enumerate(axes)}
-            about = {"chair": start + i, **{axis.name: shown[k][i] for k, axis in enumerate(axes)}}
-            rows += [{**about, **row} for row in _of_chair(self, values)]
-        return pa.Table.from_pylist(rows, schema=self.schema())
+        cases = list(_cases(self, self.plan.design.points(start, stop)))
+        columns = {
+            "chair": np.repeat(np.arange(start, stop), len(cases)),
+            **{name: woven([case[name] for case in cases]) for name in cases[0]},
+        }
+        schema = self.schema()
+        return pa.table([column(columns[name], schema.field(name).type) for name in schema.names], schema=schema)
 
 
 def prepare(job: Job) -> None:
-    """Compile or build what the runs need, once for all processes that share the cache."""
-    for chair in job.plan.chairs:
-        _bench(job, chair)
+    """Compile or build what the runs need, once for all processes that share the cache: the first chair needs it."""
+    for _ in _cases(job, job.plan.design.points(0, 1)):
+        pass
 
 
-def _of_chair(job: Job, values: Mapping[str, float]) -> Iterator[dict[str, Any]]:
+def _cases(job: Job, points: np.ndarray) -> Iterator[dict[str, Any]]:
+    """Of each variant each manoeuvre: the columns of the chairs at these points."""
+    axes, chairs = job.plan.design.axes, len(points)
+    shown = {axis.name: axis.shown(points[:, i]) for i, axis in enumerate(axes)}
+    values = [dict(zip((axis.name for axis in axes), map(float, point), strict=True)) for point in points]
+    options = dict.fromkeys(f"manoeuvre.{name}" for course in job.plan.courses for name, _ in course.options)
     for chair in job.plan.chairs:
         bench = _bench(job, chair)
         for course in job.plan.courses:
-            options = {f"manoeuvre.{name}": value for name, value in course.options}
-            yield {"variant": chair.label, "manoeuvre": course.label, **options, **bench.manoeuvre(course.label, values)}
+            own = {**options, **{f"manoeuvre.{name}": value for name, value in course.options}}
+            same = {"variant": chair.label, "manoeuvre": course.label, **own}
+            yield {**_alike(same, chairs), **shown, **bench.manoeuvre(course.label, values)}
         if job.yardsticks:
-            yield {"variant": chair.label, "manoeuvre": f"campaign {job.campaign}", **bench.campaign(values)}
+            same = {"variant": chair.label, "manoeuvre": f"campaign {job.campaign}", **options}
+            yield {**_alike(same, chairs), **shown, **bench.campaign(values)}
+
+
+def _alike(values: Mapping[str, Any], rows: int) -> dict[str, list[Any]]:
+    return {name: [value] * rows for name, value in values.items()}
 
 
 class _Bench:
@@ -133,23 +145,25 @@ class _Bench:
             m = course.manoeuvre()
             self.courses[course.label] = m, encoded(self.variant, m.values)
 
-    def manoeuvre(self, label: str, values: Mapping[str, float]) -> dict[str, Any]:
-        m, given = self.courses[label]
-        given = {**given, **values}
-        try:
-            results = self.engine.run(m.time, m.inputs, given)
-        except WheelchairError as error:
-            return {**NONE, ERROR: str(error)}
-        held = given["speed.mode"] == 2
-        return of_run(m.time, m.inputs, results, held=held, tread=given.get("chair.t_r", self.own["chair.t_r"]))
+    def manoeuvre(self, label: str, chairs: Sequence[Mapping[str, float]]) -> dict[str, Any]:
+        """Columns of the chairs with these values."""
+        m, own = self.courses[label]
+        at_once = max(LEAST, NUMBERS // (len(READS) * len(m.time)))
+        given = [{**own, **values} for values in chairs]
+        parts = [self._some(m, given[i : i + at_once]) for i in range(0, len(given), at_once)]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def campaign(self, values: Mapping[str, float]) -> dict[str, Any]:
+    def _some(self, m: Manoeuvre, given: Sequence[Mapping[str, float]]) -> dict[str, np.ndarray]:
+        runs = self.engine.run(m.time, m.inputs, given, READS)
+        held = np.array([values["speed.mode"] == 2 for values in given])
+        tread = np.array([values.get("chair.t_r", self.own["chair.t_r"]) for values in given])
+        return {**of_runs(m.time, m.inputs, runs.results, held=held, tread=tread), ERROR: np.array(runs.errors, object)}
+
+    def campaign(self, chairs: Sequence[Mapping[str, float]]) -> dict[str, Any]:
         from .yardstick import whitened  # brings what reads campaigns along, which most sweeps do without
 
-        try:
-            return {**NONE, **whitened(self.engine, self.variant, self.yardsticks, values)}
-        except WheelchairError as error:
-            return {**NONE, ERROR: str(error)}
+        found, why = whitened(self.engine, self.variant, self.yardsticks, chairs)
+        return {**none(len(chairs)), **found, ERROR: np.array(why, object)}
 
 
 _benches = threading.local()  # an FMU serves one thread

@@ -9,7 +9,6 @@ from math import nan
 import numpy as np
 
 from ...campaign import Run
-from ...errors import SimulationError
 from ...model.variant import Variant
 from ..measured import PREDICTS
 from .engines import Engine, encoded
@@ -28,22 +27,31 @@ class Yardstick:
     fixed: Mapping[str, float]
 
 
-def whitened(engine: Engine, variant: Variant, runs: Sequence[Yardstick], values: Mapping[str, float]) -> dict[str, float]:
-    """`rms`, `rms_fit` and `rms_holdout` of the chair with these values; NaN where there are no such runs.
-
-    Raises SimulationError, naming the run, where it cannot be simulated.
-    """
-    errors: dict[str, list[np.ndarray]] = {"fit": [], "holdout": []}
+def whitened(
+    engine: Engine, variant: Variant, runs: Sequence[Yardstick], chairs: Sequence[Mapping[str, float]]
+) -> tuple[dict[str, np.ndarray], list[str | None]]:
+    """`rms`, `rms_fit` and `rms_holdout` (chairs,) of the chairs with these values, NaN where there are no such runs; and why
+    one has none, naming the first run that cannot be simulated."""
+    channels = list(dict.fromkeys(channel for y in runs for channel in y.channels))  # of all runs: one library for all
+    errors: list[dict[str, list[np.ndarray]]] = [{"fit": [], "holdout": []} for _ in chairs]
+    why: list[str | None] = [None] * len(chairs)
     for y in runs:
-        given = encoded(variant, {**y.known, **variant.values, **values, **y.fixed})
-        try:
-            results = engine.run(y.run.time, y.run.inputs, given)
-        except SimulationError as error:
-            raise SimulationError(f"run {y.run.name}: {error}") from error
-        e = y.errors(np.stack([results[PREDICTS[c]] for c in y.channels], axis=1))
-        errors[y.run.role].append(e[np.isfinite(e)])
-    fit, holdout = errors["fit"], errors["holdout"]
-    return {"rms": _rms([*fit, *holdout]), "rms_fit": _rms(fit), "rms_holdout": _rms(holdout)}
+        given = [encoded(variant, {**y.known, **variant.values, **values, **y.fixed}) for values in chairs]
+        found = engine.run(y.run.time, y.run.inputs, given, [PREDICTS[c] for c in channels])
+        own = [channels.index(c) for c in y.channels]
+        for i, error in enumerate(found.errors):
+            if error:
+                why[i] = why[i] or f"run {y.run.name}: {error}"
+            else:
+                e = y.errors(found.results[i, own].T)
+                errors[i][y.run.role].append(e[np.isfinite(e)])
+    roles = {"rms": ("fit", "holdout"), "rms_fit": ("fit",), "rms_holdout": ("holdout",)}
+    return {
+        name: np.array(
+            [nan if bad else _rms([e for role in of for e in some[role]]) for some, bad in zip(errors, why, strict=True)]
+        )
+        for name, of in roles.items()
+    }, why
 
 
 def _rms(errors: list[np.ndarray]) -> float:
