@@ -1,7 +1,5 @@
 """Sphinx: pages in Markdown, and the reference from the docstrings of what `import wheelchair_fmu` has."""
 
-from os import environ
-
 from wheelchair_fmu import __version__
 
 project = "wheelchair-fmu"
@@ -19,10 +17,7 @@ html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
 html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml"]
 exclude_patterns = ["contents.txt"]
 # The tutorials run when the site is built, each in an empty folder of its own; one that fails or takes too long fails the site.
-# Those that diagnose or compile a law take minutes, so they run only where a release is made, which sets TUTORIALS=all.
 nb_execution_mode = "force"
-slow = ["tutorials/effect.md", "tutorials/law.md", "tutorials/loop.md"]
-nb_execution_excludepatterns = [] if environ.get("TUTORIALS") == "all" else slow
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -125,12 +125,13 @@ class Campaign:
         *,
         values: Values | None = None,
         own_effects: str | Path | None = None,
+        among: Iterable[str] | None = None,
         progress: Callable[[str], None] | None = None,
     ) -> Diagnosis:
         """The same as `wc.diagnose(campaign, …)`."""
         from .diagnoses import diagnose
 
-        return diagnose(self, variant, values=values, own_effects=own_effects, progress=progress)
+        return diagnose(self, variant, values=values, own_effects=own_effects, among=among, progress=progress)
 
     def export(
         self, folder: str | Path, variant: Variant | str | Path | None = None, *, fit: Sequence[str] = ()

@@ -15,7 +15,7 @@ import pandas as pd
 from .. import campaign as measured
 from ..errors import Failure, unknown
 from ..loop import improve, verdict
-from ..loop.subject import applied, known_parameters
+from ..loop.subject import applied, known_parameters, narrowed
 from ..model import variant as chairs
 from ..report import latex
 from ..report.estimates_figure import estimates_figure
@@ -40,14 +40,16 @@ def diagnose(
     *,
     values: Values | None = None,
     own_effects: str | Path | None = None,
+    among: Iterable[str] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Find which physical effects a chair lacks, as a campaign shows it, or that this campaign cannot tell.
 
     `campaign` is what `read` gave, or its folder; `variant` is the chair to start from (a Variant, a TOML file, or None for the
     paper's with what the campaign says of it). `values` are FMI parameters by name, SI units, which go before the campaign's
-    and are not estimated. `own_effects` is a folder of effect files of your own, which are programs. `progress` is told what is
-    being done, a sentence at a time. The first time, models are compiled, which takes 10 to 20 s on two cores.
+    and are not estimated. `own_effects` is a folder of effect files of your own, which are programs. `among` are ids of the
+    effects that are asked about, all of the catalogue unless given; what is not asked about can be neither found nor tied, so
+    that a verdict says less. `progress` is told what is being done, a sentence at a time. The first time, models are compiled.
 
     Raises CampaignError for a campaign with faults, UsageError for an unknown name, and EffectError for effect files with
     faults. How verdicts come about, and how far to trust them, is in docs/verdicts.md.
@@ -63,6 +65,8 @@ def diagnose(
         else measured.read(campaign, known_parameters(start.catalogue, start.choice))
     )
     chair, known, fixed = applied(values or {}, start, given)
+    if among is not None:
+        chair = narrowed(chair, among)
     known = measured.windows(known)
     found, told = searched(known, chair, fixed, progress or (lambda words: None))
     return Diagnosis(known, chair, fixed, found, told)

@@ -225,6 +225,6 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
         f"runs: {len(found.runs)}; devices: {len(found.plans)}; recordings are {how} {output / RUNS}"
         + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else "")
     )
-    left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "look at"
+    left = "fill in what is open in" if errors or None in (wanted.mass, wanted.radius) else "read"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
     out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")
