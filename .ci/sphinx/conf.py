@@ -1,5 +1,9 @@
 """Sphinx: pages in Markdown, and the reference from the docstrings of what `import wheelchair_fmu` has."""
 
+from functools import partialmethod
+
+from nbclient import NotebookClient
+
 from wheelchair_fmu import __version__
 
 project = "wheelchair-fmu"
@@ -12,7 +16,11 @@ autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 html_theme = "alabaster"
-html_theme_options = {"description": "a manual wheelchair on real tyres, as an FMU", "page_width": "1100px"}
+html_theme_options = {
+    "description": "a manual wheelchair on real tyres, as an FMU",
+    "page_width": "1300px",
+    "body_max_width": "none",
+}
 html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
 html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml"]
 exclude_patterns = ["contents.txt"]
@@ -22,3 +30,5 @@ nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
+# What a command prints comes in pieces of a hundred characters, which are joined as they are.
+NotebookClient.__init__ = partialmethod(NotebookClient.__init__, coalesce_streams=True)

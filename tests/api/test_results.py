@@ -41,6 +41,10 @@ def test_a_diagnosis_says_the_same_in_every_form(found, tmp_path):
         found.save(tmp_path / "e.xls")
 
 
+def test_a_figure_shows_itself_in_a_notebook(found):
+    assert found.plot_staircase()._repr_png_().startswith(b"\x89PNG")
+
+
 def test_a_diagnosis_has_the_whole_final_fit(found):
     told = found.as_dict()
     final = told["final"]

@@ -33,9 +33,7 @@ def done_with_a_bar(job: Job, output: Path, pool: Pool, words: str, known: Mappi
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     out = console(stderr=True)
     try:
-        with Progress(
-            *columns, console=out, transient=not out.is_terminal
-        ) as bar:  # a file or a notebook needs no finished bar
+        with Progress(*columns, console=out, disable=not out.is_terminal) as bar:  # a log or a notebook needs none
             task = bar.add_task(words, total=job.total)
             complete(job, output, pool, lambda rows: bar.advance(task, rows), known or {})
     except KeyboardInterrupt:
