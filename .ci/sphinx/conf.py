@@ -22,7 +22,7 @@ html_theme_options = {
     "body_max_width": "none",
 }
 html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
-html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml"]
+html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml", "make_inputs.py"]
 exclude_patterns = ["contents.txt"]
 # The tutorials run when the site is built, each in an empty folder of its own; one that fails or takes too long fails the site.
 nb_execution_mode = "force"
