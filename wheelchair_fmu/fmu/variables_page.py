@@ -17,10 +17,11 @@ from .variables import Variable, interface
 
 HEAD = """# The FMU's variables
 
-What the FMU has when it is built by `wheelchair build`: units are SI, axes those of SAE J670 (x forward, y to the right, ψ clockwise from
-above). A tunable parameter may change while a simulation runs, a fixed one not. Beside these it has `effect.<id>.<parameter>` for each
-[effect](effects.md) that is built in, with sizes of zero at the start; states of effects and casters are outputs as well. The same tables, with
-sources, lie in the archive as `documentation/index.html`. The page is written by `make docs`.
+What the FMU has when it is built by `wheelchair build`: units are SI, axes those of SAE J670 (x forward, y to the right, ψ
+clockwise from above). A tunable parameter may change while a simulation runs, a fixed one not. Beside these it has
+`effect.<id>.<parameter>` for each [effect](effects.md) that is built in, with sizes of zero at the start; states of effects
+and casters are outputs as well. The same tables, with sources, lie in the archive as `documentation/index.html`. The page is
+written by `make docs`.
 """
 GROUPS = (("Inputs", "input"), ("Parameters", "parameter"), ("Outputs", "output"))
 COLUMNS = "| name | unit | start | bounds | what it is |\n|---|---|---|---|---|"
