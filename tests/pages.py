@@ -16,7 +16,7 @@ from wheelchair_fmu.cli.main import app
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"`([\w/]+\.py)`:\n\n```python\n(.*?)```", re.DOTALL)
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-PARTS = ("laws", "channels", "manoeuvres")  # of a configuration
+PARTS = ("laws", "channels", "formats", "manoeuvres")  # of a configuration
 
 
 def page(name: str) -> str:

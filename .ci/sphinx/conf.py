@@ -1,6 +1,8 @@
 """Sphinx: pages in Markdown, and the reference from the docstrings of what `import wheelchair_fmu` has."""
 
-from os import environ
+from functools import partialmethod
+
+from nbclient import NotebookClient
 
 from wheelchair_fmu import __version__
 
@@ -14,16 +16,19 @@ autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 html_theme = "alabaster"
-html_theme_options = {"description": "a manual wheelchair on real tyres, as an FMU", "page_width": "1100px"}
+html_theme_options = {
+    "description": "a manual wheelchair on real tyres, as an FMU",
+    "page_width": "1300px",
+    "body_max_width": "none",
+}
 html_sidebars = {"**": ["about.html", "searchbox.html", "navigation.html"]}
-html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml"]
+html_extra_path = ["LICENSE", "CITATION.cff", "references.bib", "sweep.toml", "make_inputs.py"]
 exclude_patterns = ["contents.txt"]
 # The tutorials run when the site is built, each in an empty folder of its own; one that fails or takes too long fails the site.
-# Those that diagnose or compile a law take minutes, so they run only where a release is made, which sets TUTORIALS=all.
 nb_execution_mode = "force"
-slow = ["tutorials/effect.md", "tutorials/law.md", "tutorials/loop.md"]
-nb_execution_excludepatterns = [] if environ.get("TUTORIALS") == "all" else slow
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
+# What a command prints comes in pieces of a hundred characters, which are joined as they are.
+NotebookClient.__init__ = partialmethod(NotebookClient.__init__, coalesce_streams=True)

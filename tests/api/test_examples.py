@@ -38,6 +38,8 @@ def function(thing: Any) -> Any:
 def test_every_public_name_says_what_it_is_and_of_what_type(name):
     for place, thing in members(name):
         assert inspect.getdoc(thing), place
+        fault = inspect.isclass(thing) and issubclass(thing, Exception)
+        assert fault or ">>>" in inspect.getdoc(thing), f"{place} has no example"
         if inspect.isfunction(plain := function(thing)):
             hints = inspect.signature(plain)
             untyped = [p for p, of in hints.parameters.items() if p not in ("self", "cls") and of.annotation is of.empty]
@@ -69,7 +71,7 @@ def test_examples_do_what_they_show(module, campaign, found, tmp_path, monkeypat
         known["compared"] = campaign.compare()
     if module == "api.tyres":
         known["tyre"] = wc.Tyre.fit("rig/rotating-disc.csv")
-    if module == "api.diagnoses":  # whose example asks again for what made `found`
+    if module in ("api.diagnoses", "api.campaigns"):  # whose examples ask again for what made `found`
         monkeypatch.setattr("wheelchair_fmu.api.diagnoses.searched", lambda *_: (found._found, found._told))
     done = doctest.testmod(import_module(f"wheelchair_fmu.{module}"), extraglobs=known, raise_on_error=False)
     assert done.attempted and not done.failed

@@ -13,10 +13,14 @@ import pyarrow.parquet as pq
 import pytest
 
 import wheelchair_fmu as wc
+from wheelchair_fmu.api import runs
 from wheelchair_fmu.api.diagnoses import probabilities_in
 from wheelchair_fmu.cli.effects import template
+from wheelchair_fmu.loop.subject import narrowed
+from wheelchair_fmu.model import variant as chairs
 from wheelchair_fmu.report import latex
 from wheelchair_fmu.report.estimates_figure import estimates_figure
+from wheelchair_fmu.studies import archives
 
 HIDDEN = ("rolling_resistance_asymmetry", "D")
 
@@ -35,6 +39,10 @@ def test_a_diagnosis_says_the_same_in_every_form(found, tmp_path):
     assert set(found.calibration.columns) >= {"value", "se", "prior", "prior_sd", "unit", "at_bound", "beyond"}
     with pytest.raises(wc.UsageError, match=r"no form of a diagnosis that ends in '\.xls'"):
         found.save(tmp_path / "e.xls")
+
+
+def test_a_figure_shows_itself_in_a_notebook(found):
+    assert found.plot_staircase()._repr_png_().startswith(b"\x89PNG")
 
 
 def test_a_diagnosis_has_the_whole_final_fit(found):
@@ -184,3 +192,17 @@ def test_a_variant_carries_the_effects_of_ones_own(tmp_path, monkeypatch):
     with pytest.raises(wc.WheelchairError, match="a program that runs with your rights"):
         wc.simulate("coast-down", time=0.1, variant=file)
     assert wc.Variant.read(file, trust=True).effects == ("mine",)
+
+
+def test_what_is_not_asked_about_is_no_candidate(tmp_path):
+    chair = chairs.Variant().with_effects(["scrub_torque"])
+    assert set(narrowed(chair, ["gyro_bias"]).catalogue) == {"gyro_bias", "scrub_torque"}
+    with pytest.raises(wc.UsageError, match="no effect 'gyro_bais'; did you mean 'gyro_bias'"):
+        wc.diagnose(wc.sample(tmp_path / "sample")[0], among=["gyro_bais"])
+
+
+def test_one_fmu_serves_all_tyre_laws(monkeypatch):
+    built = []
+    monkeypatch.setattr(runs, "fmu_of", lambda *asked: built.append(archives.fmu_of(*asked)) or built[-1])
+    turns = [wc.simulate("steady-turn", delta_force=40.0, values={"tyre.law": law}) for law in ("linear", "magic_formula")]
+    assert built[0] == built[1] and (turns[0]["slip.rr"] - turns[1]["slip.rr"]).abs().max() > 1e-4

@@ -27,7 +27,10 @@ def test_new_writes_an_effect_that_show_finds_good_and_says_what_to_do_next(tmp_
     assert all(f"--effects '{folder}'" in line for line in following)
     shown = run("effects", "show", "my_own", "--effects", folder)
     assert shown.exit_code == 0, shown.output
-    assert "your own; it keeps every contract" in shown.stdout and "effect.my_own.q [" in shown.stdout
+    assert (
+        "your own; it keeps every contract" in shown.stdout
+        and f"effect.my_own.{'load' if kind == 'body' else 'q'} [" in shown.stdout
+    )
     assert "my_own" in run("effects", "list", "--effects", folder).stdout
 
 

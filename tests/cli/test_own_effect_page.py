@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import shutil
@@ -32,25 +33,29 @@ def follow(page: list[tuple[str, str]], folder: Path) -> None:
         for line in filter(None, shown.splitlines()):
             assert line in told.splitlines(), (command, told)
         if " new " in command:
-            (program,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+            program, test = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
             (folder / "effects" / "rubbing_brake.py").write_text(program, encoding="utf-8")
+            (folder / "test_rubbing_brake.py").write_text(test, encoding="utf-8")
 
 
 def _told(words: list[str], folder: Path) -> str:
     if words[0] == "wheelchair":
         done = CliRunner().invoke(app, words[1:], catch_exceptions=False)
         return done.output
-    if words[0] == "python":
-        words = [sys.executable, str(ROOT / words[1]), *words[2:]]
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=True)
+    if words[0] == "pytest":
+        words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *words[1:]]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 @pytest.mark.skipif(shutil.which("sed") is None, reason="the page edits a file with sed")
 def test_what_is_quick(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    quick = [(c, shown) for c, shown in commands() if c.startswith(("wheelchair effects", "wheelchair simulate", "sed"))]
-    assert len(quick) == 5
+    quick = [
+        (c, shown) for c, shown in commands() if c.startswith(("wheelchair effects", "wheelchair simulate", "sed", "pytest"))
+    ]
+    assert len(quick) == 6
     follow(quick, tmp_path)
 
 

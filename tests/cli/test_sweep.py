@@ -34,6 +34,7 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
     (tmp_path / "plan.toml").write_text(PLAN)
     done = wheelchair("sweep", tmp_path / "plan.toml", "-o", tmp_path / "out.parquet", "--workers", 1)
     assert done.exit_code == 0, done.output
+    assert done.stderr == "", "a bar that is done has nothing to say to a file or a notebook"
     table = pd.read_parquet(tmp_path / "out.parquet")
     assert len(table) == 12 and set(table.manoeuvre) == {"spin time=2", "campaign open-06-left-drag"}
     measured = table[table.rms.notna()]

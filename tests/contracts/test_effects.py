@@ -18,7 +18,7 @@ from wheelchair_fmu.model.expression import law
 from wheelchair_fmu.model.smooth import magnitude
 from wheelchair_fmu.model.stage import Contribution, Effect, Row, adds, scales
 from wheelchair_fmu.model.wheelchair import assemble
-from wheelchair_fmu.quantities import N_S_M, N, Parameter, State, Unit
+from wheelchair_fmu.quantities import KG, M_S, N_S_M, N, Parameter, State, Unit
 
 EFFECTS = bundled()
 
@@ -46,6 +46,18 @@ def an(law, *, to="F_x", unit=N_S_M, kind=adds, mirror="", **more) -> Effect:
 
 
 LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
+SLIDING = State("sliding", M_S, "how fast a load slides against the frame")
+
+
+def a_load(mass=lambda load: load, rate=lambda sliding, k: -k * sliding, coupled=lambda load: load, upper=20.0) -> Effect:
+    """A load of some mass that slides on the frame, forward, with friction."""
+    load = Parameter("load", KG, "mass", off=0.0, smallest_interesting=1.0, lower=0.0, upper=upper, source="chosen")
+    friction = Parameter("k", N_S_M, "friction", default=5.0, lower=0.1, upper=100.0, source="chosen")
+    return Effect("mine", "a load that slides", (load,), (), (Row(SLIDING, mass, rate, coupled={"u": coupled}),), (friction,))
+
+
+def test_inertia_that_is_shared_with_the_chair_keeps_every_contract():
+    assert breaches(a_load()) == []
 
 
 @pytest.mark.parametrize(
@@ -67,6 +79,20 @@ LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
             "rate / mass of lagged comes out in m/kg where kg.m/s3 belongs",
             "change the law, or the units of q",
         ),
+        (
+            a_load(coupled=lambda load, b: load * b),
+            "units",
+            "what couples sliding with u comes out in kg.m where kg belongs",
+            "give load the unit N.s2/m2 instead of kg",
+        ),
+        (
+            a_load(lambda: 1.0, lambda sliding, k, load: -k * sliding / load),
+            "units",
+            "the rate of sliding, coupled as it is, comes out in m/s2 where N belongs",
+            "change the law",
+        ),
+        (a_load(upper=100.0), "inertia", "with load = 100 what resists a change of u is -20", "narrow the bounds"),
+        (a_load(coupled="load"), "record", "coupled of a row is {'u': 'load'}", 'coupled={"u": law}'),
         (an(lambda q, u: q * u, kind=scales), "neutral when off", "should be", "each factor 1"),
         (an(lambda q, u: 0 * q * u), "does something", "with q = 0.5 N.s/m nothing changes", "let a law read"),
         (

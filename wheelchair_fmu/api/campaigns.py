@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,19 +39,31 @@ def read(path: str | Path, *, own_effects: str | Path | None = None) -> Campaign
 
 
 class Campaign:
-    """Runs with what is known of the chair and its sensors; `read` makes it."""
+    """Runs with what is known of the chair and its sensors; `read` makes it.
+
+    >>> campaign
+    Campaign('open-06-left-drag', 10 runs)
+    """
 
     def __init__(self, record: measured.Campaign) -> None:
         self._record = record
 
     @property
     def name(self) -> str:
-        """What the campaign is called."""
+        """What the campaign is called.
+
+        >>> campaign.name
+        'open-06-left-drag'
+        """
         return self._record.name
 
     @property
     def path(self) -> Path:
-        """Its campaign.toml."""
+        """Its campaign.toml.
+
+        >>> campaign.path.name
+        'campaign.toml'
+        """
         return self._record.path
 
     @property
@@ -65,7 +77,11 @@ class Campaign:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence for each thing that is odd, but no error."""
+        """A sentence for each thing that is odd, but no error.
+
+        >>> campaign.warnings
+        ()
+        """
         return tuple(str(fault) for fault in self._record.warnings)
 
     @property
@@ -125,12 +141,17 @@ class Campaign:
         *,
         values: Values | None = None,
         own_effects: str | Path | None = None,
+        among: Iterable[str] | None = None,
         progress: Callable[[str], None] | None = None,
     ) -> Diagnosis:
-        """The same as `wc.diagnose(campaign, …)`."""
+        """The same as `wc.diagnose(campaign, …)`.
+
+        >>> campaign.diagnose().verdict
+        'missing'
+        """
         from .diagnoses import diagnose
 
-        return diagnose(self, variant, values=values, own_effects=own_effects, progress=progress)
+        return diagnose(self, variant, values=values, own_effects=own_effects, among=among, progress=progress)
 
     def export(
         self, folder: str | Path, variant: Variant | str | Path | None = None, *, fit: Sequence[str] = ()

@@ -15,7 +15,7 @@ import pandas as pd
 from .. import campaign as measured
 from ..errors import Failure, unknown
 from ..loop import improve, verdict
-from ..loop.subject import applied, known_parameters
+from ..loop.subject import applied, known_parameters, narrowed
 from ..model import variant as chairs
 from ..report import latex
 from ..report.estimates_figure import estimates_figure
@@ -40,14 +40,16 @@ def diagnose(
     *,
     values: Values | None = None,
     own_effects: str | Path | None = None,
+    among: Iterable[str] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Find which physical effects a chair lacks, as a campaign shows it, or that this campaign cannot tell.
 
     `campaign` is what `read` gave, or its folder; `variant` is the chair to start from (a Variant, a TOML file, or None for the
     paper's with what the campaign says of it). `values` are FMI parameters by name, SI units, which go before the campaign's
-    and are not estimated. `own_effects` is a folder of effect files of your own, which are programs. `progress` is told what is
-    being done, a sentence at a time. The first time, models are compiled, which takes 10 to 20 s on two cores.
+    and are not estimated. `own_effects` is a folder of effect files of your own, which are programs. `among` are ids of the
+    effects that are asked about, all of the catalogue unless given; what is not asked about can be neither found nor tied, so
+    that a verdict says less. `progress` is told what is being done, a sentence at a time. The first time, models are compiled.
 
     Raises CampaignError for a campaign with faults, UsageError for an unknown name, and EffectError for effect files with
     faults. How verdicts come about, and how far to trust them, is in docs/verdicts.md.
@@ -63,13 +65,19 @@ def diagnose(
         else measured.read(campaign, known_parameters(start.catalogue, start.choice))
     )
     chair, known, fixed = applied(values or {}, start, given)
+    if among is not None:
+        chair = narrowed(chair, among)
     known = measured.windows(known)
     found, told = searched(known, chair, fixed, progress or (lambda words: None))
     return Diagnosis(known, chair, fixed, found, told)
 
 
 class Diagnosis:
-    """A verdict with its evidence; `diagnose` makes it."""
+    """A verdict with its evidence; `diagnose` makes it.
+
+    >>> found
+    Diagnosis('open-06-left-drag', verdict='missing', effects=['rolling_resistance_asymmetry'])
+    """
 
     def __init__(
         self,
@@ -85,17 +93,29 @@ class Diagnosis:
     def verdict(self) -> str:
         """One of "missing", "tie" (one of these, and the campaign cannot tell which), "small" (there, but too small to matter),
         "adequate" (nothing is missing), "cannot_see" (these runs could not show most effects) and "outside" (nothing in the
-        catalogue explains what is left)."""
+        catalogue explains what is left).
+
+        >>> found.verdict
+        'missing'
+        """
         return str(self._told["verdict"])
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Ids of the effects that are missing, in the order in which they were found, or of those that tie."""
+        """Ids of the effects that are missing, in the order in which they were found, or of those that tie.
+
+        >>> found.effects
+        ('rolling_resistance_asymmetry',)
+        """
         return tuple(self._told["effects"])
 
     @property
     def ties(self) -> tuple[tuple[str, ...], ...]:
-        """Groups of effects that this campaign cannot tell apart."""
+        """Groups of effects that this campaign cannot tell apart.
+
+        >>> found.ties
+        ()
+        """
         return tuple(map(tuple, self._told["ties"]))
 
     @property
@@ -110,7 +130,11 @@ class Diagnosis:
     @property
     def probabilities(self) -> dict[str, float]:
         """The probability of each effect, by its id, that its size exceeds the smallest interesting one, the likeliest effect
-        first."""
+        first.
+
+        >>> next(iter(found.probabilities.items()))
+        ('rolling_resistance_asymmetry', 1.0)
+        """
         return probabilities_in(self._told["ranking"])
 
     @property
@@ -131,7 +155,12 @@ class Diagnosis:
     @property
     def calibration(self) -> pd.DataFrame:
         """A row for each value that was given and fitted, by its FMI name: value, `se`, `prior`, `prior_sd` (NaN: nothing was
-        known), in `unit` (SI), and whether it lies `at_bound` or `beyond` what anybody would have measured."""
+        known), in `unit` (SI), and whether it lies `at_bound` or `beyond` what anybody would have measured.
+
+        >>> m = found.calibration.loc["chair.m"]
+        >>> print(f"{m.value:.0f} {m.unit}, given as {m.prior:.0f} ± {m.prior_sd:.0f}")
+        80 kg, given as 80 ± 2
+        """
         rows = {c.record.name: {**c.as_json(), "unit": c.record.unit.name} for c in self._found.calibration}
         return pd.DataFrame.from_dict(rows, "index").rename_axis("parameter")
 
@@ -158,27 +187,47 @@ class Diagnosis:
 
     @property
     def odds(self) -> tuple[dict[str, float], ...]:
-        """For each group of effects that tie, the probability that it is each of them."""
+        """For each group of effects that tie, the probability that it is each of them.
+
+        >>> found.odds
+        ()
+        """
         return tuple(dict(one) for one in self._told["odds"])
 
     @property
     def next_experiment(self) -> dict[str, Any] | None:
-        """What to measure next (`manoeuvre`, `separates`, `repeats`, `why`), where that would tell more."""
+        """What to measure next (`manoeuvre`, `separates`, `repeats`, `why`), where that would tell more.
+
+        >>> found.next_experiment is None
+        True
+        """
         following = self._told["next_experiment"]
         return None if following is None else dict(following)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A sentence for each thing that is odd about the measurements or the values."""
+        """A sentence for each thing that is odd about the measurements or the values.
+
+        >>> found.notes
+        ()
+        """
         return tuple(self._told["notes"])
 
     @property
     def seconds(self) -> float:
-        """How long it took [s]."""
+        """How long it took [s].
+
+        >>> found.seconds > 0
+        True
+        """
         return float(self._told["seconds"])
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/verdicts.md has the keys."""
+        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/verdicts.md has the keys.
+
+        >>> found.as_dict()["verdict"]
+        'missing'
+        """
         return dict(json.loads(json.dumps(self._told)))
 
     def add(self, effect: str) -> Variant:
@@ -226,11 +275,17 @@ class Diagnosis:
         return supplement_of(self._campaign, self._chair, self._told, self._fixed, Path(folder), str(self._told["campaign"]))
 
     def plot_staircase(self) -> Figure:
-        """The error falling, step by step."""
+        """The error falling, step by step.
+
+        >>> found.plot_staircase().savefig("staircase.pdf")
+        """
         return staircase_figure(self._told["ladder"])
 
     def plot_estimates(self) -> Figure:
-        """Estimates of the likeliest effects with their intervals, beside what would be of interest."""
+        """Estimates of the likeliest effects with their intervals, beside what would be of interest.
+
+        >>> found.plot_estimates().savefig("estimates.pdf")
+        """
         rows = [
             {**row, "name": f"{row['effect']}.{row['parameter']}", "found": row["effect"] in self._found.included}
             for row in _estimates(self._told["ranking"])
@@ -241,6 +296,10 @@ class Diagnosis:
         """What is missing, as the data would have it, against speed, yaw rate, heading, push and caster angle.
 
         Raises Failure unless the verdict is "outside" with a proposal.
+
+        >>> found.plot_missing()
+        Traceback (most recent call last):
+        wheelchair_fmu.errors.Failure: the verdict is missing, and no term is proposed whose form could be shown
         """
         lacking = self._told["missing"]
         if lacking is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pandas as pd
 
 from ..errors import UsageError
 from ..handling.manoeuvres import Manoeuvre, manoeuvre
+from ..model.choice import Choice
 from ..model.former import renamed
 from ..studies import Fmu, Result, fmu_of
 from .frames import framed
@@ -75,10 +77,12 @@ def driven(
     """What the FMU of the chair asked for does on a course, and the values that it was given. Raises as `simulate`."""
     if fmu and (variant or effects != "default" or equations):
         raise UsageError("a finished FMU has its variant, effects and equations; leave these out, or the FMU")
-    own: dict[str, float] = {}
+    own: dict[str, float | str] = {}
     if fmu is None:
         chair, chosen = chair_of(variant, values, effects, equations)
-        fmu, own, values = fmu_of(chair, chosen), dict(chair.values), renamed(values, chair.values)[0]
+        any_law = replace(chair, choice=replace(chair.choice, tyre=Choice().tyre))  # one FMU holds all tyre laws
+        fmu, own = fmu_of(any_law, chosen), {**chair.values, "tyre.law": chair.choice.tyre}
+        values = renamed(values, chair.values)[0]
     with Fmu(fmu) as drive:
         known = {n: v for n, v in own.items() if n in drive.parameters}
         given = drive.checked({**known, **course.values, **values})

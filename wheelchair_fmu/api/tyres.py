@@ -26,7 +26,11 @@ UNITS = {"pressure": "Pa", "load": "N", "speed": "m/s", **STIFFNESSES}
 
 
 class Tyre:
-    """Laws of one or several tyres, fitted to what a rig measured; `Tyre.fit` makes it."""
+    """Laws of one or several tyres, fitted to what a rig measured; `Tyre.fit` makes it.
+
+    >>> tyre
+    Tyre(['A', 'B'], 8 conditions)
+    """
 
     def __init__(self, found: Identified, warnings: tuple[str, ...]) -> None:
         self._found, self._warnings = found, warnings
@@ -53,12 +57,20 @@ class Tyre:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The tyres in the file."""
+        """The tyres in the file.
+
+        >>> tyre.names
+        ('A', 'B')
+        """
         return tuple(self._found.tyres)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence for each thing that the data do not support, or that is odd."""
+        """A sentence for each thing that the data do not support, or that is odd.
+
+        >>> tyre.warnings
+        ()
+        """
         return self._warnings
 
     @property
@@ -82,7 +94,11 @@ class Tyre:
         return frame
 
     def as_dict(self) -> dict[str, Any]:
-        """All that was fitted as plain data, SI units, as `wheelchair tyre fit --json` prints it."""
+        """All that was fitted as plain data, SI units, as `wheelchair tyre fit --json` prints it.
+
+        >>> round(tyre.as_dict()["conditions"][0]["linear"]["C_lambda"])
+        5064
+        """
         return summary(self._found)
 
     def variant(
@@ -107,7 +123,11 @@ class Tyre:
         return of_record(chair(self._found, chosen(self._found, tyre, pressure, load, speed), law))
 
     def save(self, path: str | Path, **condition: Any) -> Path:
-        """Write the condition of a tyre, chosen as by `variant`, as a tyre property file (.tir), and return the path."""
+        """Write the condition of a tyre, chosen as by `variant`, as a tyre property file (.tir), and return the path.
+
+        >>> tyre.save("soft.tir", tyre="A", pressure=2).name
+        'soft.tir'
+        """
         path = Path(path)
         if path.suffix.lower() != ".tir":
             raise UsageError(f"{path}: write a .tir; `Tyre.variant(…).save` writes a .toml")

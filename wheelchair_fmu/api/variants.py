@@ -66,7 +66,11 @@ class Variant:
 
     @property
     def values(self) -> dict[str, float]:
-        """Values that differ from the defaults, by FMI name, SI units."""
+        """Values that differ from the defaults, by FMI name, SI units.
+
+        >>> wc.Variant({"chair.m": 110}).values
+        {'chair.m': 110.0}
+        """
         return dict(self._record.values)
 
     @property
@@ -80,12 +84,20 @@ class Variant:
 
     @property
     def standard_errors(self) -> dict[str, float]:
-        """Standard errors of the values that were fitted, by name, SI units; empty where none was."""
+        """Standard errors of the values that were fitted, by name, SI units; empty where none was.
+
+        >>> wc.Variant().standard_errors
+        {}
+        """
         return dict(self._record.notes.get("standard_errors", {}))
 
     @property
     def staircase(self) -> pd.DataFrame | None:
-        """The errors on the way here, as in `Diagnosis.staircase`, of a variant that `add` has fitted; else None."""
+        """The errors on the way here, as in `Diagnosis.staircase`, of a variant that `add` has fitted; else None.
+
+        >>> wc.Variant().staircase is None
+        True
+        """
         return self._staircase
 
     def with_values(self, values: Values) -> Variant:
@@ -97,13 +109,20 @@ class Variant:
         return of_record(self._record.with_values(values))
 
     def with_effects(self, effects: Iterable[str]) -> Variant:
-        """The same chair with more effects. Raises UsageError for an unknown id."""
+        """The same chair with more effects. Raises UsageError for an unknown id.
+
+        >>> wc.Variant().with_effects(["scrub_torque"]).effects
+        ('scrub_torque',)
+        """
         return of_record(self._record.with_effects(effects))
 
     def save(self, path: str | Path) -> Path:
         """Write it as TOML, which every command and `Variant.read` take, and return the path.
 
         The programs of effects of your own that are on go along.
+
+        >>> wc.Variant({"chair.m": 110}).save("heavy.toml").name
+        'heavy.toml'
         """
         with written(Path(path)) as beside:
             beside.write_text(text_of(self._record), encoding="utf-8")

@@ -78,9 +78,10 @@ def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Pat
         name = "preview.png" if len(drawn) == 1 else f"preview-{i + 1}.png"
         with written(out / name) as beside:
             save(figure, beside)
+        figure.set_layout_engine("none")  # where things are is found: the page need not look for it again
         print(out / name, file=sys.stderr)
     with written(out / "preview.html") as beside:
-        beside.write_text(preview.page(title, seen, [(f.severity, str(f)) for f in faults]), encoding="utf-8")
+        beside.write_text(preview.page(title, drawn, [(f.severity, str(f)) for f in faults]), encoding="utf-8")
     print(out / "preview.html", file=sys.stderr)
 
 

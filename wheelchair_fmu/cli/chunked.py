@@ -31,8 +31,9 @@ def pool_of(address: str | None, workers: int | None) -> Pool:
 def done_with_a_bar(job: Job, output: Path, pool: Pool, words: str, known: Mapping[int, pa.Table] | None = None) -> None:
     """Complete the job, or what is left of it and not `known`; `words` are what the bar counts."""
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    out = console(stderr=True)
     try:
-        with Progress(*columns, console=console(stderr=True)) as bar:
+        with Progress(*columns, console=out, disable=not out.is_terminal) as bar:  # a log or a notebook needs none
             task = bar.add_task(words, total=job.total)
             complete(job, output, pool, lambda rows: bar.advance(task, rows), known or {})
     except KeyboardInterrupt:

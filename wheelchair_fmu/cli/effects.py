@@ -27,7 +27,7 @@ from .terminal import announce
 from .trust import variant_option
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The physical effects that the chair can have.")
-KINDS = ("force", "moment", "reading", "state")
+KINDS = ("force", "moment", "reading", "state", "body")
 Own = Annotated[Path | None, typer.Option("--effects", metavar="DIR", help="A folder with effect files of your own.")]
 In = Annotated[Path | None, variant_option("A variant, for the effects of somebody's own in it.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -100,7 +100,9 @@ def show(
 def new(
     effect: Annotated[str, typer.Argument(metavar="ID", help="A name in small letters and underscores.")],
     folder: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the file goes.")] = Path("effects"),
-    kind: Annotated[str, typer.Option(metavar="KIND", help="What to begin with: force, moment, reading or state.")] = "force",
+    kind: Annotated[
+        str, typer.Option(metavar="KIND", help="What to begin with: force, moment, reading, state or body.")
+    ] = "force",
 ) -> None:
     """Start an effect of your own: a file to edit, which `--effects DIR` puts into the catalogue."""
     if kind not in KINDS:
@@ -134,7 +136,9 @@ def record(effect: Effect, catalogue: Mapping[str, Effect]) -> dict[str, Any]:
     return {
         "id": effect.id,
         "meaning": effect.title,
-        "acts_on": list(dict.fromkeys(c.to for c in effect.contributions)),
+        "acts_on": list(
+            dict.fromkeys([*(c.to for c in effect.contributions), *(s for row in effect.rows for s in row.coupled)])
+        ),
         "states": [f"effect.{effect.id}.{name}" for row in effect.rows for name in row.state.names],
         "needs": dict(effect.needs),
         "own": effect.program is not None,
@@ -144,6 +148,13 @@ def record(effect: Effect, catalogue: Mapping[str, Effect]) -> dict[str, Any]:
         ],
         "parameters": [_parameter(p) for p in effect.owned],
     }
+
+
+def _acted_on(effect: Effect) -> list[str]:
+    """Quantities that it adds to or multiplies, and speeds of the chair that it shares inertia with."""
+    return list(
+        dict.fromkeys([*(c.to for c in effect.contributions), *(speed for row in effect.rows for speed in row.coupled)])
+    )
 
 
 def _parameter(p: Parameter) -> dict[str, Any]:

@@ -258,6 +258,6 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
         + (f"; kept for checking: {', '.join(wanted.holdout)}" if wanted.holdout else "")
     )
     unknown = any(not choice.settled and not choice.beside for plan in found.plans for choice in plan.choices)
-    left = "fill in what is open in" if errors or unknown or None in (wanted.mass, wanted.radius) else "look at"
+    left = "fill in what is open in" if errors or unknown or None in (wanted.mass, wanted.radius) else "read"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
     out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")

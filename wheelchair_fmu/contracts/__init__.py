@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import WheelchairError
 from ..model.stage import Effect
+from .inertia import inertia
 from .motion import mirror, neutral, passive, present
 from .record import record
 from .smooth import derivative, finite
@@ -18,7 +19,7 @@ from .units import units
 
 __all__ = ["CLAIMS", "CONTRACTS", "Breach", "Subject", "breaches"]
 
-CONTRACTS: tuple[Callable[[Subject], list[Breach]], ...] = (units, neutral, present, finite, derivative, passive)
+CONTRACTS: tuple[Callable[[Subject], list[Breach]], ...] = (units, neutral, present, inertia, finite, derivative, passive)
 LISTED = "`wheelchair effects quantities` lists what a law may read and act on"
 WHOLE = "give one number, or one for each component of what it acts on"
 PLACE = re.compile(r"^\S+\.[ch]pp:\d+: ")  # in CasADi's source
@@ -51,7 +52,7 @@ def breaches(effect: Effect) -> list[Breach]:
 
 def _line(effect: Effect, error: Exception) -> str:
     """Where in the effect's file it happened."""
-    laws = [*(c.law for c in effect.contributions), *(law for r in effect.rows for law in (r.mass, r.rate, r.start) if law)]
+    laws = [*(c.law for c in effect.contributions), *(law for r in effect.rows for law in r.laws)]
     files = {law.__code__.co_filename for law in laws if hasattr(law, "__code__")}
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename in files]
     return f" in line {lines[-1]}" if lines else ""

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.dimensions import named
 from ..model.expression import ExpressionLaw, law_of_constants
-from ..model.stage import Effect, Law
+from ..model.stage import Effect, Law, Row
 from ..quantities import ONE, Quantity, Unit
 from .places import Place, evaluate
 from .subject import Subject
@@ -57,8 +57,19 @@ def lines(subject: Subject, effect: Effect) -> Iterator[Line]:
     for row in effect.rows:
         name, unit = row.state.name, row.state.unit
         yield line_of(f"rate / mass of {name}", [row.rate, row.mass], known, named(unit.kg, unit.m, unit.s - 1))
+        yield from _shared_inertia(row, known)
         if row.start:
             yield line_of(f"the start of {name}", [row.start], known, unit)
+
+
+def _shared_inertia(row: Row, known: Mapping[str, Quantity]) -> Iterator[Line]:
+    """A row that shares inertia with the chair is a balance of forces: its rate times its state is a power."""
+    name, unit = row.state.name, row.state.unit
+    if row.coupled:
+        yield line_of(f"the rate of {name}, coupled as it is,", [row.rate], known, named(1 - unit.kg, 2 - unit.m, -3 - unit.s))
+    for speed, law in row.coupled.items():
+        entry = named(1 - unit.kg, (2 if speed == "psi_dot" else 1) - unit.m, -1 - unit.s)
+        yield line_of(f"what couples {name} with {speed}", [law], known, entry)
 
 
 def line_of(words: str, laws: Sequence[Law], known: Mapping[str, Quantity], unit: Unit) -> Line:

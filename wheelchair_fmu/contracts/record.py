@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from ..model.coupling import SPEEDS
 from ..model.stage import Alike, Contribution, Effect, Row
 from ..model.variant import LAWS
 from ..quantities import Parameter, State, Unit
@@ -77,13 +78,15 @@ def _of_row(row: Row) -> Iterator[tuple[str, str]]:
         law = getattr(row, key)
         if not callable(law) and not (key == "start" and law is None):
             yield f"{key} of a row is {_short(law)}", "give a function of quantities, by their symbols"
+    if not isinstance(row.coupled, dict) or not all(s in SPEEDS and callable(law) for s, law in row.coupled.items()):
+        yield f"coupled of a row is {row.coupled!r}", 'write for example coupled={"u": law}, with u, v or psi_dot'
 
 
 def _values(effect: Effect) -> list[tuple[str, str]]:
     found = []
     if not effect.parameters:
         found.append(("it has no parameters", "give it one that is 0 when the effect is off"))
-    if not effect.contributions and not effect.delays_record:
+    if not effect.contributions and not effect.delays_record and not any(row.coupled for row in effect.rows):
         found.append(("it contributes to nothing", 'add for example adds("F_x", law)'))
     twice = _twice(q.symbol for q in (*effect.parameters, *effect.constants, *(row.state for row in effect.rows)))
     if twice:

@@ -224,7 +224,7 @@ def equations() -> str:
 
 def effect_key(effect: Effect) -> str:
     """An effect by its files' content and its laws' code or expressions, so that an edited file is a new effect."""
-    of_rows = (law for r in effect.rows for law in (r.mass, r.rate, r.start) if law is not None)
+    of_rows = (law for r in effect.rows for law in r.laws)
     laws = [*(c.law for c in effect.contributions), *of_rows]
     said = [(law.expression, law.arguments) for law in laws if isinstance(law, ExpressionLaw)]
     codes = [law.__code__ for law in laws if not isinstance(law, ExpressionLaw)]
@@ -232,6 +232,6 @@ def effect_key(effect: Effect) -> str:
     if effect.program and codes:  # as it ran; another file of that name may have been read since
         files[effect.program.file] = effect.program.text
     words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]] + said)
-    targets = repr([(c.to, c.factor) for c in effect.contributions])
+    targets = repr([(c.to, c.factor) for c in effect.contributions] + [(*r.coupled,) for r in effect.rows if r.coupled])
     texts = "".join(files[name] for name in sorted(files))
     return f"{effect.id} {targets} {words} {hashlib.sha256(texts.encode()).hexdigest()}"

@@ -106,12 +106,13 @@ def _rows(variables: list[Variable] | tuple[Variable, ...], known: dict[str, dic
 
 def _row(v: Variable, known: dict[str, dict[str, str]]) -> str:
     start = "" if v.start is None else v.choices[int(v.start) - 1] if v.choices else f"{v.start:.6g}"
-    bounds = ", ".join(v.choices) if v.choices else _bounds(v)
-    cells = [escape(c) for c in (v.name, v.unit.name, start, bounds, v.variability, v.description)]
+    may_be = ", ".join(v.choices) if v.choices else bounds(v)
+    cells = [escape(c) for c in (v.name, v.unit.name, start, may_be, v.variability, v.description)]
     return "<tr>" + "".join(f"<td>{c}</td>" for c in [*cells, literature.linked(v.source, known)]) + "</tr>"
 
 
-def _bounds(v: Variable) -> str:
+def bounds(v: Variable) -> str:
+    """What a variable may be, in words."""
     if v.type == "Boolean":
         return "false, true"
     # Results are told to FMI to stay within reach of anything at all, which is no bound that a reader would miss.

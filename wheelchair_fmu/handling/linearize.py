@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UsageError
 from .trim import MOTION, PSI, SteadyState, U
 
 
@@ -42,14 +41,9 @@ class Linear:
         return self.modes[0]
 
     def state_space(self) -> Any:
-        """As python-control's StateSpace, with the names, in which python-control wants _ for every dot.
+        """As python-control's StateSpace, with the names, in which python-control wants _ for every dot."""
+        import control  # takes a second, which only who asks for it waits
 
-        Raises UsageError without the package `control`, which is an extra.
-        """
-        try:
-            import control
-        except ImportError:
-            raise UsageError("python-control is not installed; pip install wheelchair-fmu[control]") from None
         names = {key: [n.replace(".", "_") for n in getattr(self, key)] for key in ("states", "inputs", "outputs")}
         return control.ss(self.A, self.B, self.C, self.D, name="wheelchair", **names)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from ..campaign import Campaign
 from ..contracts.own import catalogue, variant_in
+from ..errors import unknown
 from ..model.choice import Choice, names
 from ..model.effects import bundled
 from ..model.former import current
@@ -29,6 +30,16 @@ def chair(variant: Path | None, effects: Path | None) -> Variant:
     """The variant in a file, or the default chair, with that catalogue. Raises as `variant_in`."""
     known = catalogue(effects)
     return variant_in(variant, known) if variant else Variant(catalogue=known)
+
+
+def narrowed(variant: Variant, among: Iterable[str]) -> Variant:
+    """The variant with a catalogue of these effects and those that it has. Raises UsageError for an unknown id."""
+    chosen = tuple(among)
+    for effect in chosen:
+        if effect not in variant.catalogue:
+            raise unknown("effect", effect, variant.catalogue)
+    kept = {*chosen, *variant.effects}
+    return replace(variant, catalogue={e: record for e, record in variant.catalogue.items() if e in kept})
 
 
 def applied(

@@ -402,19 +402,22 @@ def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
     return F_x, F_y, M_z
 
 
+@stage(define("driving", N, "mass_u · u' where the speed is free"), define("v_rate", N, "mass_v · v'", "-"))
+def momentum(F_x, F_y, m, u, v, psi_dot):
+    """Newton's second law (20), (21)."""
+    return F_x + m * v * psi_dot, F_y - m * u * psi_dot
+
+
 @stage(
     define("u_rate", N, "mass_u · u'"),
-    define("v_rate", N, "mass_v · v'", "-"),
     define("a_x", M_S2, "acceleration of the CM along x_m, u' − v ψ'"),
     define("a_y", M_S2, "acceleration of the CM along y_m, v' + u ψ'", "-"),
     define("needed", N, "total push F_rl + F_rr that keeps u constant"),
 )
-def balance(F_x, F_y, F_t, m, mass_u, mass_v, u, v, psi_dot, speed_mode):
-    """Newton's second law (20), (21); with prescribed speed (20) says which push is needed."""
-    driving = F_x + m * v * psi_dot
+def balance(driving, v_rate, F_t, mass_u, mass_v, u, v, psi_dot, speed_mode):
+    """With prescribed speed (20) says which push is needed."""
     u_rate = (2 - speed_mode) * driving
-    v_rate = F_y - m * u * psi_dot
-    return u_rate, v_rate, u_rate / mass_u - v * psi_dot, v_rate / mass_v + u * psi_dot, cs.sum1(F_t) - driving
+    return u_rate, u_rate / mass_u - v * psi_dot, v_rate / mass_v + u * psi_dot, cs.sum1(F_t) - driving
 
 
 @stage(

@@ -12,7 +12,7 @@ reads what its law's arguments name, and only what earlier stages have defined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
@@ -78,13 +78,21 @@ def scales(to: str, law: Law) -> Contribution:
 class Row:
     """A state of an effect or law, with its own line of M x' = f: `mass(...) · x' = rate(...)`.
 
-    Where the mass is zero the line is an algebraic equation for x; nothing else changes.
+    Where the mass is zero the line is an algebraic equation for x; nothing else changes. `coupled` are the entries of M
+    beside the diagonal, of parameters alone, by the symbol of the speed that x' goes with: "u", "v" or "psi_dot". M is
+    symmetric, so that each stands in that speed's own line as well, and `rate` times x is a power.
     """
 
     state: State
     mass: Law
     rate: Law
     start: Law | None = None  # the value at the start, from any quantity as it is at the start; 0 unless given
+    coupled: Mapping[str, Law] = field(default_factory=dict)
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """All of them."""
+        return tuple(law for law in (self.mass, self.rate, self.start, *self.coupled.values()) if law is not None)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from ..errors import ModelError, unknown
 from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
 from . import chassis, resistance, sensors
 from .choice import Choice, law, laws, serves
+from .coupling import SPEEDS, uncoupled
 from .readings import READINGS
 from .stage import Effect, Law, Row, Stage, reads
 from .tyre import common
@@ -123,7 +124,7 @@ class Model:
     x: cs.SX
     w: cs.SX
     p: cs.SX
-    mass: cs.SX  # (nx,) diagonal of M
+    mass: cs.SX  # (nx,) diagonal of M, once each row has one rate
     f: cs.SX
     y: cs.SX
     start: cs.SX
@@ -191,6 +192,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         resistance.rear_forces,
         *caster_law.stages,
         chassis.forces,
+        chassis.momentum,
         chassis.balance,
         chassis.motion,
         sensors.sensors,
@@ -224,6 +226,7 @@ class _Assembly:
             for row in effect.rows:
                 self._add_row(row, self.own[effect.id], owner=effect.id)
         self.records: dict[str, Quantity] = {}
+        self.uncoupled: dict[str, tuple[cs.SX, cs.SX]] = {}  # by state, masses and rates that share inertia with the chair
 
     def _refuse_misfit(self, effect: Effect) -> None:
         for kind, name in effect.needs.items():
@@ -271,6 +274,30 @@ class _Assembly:
                     raise ModelError(f"stage {stage.name} gives {record.symbol} with shape {value.shape}")
                 self.records[record.symbol] = record
                 self.known[record.symbol] = self._with_effects(record, value)
+            if stage is chassis.momentum and any(row.coupled for row, _ in self.rows):
+                self._uncouple()
+
+    def _uncouple(self) -> None:
+        """Let each equation of motion have one rate, where effects have inertia that moves with the chair's."""
+        coupled = [(row, scope) for row, scope in self.rows if row.coupled]
+        own = [self._mass_and_rate(row, scope) for row, scope in coupled]
+        symbols = {"psi_dot": ("inertia", "M_z"), "v": ("mass_v", "v_rate"), "u": ("mass_u", "driving")}
+        chair = [(self.known[mass], self.known[force]) for mass, force in (symbols[speed] for speed in SPEEDS)]
+        M = cs.diag(cs.vertcat(*(mass for mass, _ in (*own, *chair))))
+        for i, (row, scope) in enumerate(coupled):
+            for speed, entry in row.coupled.items():
+                if speed not in SPEEDS or row.state.size > 1:
+                    raise ModelError(
+                        f"state {row.state.name} is coupled with {speed!r}; write one number that moves with "
+                        f"{', '.join(map(repr, sorted(SPEEDS)))}"
+                    )
+                j = len(own) + SPEEDS.index(speed)
+                M[i, j] = M[j, i] = self.call(entry, scope, f"state {row.state.name}")
+        masses, rates, driving = uncoupled(M, [rate for _, rate in (*own, *chair)], 2 - self.known["speed_mode"])
+        self.uncoupled = dict(zip((row.state.name for row, _ in coupled), zip(masses, rates, strict=True), strict=False))
+        for speed, mass, rate in zip(SPEEDS, masses[len(own) :], rates[len(own) :], strict=True):
+            self.known.update(zip(symbols[speed], (mass, rate), strict=True))
+        self.known["driving"] = driving  # what a chair of free speed has; the next stage holds the speed, where it is held
 
     def _with_effects(self, record: Quantity, base: cs.SX) -> cs.SX:
         """(base + Σ additions) · Π factors."""
@@ -338,10 +365,14 @@ class _Assembly:
 
     def _row(self, entry: tuple[Row, Mapping[str, cs.SX]]) -> tuple[cs.SX, cs.SX, cs.SX]:
         row, scope = entry
-        size, who = row.state.size, f"state {row.state.name}"
-        mass, rate = (cs.SX(self.call(law, scope, who)) for law in (row.mass, row.rate))
-        start = cs.SX(self.call(row.start, scope, who)) if row.start else cs.SX.zeros(size)
+        size = row.state.size
+        mass, rate = self.uncoupled.get(row.state.name) or self._mass_and_rate(row, scope)
+        start = cs.SX(self.call(row.start, scope, f"state {row.state.name}")) if row.start else cs.SX.zeros(size)
         return (cs.repmat(mass, size // mass.numel()), rate, start)
+
+    def _mass_and_rate(self, row: Row, scope: Mapping[str, cs.SX]) -> tuple[cs.SX, cs.SX]:
+        mass, rate = (cs.SX(self.call(law, scope, f"state {row.state.name}")) for law in (row.mass, row.rate))
+        return mass, rate
 
     def _foreseen_row(self, entry: tuple[State, cs.SX]) -> tuple[cs.SX, cs.SX, cs.SX]:
         state, guess = entry

@@ -57,16 +57,16 @@ def figures(runs: Sequence[Run]) -> list[Figure]:
     return [_figure(runs[i : i + ABREAST]) for i in range(0, len(runs), ABREAST)]
 
 
-def page(title: str, runs: Sequence[Run], faults: Iterable[tuple[str, str]]) -> str:
+def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str]]) -> str:
     """The pictures and all faults (severity, text) as one HTML file that needs nothing else."""
-    drawn = "".join(_svg(figure) for figure in figures(runs))
+    pictures = "".join(_svg(figure) for figure in drawn)
     said = "".join(f'<li class="{html.escape(kind)}">{html.escape(text)}</li>' for kind, text in faults)
     listed = f"<h2>What is odd</h2><ul>{said}</ul>" if said else "<p>Nothing odd was found.</p>"
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
     return (
         f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>'
         "<p>Each row is a channel, each column a run; all rows have one scale. Crosses are readings that were left out.</p>"
-        f"{drawn}{listed}</body></html>\n"
+        f"{pictures}{listed}</body></html>\n"
     )
 
 
