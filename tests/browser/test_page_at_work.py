@@ -54,6 +54,21 @@ def test_a_tick_climbs_the_staircase_and_further_sizes_are_fitted_together(reade
     assert abs(values["effect.accelerometer_bias.x"]) < 0.03  # not the size that ticking begins with
 
 
+def test_a_fit_is_finished_also_where_exact_numbers_are_asked_meanwhile(reader):
+    """What a fit asks of the workers is nobody else's to drop."""
+    values = {**TOLD["models"][-1]["values"], f"effect.{HIDDEN}.D": 0.7}
+    reader.page.evaluate(
+        """values => {
+        report.controls.put(values);
+        report.fitTogether(report.values);
+        report.ask(true);
+    }""",
+        values,
+    )
+    reader.settle()
+    assert reader.page.evaluate("report.now.fit") <= TOP["fit"] + 0.002
+
+
 def test_sizes_fitted_in_the_page_are_those_of_the_search(reader):
     """From far off, the page's fit comes to where Python's came."""
     page = reader.page
