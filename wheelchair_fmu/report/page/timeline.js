@@ -55,13 +55,15 @@ export class Timeline {
         h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
   }
 
-  /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...]. */
-  show(channel, result, before, pinned = []) {
+  /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...], `band` [low, high] about
+   *  the model. */
+  show(channel, result, before, pinned, band) {
     const record = this.campaign.channels.find((c) => c.name === channel), { unit, factor } = display(record);
     const scaled = (series) => (factor === 1 ? series : series.map((v) => v * factor));
     Object.assign(this, { result, channel });
     this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
       ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
+    this.edges = band.map(scaled);
     this.errors = result.errors[channel];
     this.unit = `${channel.replaceAll("_", " ")} [${unitText(unit) || "1"}]`;
     this.drawCurves();
@@ -70,7 +72,7 @@ export class Timeline {
   }
 
   drawCurves() {
-    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.lines.map(([, v]) => v)], [this.time, this.errors]];
+    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.edges, ...this.lines.map(([, v]) => v)], [this.time, this.errors]];
     if (shape !== this.shape || !this.plots.length) return this.build(shape, data);
     this.plots.forEach((plot, i) => plot.batch(() => { plot.setData(data[i], false); plot.setScale("x", { min: this.from, max: this.to }); }));
   }
@@ -79,16 +81,17 @@ export class Timeline {
     this.shape = shape;
     for (const plot of this.plots) plot.destroy();
     const colour = (name) => () => this.look[name];
-    const series = [this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false } })), [{ stroke: colour("error"), width: 1, points: { show: false } }]];
+    const edge = { width: 0, auto: false, points: { show: false } }; // the scale is that of the curves
+    const series = [[edge, edge, ...this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false } }))], [{ stroke: colour("error"), width: 1, points: { show: false } }]];
     this.plots = [this.unit, "error [σ]"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
     this.marks = this.plots.map((plot) => plot.over.appendChild(h("div", { class: "now-line" })));
-    this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)));
+    this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)), h("span", {}, h("i", { class: "band" }), "95 % band"));
   }
 
   options(index, label, series) {
     const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
     return {
-      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
+      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series], bands: index ? [] : [{ series: [2, 1], fill: () => this.look.band }],
       cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
