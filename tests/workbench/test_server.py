@@ -9,8 +9,10 @@ from os import utime
 from pathlib import Path
 from shutil import rmtree
 
+import numpy as np
 import pytest
 
+from tests.campaign import lab
 from tests.kit import with_settings
 from wheelchair_fmu.workbench.jobs import printed_json
 
@@ -95,6 +97,39 @@ def test_bad_files_show_their_faults_and_nothing_breaks(client):
 def test_files_stay_in_their_folder(client, bench, name):
     assert "is no name for a file" in upload(client, (name, b"time [s]\n0\n")).json()["error"]
     assert not list(bench.root.parent.rglob("evil.csv"))
+
+
+def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):
+    state = client.post(f"{client.base}/sample").json()
+    assert len(state["files"]) == 10 and state["faults"] == [] and state["outcome"] is None
+    assert state["campaign"]["campaign"]["name"] == "sample campaign"
+    assert "recordings here already" in client.post(f"{client.base}/sample").json()["error"]
+    assert len(state["signals"]["yaw_rate [rad/s]"]) > 100 and state["times"] == ["time [s]"]
+    seen = client.get(f"{client.base}/preview")
+    assert seen.status_code == 200 and "<svg" in seen.text and "Nothing odd was found" in seen.text
+    assert "default-src 'none'" in seen.headers["content-security-policy"]
+
+
+def test_files_of_a_lab_are_read_together_and_that_can_be_undone(client, tmp_path):
+    rng = np.random.default_rng(1)
+    for i, ride in enumerate(lab.rides(1), 1):
+        lab.rim(tmp_path / f"run{i:02d}_SWL.csv", ride, 0.7, "l", rng)
+        lab.rim(tmp_path / f"run{i:02d}_SWR.csv", ride, 0.2, "r", rng, mirrored=True)
+    files = [(f.name, f.read_bytes()) for f in sorted(tmp_path.iterdir())]
+    before = upload(client, *files).json()["campaign"]
+    assert client.post(f"{client.base}/jobs", json={"kind": "import", "mass": "heavy"}).status_code == 400
+    client.post(f"{client.base}/jobs", json={"kind": "import", "mass": 90, "radius": lab.RADIUS, "track": 0.56})
+    wait_for(lambda: client.get(f"{client.base}/job").json()["state"] != "running")
+    state = client.get(f"{client.base}/state").json()
+    assert state["job"]["state"] == "done", state["job"]["lines"]
+    assert state["campaign"]["chair"]["m"] == 90 and {len(run["files"]) for run in state["campaign"]["run"]} == {2}
+    assert not [f for f in state["faults"] if f["severity"] == "error"]
+    assert len(state["history"]["steps"]) == 2 and state["history"]["steps"][1]["label"] == "files read anew"
+    assert client.post(f"{client.base}/history", json={"by": -1}).json()["campaign"] == before
+    again = client.post(f"{client.base}/history", json={"by": 1}).json()["campaign"]
+    assert again == state["campaign"]
+    gone = client.delete(f"{client.base}/files/{files[0][0]}").json()["campaign"]["run"]
+    assert gone == again["run"][1:], "a run that lacks a file goes"
 
 
 def test_two_tabs_do_not_disturb_each_other(client):
