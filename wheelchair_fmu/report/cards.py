@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..loop.ties import grouped
-from .told import Told, actions, capital, exceeds, fall_words, number, rival_words, size_lines, sized
+from .told import Told, actions, capital, exceeds, fall_words, number, odds_words, rival_words, size_lines, sized
 from .words import listed, probability_words, value_text
 
 
@@ -59,7 +59,7 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         together = [
             f"{capital(t.title(e))} leaves {t.rows[e]['heldout_after']:.2f}." for e in t.found if t.rows[e]["heldout_after"]
         ]
-        return "That one of them is there: yes. Which: not yet", ["Both explain these runs equally well.", *together]
+        return "That one of them is there: yes. Which: not yet", [*odds_words(t), *together]
     if t.verdict in ("missing", "small") and t.found:
         sure = min(exceeds(t.rows[e]) for e in t.found)
         what = "all are" if len(t.found) > 1 else "it is"

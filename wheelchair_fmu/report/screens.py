@@ -116,7 +116,7 @@ def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
             "Why not one of them",
-            ["These runs favour neither. The sizes that each would need:", *(sized(t, e) for e in t.found)],
+            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.found)],
         )
     elif t.found and t.verdict != "outside":
         title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..quantities import Quantity
 from .advice import inspect
-from .words import listed, title_of, value_text
+from .words import listed, probability_words, title_of, value_text
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
@@ -123,6 +123,15 @@ def near_rivals(t: Told) -> list[Mapping[str, Any]]:
 def _beside(row: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     """Were both put into the same model?"""
     return bool(row["heldout_before"] == other["heldout_before"])
+
+
+def odds_words(t: Told) -> list[str]:
+    """How likely each of those is that are tied, if one of them is what is missing."""
+    said = []
+    for odds in t.diagnosis.get("odds") or ():
+        shares = listed([f"{probability_words(p)} for {t.title(e)}" for e, p in odds.items()], "and")
+        said.append(f"If it is one of these, the chance is {shares}: to say which takes more than a hundred to one.")
+    return said or ["These runs do not tell them apart."]
 
 
 def rival_words(t: Told) -> list[str]:

@@ -468,14 +468,17 @@ addEventListener("resize", () => {
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
 addEventListener("hashchange", () => { if (address.isState(location.hash) && location.hash !== app.hash) location.reload(); });
-let theme;
+let theme, sheet = null;
 addEventListener("beforeprint", () => {
   theme = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
+  sheet?.remove();
+  if (app.timeline?.result) app.figures.all.overlay.drawing.after(sheet = h("div", { class: "paper" }, app.figures.all.overlay.says.draw(900, look())));
 });
 addEventListener("afterprint", () => {
+  sheet?.remove();
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
   app.recolour();

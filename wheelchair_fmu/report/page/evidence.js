@@ -66,7 +66,7 @@ const alike = (cosine) => (cosine >= 0.995 && cosine < 1 ? cosine.toFixed(4) : c
 
 function ties(section, campaign) {
   const { diagnosis } = campaign, named = (id) => titleOf(campaign, id);
-  for (const group of diagnosis.ties) section.append(h("p", {}, `These explain the campaign equally well: ${listed(group.map(named))}.`));
+  for (const group of diagnosis.ties) section.append(h("p", {}, `This campaign cannot tell these apart: ${listed(group.map(named))}.`));
   const told = campaign.story.screens.find((s) => s.kind === "rivals").lines;
   if (!diagnosis.ties.length) section.append(...(diagnosis.effects.length ? told.map((line) => h("p", {}, line)) : [h("p", {}, "No effect was found, so none is tied.")]));
   const next = diagnosis.next_experiment;

@@ -11,12 +11,7 @@ export function lines(width, look, time, [from, to], panels) {
   const across = (t) => LEFT + ((width - LEFT - RIGHT) * (t - from)) / (to - from), drawn = [];
   const inside = [...time.keys()].filter((i) => time[i] >= from && time[i] <= to), step = Math.max(1, Math.floor(inside.length / 1500));
   const shown = inside.filter((_, k) => k % step === 0), xs = shown.map((i) => across(time[i])), marks = ticks(from, to, width / 90);
-  let top = 20, at = LEFT;
-  for (const [name, , colour, , dash] of panels[0].lines) {
-    drawn.push(line(at, 8, at + 20, 8, look[colour], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
-    at += 44 + long(name, look);
-  }
-  if (panels[0].edges) drawn.push(svg("rect", { x: at, y: 3, width: 20, height: 10, fill: look.band }), text(at + 25, 12, "95 % band", look.ink));
+  let { top } = key([...panels[0].lines.map(([name, , colour, , dash]) => [name, look[colour], dash]), ...(panels[0].edges ? [["95 % band", null]] : [])], width, look, drawn);
   for (const panel of panels) {
     let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => shown.map((i) => v[i])));
     if (low === high) [low, high] = [low - 1, high + 1];
@@ -32,6 +27,18 @@ export function lines(width, look, time, [from, to], panels) {
   for (const t of marks) drawn.push(text(across(t), top + 4, tick(t), look.faint, "middle", { "font-size": 11 }));
   drawn.push(text((LEFT + width - RIGHT) / 2, top + 20, "time [s]", look.ink, "middle"));
   return canvas(width, top + 26, drawn);
+}
+
+/** What each line is, [[name, colour, dash]], without a colour a band, in as many rows as it takes; returns where drawing goes on. */
+function key(entries, width, look, drawn) {
+  let at = LEFT, y = 8;
+  for (const [name, colour, dash] of entries) {
+    const wide = 25 + long(name, look);
+    if (at > LEFT && at + wide > width) [at, y] = [LEFT, y + 16];
+    drawn.push(colour ? line(at, y, at + 20, y, colour, { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }) : svg("rect", { x: at, y: y - 5, width: 20, height: 10, fill: look.band }), text(at + 25, y + 4, name, look.ink));
+    at += wide + 19;
+  }
+  return { top: y + 12 };
 }
 
 /** The outline of what lies between two courses over the same places. */
