@@ -251,6 +251,8 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     told["verdict"] = verdict
     told["effects"] = {"tie": pair, "missing": pair, "small": [HIDDEN]}.get(verdict, [])
     told["ties"] = [pair] if verdict == "tie" else []
+    if verdict in ("adequate", "cannot_see"):  # the search ends where it began
+        told["ladder"], told["models"] = told["ladder"][:2], told["models"][:2]
     for row in told["ranking"]:
         row["verdict"] = verdict if row["effect"] in told["effects"] else "not needed"
     if verdict == "outside":

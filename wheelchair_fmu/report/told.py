@@ -106,7 +106,7 @@ def fall_words(t: Told) -> str:
         where = (
             ", before and after" if not t.found else ", as before: what was found shows at few moments, and there it is gone"
         )
-        return f"Over all of {t.runs} the error is {after:.2f} times what noise alone gives{where}."
+        return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
 
@@ -224,6 +224,6 @@ def actions(t: Told) -> list[str]:
 
 
 def _measure(following: Mapping[str, Any]) -> str:
-    times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
+    times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
     more = "them apart" if len(following["separates"]) > 1 else "more"
-    return f"Measure {following['manoeuvre']}, {times}: it would tell {more}."
+    return f"Measure {following['manoeuvre']}{times}: it would tell {more}."

@@ -219,7 +219,7 @@ class App {
     if (!this.doubts.has(run)) {
       const { parameters, covariance } = diagnosis.final;
       this.doubts.set(run, null);
-      this.pool.later({ run, values, doubt: { names: parameters.map((p) => p.name), covariance } }).then(({ variance }) => { this.doubts.set(run, variance); this.want("run"); this.want("rested"); }).catch(() => {});
+      this.pool.later({ run, values, doubt: { names: parameters.map((p) => p.name), covariance } }).then(({ variance }) => { this.doubts.set(run, variance); this.want("run"); if (this.settled) this.want("rested"); }).catch(() => {});
     }
     return this.doubts.get(run);
   }
