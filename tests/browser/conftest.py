@@ -51,13 +51,18 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def work(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the workbench keeps its work."""
+    return tmp_path_factory.mktemp("work")
+
+
+@pytest.fixture(scope="module")
+def address(work: Path) -> Iterator[str]:
     """A workbench that runs, with its token, which a browser keeps as a cookie."""
     pytest.importorskip("uvicorn", reason="the workbench's libraries are not installed")
-    folder = tmp_path_factory.mktemp("work")
-    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "workbench", "--port", "0", "--no-open", "--folder", str(folder)]
+    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "workbench", "--port", "0", "--no-open", "--folder", str(work)]
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=env, cwd=folder) as server:
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=env, cwd=work) as server:
         assert server.stdout
         yield server.stdout.readline().split()[0]
         server.terminate()

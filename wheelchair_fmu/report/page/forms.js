@@ -40,7 +40,7 @@ export function runs(bench) {
   const kept = list.filter((run) => run.role === "holdout").length, wrong = bench.state.faults.some((f) => f.severity === "error");
   return h("details", { open: wrong && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
     h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes)),
-    table(["run", "role", "manoeuvre", "speed at the start, about [m/s]", ""], rows));
+    table(["run", "role", "manoeuvre", "speed at the start, about [m/s]", "take it out"], rows));
 }
 
 /** The columns of all files, or of each device's, with what every one of them holds. */
