@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
@@ -172,6 +175,33 @@ def test_one_time_for_chair_curves_and_readings(reader):
     page.click("[aria-label=play]")
     page.wait_for_function("() => report.timeline.at > 4.5")
     page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
+
+
+def test_samples_of_several_devices_are_one_curve_and_a_pause_is_none(browser, tmp_path):
+    """A channel that is sampled at every third row, with a pause of two seconds: drawn, read and printed as it is."""
+    shutil.copytree(SAMPLE, tmp_path / "campaign")
+    for file in (tmp_path / "campaign" / "runs").glob("*.csv"):
+        rows = pd.read_csv(file)
+        time = rows["time [s]"]
+        rows.loc[(rows.index % 3 > 0) | ((time > 4) & (time < 6)), "yaw_rate [rad/s]"] = np.nan
+        rows.to_csv(file, index=False)
+    reader = Reader(browser, report_of(tmp_path / "campaign", tmp_path / "report.html"))
+    page = reader.page
+    page.evaluate("report.show(report.shown.run, 'yaw_rate')")
+    page.wait_for_function(
+        "() => report.timeline.channel === 'yaw_rate' && Number.isFinite(report.timeline.plots[0].scales.y.max)"
+    )
+    assert page.evaluate("report.timeline.plots.every(p => p.scales.y.min < p.scales.y.max)")
+    gaps = page.evaluate("report.timeline.plots[0].series[3]._paths.gaps.length")  # of what was measured
+    page.evaluate("report.timeline.go(3.02)")
+    read = page.inner_text(".readings tr[data-channel=yaw_rate]")
+    page.evaluate("report.written()")
+    drawn = page.evaluate(
+        "report.figures.all.overlay.says.draw(720, {}).querySelectorAll('path[stroke-width=\"1\"]')[0].getAttribute('d')"
+    )
+    reader.close()
+    assert gaps == 1 and "–" not in read
+    assert drawn.count("M") == 2 and drawn.count("L") > 100
 
 
 def test_a_change_is_said_aloud(reader):

@@ -17,6 +17,7 @@ from ..loop.landscape import landscape
 from ..loop.likelihood import CASTERS, SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd, starts_of
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
+from ..loop.verdict import FORCES as UNRECORDED
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
@@ -44,7 +45,7 @@ def content(
     return {
         "name": campaign.name,
         "diagnosis": diagnosis,
-        "landscape": landscape(factory, diagnosis),
+        "landscape": _landscape(factory, diagnosis),
         "runs": [_run(r, campaign) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},
@@ -62,6 +63,12 @@ def content(
         "settled": SETTLED,
         "tolerance": TOLERANCE,
     }
+
+
+def _landscape(factory: ModelFactory, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
+    """See `landscape`; none of what was found beside forces that nobody recorded, of which a plain simulation knows nothing."""
+    led = any(step["step"] == UNRECORDED for step in diagnosis["ladder"])
+    return {"profiles": [], "pair": None} if led else landscape(factory, diagnosis)
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:

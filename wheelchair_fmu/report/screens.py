@@ -94,17 +94,18 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"With {what}, the error on {whose} goes from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
+        each = "either" if len(t.found) == 2 else "any of them"
         if abs(before - after) < 0.03:
             return {
                 "title": "Put one in: these runs hardly change",
                 "lines": [
                     "The effect shows in the runs it was fitted to, a little at a time, not yet in those that were kept back.",
-                    f"There the error is {after:.2f} times the noise with either.",
+                    f"There the error is {after:.2f} times the noise with {each}.",
                 ],
             }
         return {
             "title": "Put one in and watch the error fall",
-            "lines": [f"With either, the error on {whose} falls to {after:.2f}."],
+            "lines": [f"With {each}, the error on {whose} falls to about {after:.2f}."],
         }
     return {
         "title": f"Put {'it' if len(t.found) == 1 else 'them'} in and watch the error fall",

@@ -21,6 +21,7 @@ import { channelOf, runOf, stepOf } from "page/words";
 const REST = 180; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
+const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
 const DEEP = 60; // changes that can be undone
 const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
@@ -35,6 +36,8 @@ class App {
     this.known = new Set(["calibrated", "effects"].flatMap((k) => campaign[k]).flatMap((p) => (p.parameters ?? [p]).map((q) => q.name)).concat(campaign.diagnosis.models.flatMap((m) => Object.keys(m.values))));
     this.state = address.read(location.hash, campaign, this.known);
     if (this.state.theme) document.documentElement.dataset.theme = this.state.theme;
+    this.forces = campaign.diagnosis.ladder.some((s) => s.step === FORCES);
+    byId("forces").hidden = !this.forces;
     this.figures = new Figures(campaign, this);
     evidence(campaign);
   }
@@ -73,7 +76,7 @@ class App {
 
   /** Where the page opens at a step of the search, its errors are in the diagnosis: they stand at once. */
   foretell() {
-    const step = this.opensAtStart && this.campaign.diagnosis.ladder.find((s) => s.step === this.start.step);
+    const step = this.opensAtStart && !this.forces && this.campaign.diagnosis.ladder.find((s) => s.step === this.start.step);
     if (!step) return;
     byId("now-fit").textContent = rms(step.fit);
     byId("now-heldout").textContent = rms(step.heldout);
@@ -148,6 +151,7 @@ class App {
   /** After the first exact numbers: the largest error is what the reader sees, until it is known what the search gained. */
   firstTime() {
     this.opened = this.opensAtStart ? [...this.results] : [];
+    this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
     this.earlier();
     this.pinned();

@@ -72,7 +72,7 @@ export class Story {
       stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
     if (kind === "put") {
-      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", start = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins);
+      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", told = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins), start = this.app.forces ? this.app.began : told;
       this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
       this.toggle.setAttribute("aria-pressed", this.isIn());
       this.before.textContent = rms(start?.[key]);
