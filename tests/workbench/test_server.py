@@ -99,6 +99,11 @@ def test_files_stay_in_their_folder(client, bench, name):
     assert not list(bench.root.parent.rglob("evil.csv"))
 
 
+def test_an_empty_start_has_no_faults_of_a_file_that_nobody_wrote(client):
+    state = client.get(f"{client.base}/state").json()
+    assert state["faults"] == [] and state["files"] == [] and state["outcome"] is None
+
+
 def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):
     state = client.post(f"{client.base}/sample").json()
     assert len(state["files"]) == 10 and state["faults"] == [] and state["outcome"] is None

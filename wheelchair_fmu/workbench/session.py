@@ -236,7 +236,8 @@ class Session:
         strange = self._toml()[1]
         own = [text for text in (*self.own_faults(), broken(self.folder), strange) if text]
         found: list[dict[str, Any]] = [{"text": text, "severity": "error"} for text in own]
-        if strange or (not self.files() and not (self.campaign / "campaign.toml").exists()):
+        content = self.content()
+        if strange or (content is not None and not self.files() and not content.get("run")):  # nothing was given yet
             return found, {}
         seen = self.seen(known)
         campaign, faults = seen.campaign, seen.faults
@@ -452,12 +453,13 @@ def write(path: Path, content: bytes) -> None:
         beside.write_bytes(content)
 
 
-def _files_of(run: Any) -> list[Any]:
+def _files_of(run: Any) -> list[str]:
     """The recordings of a run, of one device or of several."""
     if not isinstance(run, Mapping):
         return []
     several = run.get("files")
-    return list(several.values()) if isinstance(several, Mapping) else [name for name in (run.get("file"),) if name is not None]
+    names = several.values() if isinstance(several, Mapping) else [run.get("file")]
+    return [name for name in names if isinstance(name, str)]
 
 
 def _run(name: str) -> dict[str, Any]:
