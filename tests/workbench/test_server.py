@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tests.campaign import lab
-from tests.kit import with_settings
+from tests.kit import SAMPLE_DIAGNOSIS, with_settings
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
@@ -102,6 +102,25 @@ def test_files_stay_in_their_folder(client, bench, name):
 def test_an_empty_start_has_no_faults_of_a_file_that_nobody_wrote(client):
     state = client.get(f"{client.base}/state").json()
     assert state["faults"] == [] and state["files"] == [] and state["outcome"] is None
+
+
+def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(client, bench):
+    session = Session(bench.root, client.base.rpartition("/")[2])
+    upload(client, *recordings())
+    told = SAMPLE_DIAGNOSIS.read_text(encoding="utf-8")
+    for broken in ("{", "[]", "{}", told.replace('"effects"', '"others"')):
+        (session.folder / "diagnosis.json").write_text(broken)
+        assert client.get(f"{client.base}/state").json()["outcome"] is None
+    (session.folder / "diagnosis.json").write_text(told)
+    outcome = client.get(f"{client.base}/state").json()["outcome"]
+    assert outcome["sentence"] == "Missing from the model: one rear wheel that rolls harder than the other."
+    assert outcome["effects"] == outcome["order"][:1] == ["rolling_resistance_asymmetry"] and not outcome["fresh"]
+    assert len(outcome["cards"]) == 3 and "wheelchair add" not in str(outcome["cards"])
+    session.note_diagnosed(session.at_hand())
+    state = client.get(f"{client.base}/state").json()
+    assert state["outcome"]["fresh"]
+    changed = client.put(f"{client.base}/campaign", json={**state["campaign"], "noise": {"yaw_rate": "0.5 deg/s"}}).json()
+    assert not changed["outcome"]["fresh"]
 
 
 def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):

@@ -298,10 +298,10 @@ class Workbench:
 
     def _diagnose(self, session: Session, asked: dict[str, Any]) -> Job:
         chair = self._with(session)
-        session.begin_diagnosis()
+        of = session.at_hand()
         diagnose = ["diagnose", "campaign", "--json", "diagnosis.json", "--progress", *chair]
         report = ["report", "campaign", "--diagnosis", "diagnosis.json", "-o", "report.html", "--progress", *chair]
-        return Job("diagnose", [diagnose, report], lambda outputs: None)
+        return Job("diagnose", [diagnose, report], lambda outputs: session.note_diagnosed(of))
 
     def _effect(self, session: Session, asked: dict[str, Any]) -> str:
         effect = str(asked.get("effect"))

@@ -220,7 +220,7 @@ class Session:
         """Leave out the runs of campaign.toml of which a file is not to be kept."""
         content = self.content()
         if content and isinstance(content.get("run"), list):
-            runs = [r for r in content["run"] if not isinstance(r, Mapping) or all(map(keep, _files_of(r) or [None]))]
+            runs = [r for r in content["run"] if not isinstance(r, Mapping) or _kept(r, keep)]
             self.write_content({**content, "run": runs})
 
     def drop(self, name: str) -> None:
@@ -326,20 +326,22 @@ class Session:
         steps = history["steps"][: history["at"] + 1]
         self._append(steps, "files read anew", self.variant_file.name, None)
 
-    def begin_diagnosis(self) -> None:
-        """Note which model and which campaign are diagnosed."""
-        write(self.folder / "diagnosed.json", json.dumps(self._at_hand()).encode())
+    def at_hand(self) -> list[str | None]:
+        """Which model and which campaign.toml there are now, by their names."""
+        file = self.campaign / "campaign.toml"
+        return [self.variant_file.name, _named(file.read_bytes()) if file.exists() else None]
+
+    def note_diagnosed(self, what: list[str | None]) -> None:
+        """The last diagnosis is of the model and the campaign that `at_hand` told when it began."""
+        write(self.folder / "diagnosed.json", json.dumps(what).encode())
 
     @property
     def diagnosed(self) -> bool:
         """Is the last diagnosis of the model and the campaign as they are?"""
         try:
-            return bool(json.loads((self.folder / "diagnosed.json").read_text(encoding="utf-8")) == self._at_hand())
+            return bool(json.loads((self.folder / "diagnosed.json").read_text(encoding="utf-8")) == self.at_hand())
         except (OSError, ValueError, Failure):
             return False
-
-    def _at_hand(self) -> list[str | None]:
-        return [self.variant_file.name, self._snapshot()]
 
     def _steps_so_far(self) -> list[dict[str, Any]]:
         """Steps up to now, the last with the campaign as it is: recordings may have come since."""
@@ -359,7 +361,7 @@ class Session:
         if not file.exists():
             return None
         content = file.read_bytes()
-        kept = self.campaigns / f"{sha256(content).hexdigest()[:16]}.toml"
+        kept = self.campaigns / _named(content)
         if not kept.exists():
             write(kept, content)
         return kept.name
@@ -451,6 +453,15 @@ def write(path: Path, content: bytes) -> None:
     with written(path) as beside:
         beside.touch(mode=0o600)
         beside.write_bytes(content)
+
+
+def _named(content: bytes) -> str:
+    return f"{sha256(content).hexdigest()[:16]}.toml"
+
+
+def _kept(run: Mapping[str, Any], keep: Callable[[Any], bool]) -> bool:
+    files = _files_of(run)
+    return all(map(keep, files)) if files else keep(run.get("file"))
 
 
 def _files_of(run: Any) -> list[str]:
