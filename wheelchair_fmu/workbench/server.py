@@ -183,7 +183,8 @@ class Workbench:
 
         def drawn() -> str:
             seen = session.seen(self.bounds)
-            return preview.page(session.name, preview.seen(seen.runs), [(f.severity, str(f)) for f in seen.faults])
+            pictures = preview.figures(preview.seen(seen.runs))
+            return preview.page(session.name, pictures, [(f.severity, str(f)) for f in seen.faults])
 
         policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
         return HTMLResponse(
