@@ -96,7 +96,7 @@ matrix: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[matrix]"
 	$(BIN)/python -m benchmarks.matrix $(if $(PYTHONS),--pythons $(PYTHONS)) $(if $(TESTS),--tests $(TESTS))
 
-# Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind, clang with libclang-rt-dev; the rest is skipped
+# Runs what the machine has: wine64, qemu-user with libc6-arm64-cross, valgrind, clang with libclang-rt-dev, firefox-esr; the rest is skipped
 # with its reason. Every part is done, and it fails if one has failed. NIGHTLY_SEED and TRIALS' --seeds choose other moments,
 # places and chairs.
 NIGHTLY_SEED ?= 1

@@ -19,8 +19,8 @@ from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.engine.wasm import modules
 from wheelchair_fmu.loop.factory import ModelFactory
-from wheelchair_fmu.loop.likelihood import START
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.report.content import STARTS
 
 from .loop_cost import SAMPLE
 from .rows import Row
@@ -51,7 +51,7 @@ def rows() -> Iterator[Row]:
         return
     light = ModelFactory(read(SAMPLE), Variant()).light
     for words, variant in (("without effects", Variant()), ("with the light effects", Variant().with_effects(light))):
-        (wasm,) = modules([(variant.choice, variant.active())], START)
+        (wasm,) = modules([(variant.choice, variant.active())], STARTS)
         took, off = _run(wasm, variant)
         yield Row(f"20 s run in the page, {words}", "ms", took, MILLISECONDS, note=f"states agree to {off:.0e}")
         yield Row(f"the page's model, {words}", "kB", [len(wasm) / 1e3], KILOBYTES)

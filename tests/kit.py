@@ -18,6 +18,9 @@ from wheelchair_fmu.contracts import places
 from wheelchair_fmu.contracts.places import Place
 from wheelchair_fmu.model.variant import Variant
 
+# Made by `wheelchair diagnose examples/sample-campaign --json tests/sample-diagnosis.json`; tests/api holds its form.
+SAMPLE_DIAGNOSIS = Path(__file__).with_name("sample-diagnosis.json")
+
 
 def variant_with(*ids: str, size: float = 1.0) -> Variant:
     """A variant with these effects on, each parameter at `size` times its smallest interesting size."""

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import wheelchair_fmu as wc
+from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.api import runs
 from wheelchair_fmu.api.diagnoses import probabilities_in
 from wheelchair_fmu.cli.effects import template
@@ -43,6 +44,25 @@ def test_a_diagnosis_says_the_same_in_every_form(found, tmp_path):
 
 def test_a_figure_shows_itself_in_a_notebook(found):
     assert found.plot_staircase()._repr_png_().startswith(b"\x89PNG")
+
+
+def test_the_diagnosis_that_other_tests_read_is_of_todays_form(found):
+    """Where it is not, it is to be made again by the command that stands in tests/kit.py."""
+    told, kept = found.as_dict(), json.loads(SAMPLE_DIAGNOSIS.read_text(encoding="utf-8"))
+    assert form(kept) == form(json.loads(json.dumps(told)))
+    assert {r["effect"] for r in kept["ranking"]} == {r["effect"] for r in told["ranking"]}
+    assert [s["step"] for s in kept["models"]] == [s["step"] for s in told["models"]]
+
+
+def form(told, place=""):
+    """Every key that there is, at its place."""
+    if isinstance(told, dict):
+        inner = [(k if place not in MANY else "…", v) for k, v in told.items()]
+        return {p for k, v in inner for p in ({f"{place}.{k}"} | form(v, f"{place}.{k}"))}
+    return {p for v in told for p in form(v, place)} if isinstance(told, list) else set()
+
+
+MANY = (".ranking.parameters", ".ranking.values", ".models.values", ".calibration", ".physical", ".physical.….runs")  # by name
 
 
 def test_a_diagnosis_has_the_whole_final_fit(found):

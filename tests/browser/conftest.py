@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,12 +13,12 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from tests.kit import SAMPLE_DIAGNOSIS as DIAGNOSIS
 from tests.kit import shared
 from wheelchair_fmu.cli.main import app
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "sample-campaign"
-DIAGNOSIS = Path(__file__).with_name("sample-diagnosis.json")  # by `wheelchair diagnose examples/sample-campaign --json`
 OPTIONS = [
     "--headless",
     "--no-sandbox",
@@ -45,6 +48,24 @@ def browser() -> Iterator[Any]:
         opened = running.chromium.launch(executable_path=chromium, args=OPTIONS)
         yield opened
         opened.close()
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the workbench keeps its work."""
+    return tmp_path_factory.mktemp("work")
+
+
+@pytest.fixture(scope="module")
+def address(work: Path) -> Iterator[str]:
+    """A workbench that runs, with its token, which a browser keeps as a cookie."""
+    pytest.importorskip("uvicorn", reason="the workbench's libraries are not installed")
+    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "workbench", "--port", "0", "--no-open", "--folder", str(work)]
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=env, cwd=work) as server:
+        assert server.stdout
+        yield server.stdout.readline().split()[0]
+        server.terminate()
 
 
 @pytest.fixture(scope="session")

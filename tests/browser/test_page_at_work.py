@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
@@ -52,6 +55,21 @@ def test_a_tick_climbs_the_staircase_and_further_sizes_are_fitted_together(reade
     values = page.evaluate("report.values")
     assert values[f"effect.{HIDDEN}.D"] == pytest.approx(1.6, abs=0.2)
     assert abs(values["effect.accelerometer_bias.x"]) < 0.03  # not the size that ticking begins with
+
+
+def test_a_fit_is_finished_also_where_exact_numbers_are_asked_meanwhile(reader):
+    """What a fit asks of the workers is nobody else's to drop."""
+    values = {**TOLD["models"][-1]["values"], f"effect.{HIDDEN}.D": 0.7}
+    reader.page.evaluate(
+        """values => {
+        report.controls.put(values);
+        report.fitTogether(report.values);
+        report.ask(true);
+    }""",
+        values,
+    )
+    reader.settle()
+    assert reader.page.evaluate("report.now.fit") <= TOP["fit"] + 0.002
 
 
 def test_sizes_fitted_in_the_page_are_those_of_the_search(reader):
@@ -159,6 +177,33 @@ def test_one_time_for_chair_curves_and_readings(reader):
     page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
 
 
+def test_samples_of_several_devices_are_one_curve_and_a_pause_is_none(browser, tmp_path):
+    """A channel that is sampled at every third row, with a pause of two seconds: drawn, read and printed as it is."""
+    shutil.copytree(SAMPLE, tmp_path / "campaign")
+    for file in (tmp_path / "campaign" / "runs").glob("*.csv"):
+        rows = pd.read_csv(file)
+        time = rows["time [s]"]
+        rows.loc[(rows.index % 3 > 0) | ((time > 4) & (time < 6)), "yaw_rate [rad/s]"] = np.nan
+        rows.to_csv(file, index=False)
+    reader = Reader(browser, report_of(tmp_path / "campaign", tmp_path / "report.html"))
+    page = reader.page
+    page.evaluate("report.show(report.shown.run, 'yaw_rate')")
+    page.wait_for_function(
+        "() => report.timeline.channel === 'yaw_rate' && Number.isFinite(report.timeline.plots[0].scales.y.max)"
+    )
+    assert page.evaluate("report.timeline.plots.every(p => p.scales.y.min < p.scales.y.max)")
+    gaps = page.evaluate("report.timeline.plots[0].series[3]._paths.gaps.length")  # of what was measured
+    page.evaluate("report.timeline.go(3.02)")
+    read = page.inner_text(".readings tr[data-channel=yaw_rate]")
+    page.evaluate("report.written()")
+    drawn = page.evaluate(
+        "report.figures.all.overlay.says.draw(720, {}).querySelectorAll('path[stroke-width=\"1\"]')[0].getAttribute('d')"
+    )
+    reader.close()
+    assert gaps == 1 and "–" not in read
+    assert drawn.count("M") == 2 and drawn.count("L") > 100
+
+
 def test_a_change_is_said_aloud(reader):
     reader.page.check(f"#effect-{HIDDEN}")
     reader.settle()
@@ -236,6 +281,8 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     told["verdict"] = verdict
     told["effects"] = {"tie": pair, "missing": pair, "small": [HIDDEN]}.get(verdict, [])
     told["ties"] = [pair] if verdict == "tie" else []
+    if verdict in ("adequate", "cannot_see"):  # the search ends where it began
+        told["ladder"], told["models"] = told["ladder"][:2], told["models"][:2]
     for row in told["ranking"]:
         row["verdict"] = verdict if row["effect"] in told["effects"] else "not needed"
     if verdict == "outside":

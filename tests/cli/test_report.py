@@ -8,13 +8,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from tests.kit import SAMPLE_DIAGNOSIS as TOLD
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.report.page import unpacked
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = str(ROOT / "examples" / "sample-campaign")
-TOLD = ROOT / "tests" / "browser" / "sample-diagnosis.json"
-PAPER = ROOT / "tests" / "report" / "paper" / "diagnosis.json"
 
 
 def run(*words: str):
@@ -57,7 +56,7 @@ def test_the_workbench_says_why_it_does_not_start(tmp_path, words, sentence):
 
 
 def test_a_diagnosis_becomes_the_supplement_of_a_paper(tmp_path):
-    done = run("report", SAMPLE, "--diagnosis", str(PAPER), "--paper", "-o", str(tmp_path / "supplement"))
+    done = run("report", SAMPLE, "--diagnosis", str(TOLD), "--paper", "-o", str(tmp_path / "supplement"))
     assert done.exit_code == 0, done.output
     assert [Path(line).name for line in done.stdout.splitlines()][:2] == ["methods.md", "methods.tex"]
     assert sorted(done.stdout.splitlines()) == sorted(map(str, (tmp_path / "supplement").iterdir()))
@@ -72,7 +71,7 @@ def test_a_diagnosis_becomes_the_supplement_of_a_paper(tmp_path):
     ],
 )
 def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, change, words, sentence):
-    told, content = tmp_path / "d.json", {**json.loads(PAPER.read_text(encoding="utf-8")), **change}
+    told, content = tmp_path / "d.json", {**json.loads(TOLD.read_text(encoding="utf-8")), **change}
     told.write_text(json.dumps({k: v for k, v in content.items() if v is not None}))
     done = run("report", SAMPLE, "--diagnosis", str(told), "--paper", "-o", str(tmp_path / "s"), *words)
     assert done.exit_code == 1 and not (tmp_path / "s").exists()
@@ -82,6 +81,6 @@ def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, ch
 def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path):
     place = tmp_path / "file"
     place.write_text("is here")
-    done = run("report", SAMPLE, "--diagnosis", str(PAPER), "--paper", "-o", str(place))
+    done = run("report", SAMPLE, "--diagnosis", str(TOLD), "--paper", "-o", str(place))
     assert done.exit_code == 1 and place.read_text() == "is here"
     assert done.stderr.splitlines()[-1] == f"{place}: file exists; give another place, or the rights to use this one"

@@ -48,7 +48,9 @@ def test_a_fit_stops_at_bounds_and_where_no_prior_lets_it_go(name, value, sd, st
 
 def test_a_mass_that_nobody_weighed_is_said(sample):
     found = fitted(replace(sample, known={**sample.known, "chair.m": 60.0}))
-    assert found["chair.m"].beyond and found["chair.m"].at_bound
+    mass = found["chair.m"]
+    assert mass.beyond and mass.at_bound
+    assert mass.value == pytest.approx(66, rel=1e-6) and mass.upper == 66 and mass.lower == 54
     said = [words for words in doubts(list(found.values())) if words.startswith("chair.m comes out at")]
     assert len(said) == 1 and "standard deviations from the 60 ± 1.5 kg given" in said[0]
 

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.campaign import read, windows
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.landscape import landscape
 from wheelchair_fmu.model.variant import Variant
 
 ROOT = Path(__file__).parents[2]
-TOLD = json.loads((ROOT / "tests" / "browser" / "sample-diagnosis.json").read_text())
+TOLD = json.loads(SAMPLE_DIAGNOSIS.read_text())
 
 
 @pytest.fixture(scope="module")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
 
 import pytest
 
+from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.campaign import CHANNELS
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
@@ -20,7 +20,7 @@ EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
 RECORDS = {p.name: p for e in EFFECTS.values() for p in e.owned}
 UNITS = {c.name: c.unit for c in CHANNELS}
-SAMPLE = json.loads((Path(__file__).parents[1] / "browser" / "sample-diagnosis.json").read_text())
+SAMPLE = json.loads(SAMPLE_DIAGNOSIS.read_text())
 DRAG, LEAN = "rolling_resistance_asymmetry", "camber_misalignment"
 JARGON = ("likelihood", "whitened", "RMS", "p-value", "covariance", "posterior", "σ")
 

@@ -9,9 +9,11 @@ from os import utime
 from pathlib import Path
 from shutil import rmtree
 
+import numpy as np
 import pytest
 
-from tests.kit import with_settings
+from tests.campaign import lab
+from tests.kit import SAMPLE_DIAGNOSIS, with_settings
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
@@ -95,6 +97,63 @@ def test_bad_files_show_their_faults_and_nothing_breaks(client):
 def test_files_stay_in_their_folder(client, bench, name):
     assert "is no name for a file" in upload(client, (name, b"time [s]\n0\n")).json()["error"]
     assert not list(bench.root.parent.rglob("evil.csv"))
+
+
+def test_an_empty_start_has_no_faults_of_a_file_that_nobody_wrote(client):
+    state = client.get(f"{client.base}/state").json()
+    assert state["faults"] == [] and state["files"] == [] and state["outcome"] is None
+
+
+def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(client, bench):
+    session = Session(bench.root, client.base.rpartition("/")[2])
+    upload(client, *recordings())
+    told = SAMPLE_DIAGNOSIS.read_text(encoding="utf-8")
+    for broken in ("{", "[]", "{}", told.replace('"effects"', '"others"')):
+        (session.folder / "diagnosis.json").write_text(broken)
+        assert client.get(f"{client.base}/state").json()["outcome"] is None
+    (session.folder / "diagnosis.json").write_text(told)
+    outcome = client.get(f"{client.base}/state").json()["outcome"]
+    assert outcome["sentence"] == "Missing from the model: one rear wheel that rolls harder than the other."
+    assert outcome["effects"] == outcome["order"][:1] == ["rolling_resistance_asymmetry"] and not outcome["fresh"]
+    assert len(outcome["cards"]) == 3 and "wheelchair add" not in str(outcome["cards"])
+    session.note_diagnosed(session.at_hand())
+    state = client.get(f"{client.base}/state").json()
+    assert state["outcome"]["fresh"]
+    changed = client.put(f"{client.base}/campaign", json={**state["campaign"], "noise": {"yaw_rate": "0.5 deg/s"}}).json()
+    assert not changed["outcome"]["fresh"]
+
+
+def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):
+    state = client.post(f"{client.base}/sample").json()
+    assert len(state["files"]) == 10 and state["faults"] == [] and state["outcome"] is None
+    assert state["campaign"]["campaign"]["name"] == "sample campaign"
+    assert "recordings here already" in client.post(f"{client.base}/sample").json()["error"]
+    assert len(state["signals"]["yaw_rate [rad/s]"]) > 100 and state["times"] == ["time [s]"]
+    seen = client.get(f"{client.base}/preview")
+    assert seen.status_code == 200 and "<svg" in seen.text and "Nothing odd was found" in seen.text
+    assert "default-src 'none'" in seen.headers["content-security-policy"]
+
+
+def test_files_of_a_lab_are_read_together_and_that_can_be_undone(client, tmp_path):
+    rng = np.random.default_rng(1)
+    for i, ride in enumerate(lab.rides(1), 1):
+        lab.rim(tmp_path / f"run{i:02d}_SWL.csv", ride, 0.7, "l", rng)
+        lab.rim(tmp_path / f"run{i:02d}_SWR.csv", ride, 0.2, "r", rng, mirrored=True)
+    files = [(f.name, f.read_bytes()) for f in sorted(tmp_path.iterdir())]
+    before = upload(client, *files).json()["campaign"]
+    assert client.post(f"{client.base}/jobs", json={"kind": "import", "mass": "heavy"}).status_code == 400
+    client.post(f"{client.base}/jobs", json={"kind": "import", "mass": 90, "radius": lab.RADIUS, "track": 0.56})
+    wait_for(lambda: client.get(f"{client.base}/job").json()["state"] != "running")
+    state = client.get(f"{client.base}/state").json()
+    assert state["job"]["state"] == "done", state["job"]["lines"]
+    assert state["campaign"]["chair"]["m"] == 90 and {len(run["files"]) for run in state["campaign"]["run"]} == {2}
+    assert not [f for f in state["faults"] if f["severity"] == "error"]
+    assert len(state["history"]["steps"]) == 2 and state["history"]["steps"][1]["label"] == "files read anew"
+    assert client.post(f"{client.base}/history", json={"by": -1}).json()["campaign"] == before
+    again = client.post(f"{client.base}/history", json={"by": 1}).json()["campaign"]
+    assert again == state["campaign"]
+    gone = client.delete(f"{client.base}/files/{files[0][0]}").json()["campaign"]["run"]
+    assert gone == again["run"][1:], "a run that lacks a file goes"
 
 
 def test_two_tabs_do_not_disturb_each_other(client):

@@ -155,7 +155,8 @@ class Diagnosis:
     @property
     def calibration(self) -> pd.DataFrame:
         """A row for each value that was given and fitted, by its FMI name: value, `se`, `prior`, `prior_sd` (NaN: nothing was
-        known), in `unit` (SI), and whether it lies `at_bound` or `beyond` what anybody would have measured.
+        known), in `unit` (SI), whether it lies `at_bound` or `beyond` what anybody would have measured, and how far a fit may
+        go, `lower` and `upper`.
 
         >>> m = found.calibration.loc["chair.m"]
         >>> print(f"{m.value:.0f} {m.unit}, given as {m.prior:.0f} ± {m.prior_sd:.0f}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import BY_NAME, CHANNELS, Campaign, Fault, Recorded, judged, read
+from ..campaign import CHANNELS, Campaign, Fault, Recorded, judged, read
 from ..contracts.own import catalogue
 from ..faults import ERROR, WARNING
 from ..loop.subject import known_parameters
@@ -72,7 +72,7 @@ def check(
 
 def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Path) -> None:
     """preview.html and preview.png in `out`, and their names on stderr: what was printed before may be JSON."""
-    seen = [preview.Run(run.name, run.entry.text("role"), dict(_signals(run))) for run in runs]
+    seen = preview.seen(runs)
     drawn = preview.figures(seen)
     for i, figure in enumerate(drawn):
         name = "preview.png" if len(drawn) == 1 else f"preview-{i + 1}.png"
@@ -83,14 +83,6 @@ def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Pat
     with written(out / "preview.html") as beside:
         beside.write_text(preview.page(title, drawn, [(f.severity, str(f)) for f in faults]), encoding="utf-8")
     print(out / "preview.html", file=sys.stderr)
-
-
-def _signals(run: Recorded) -> Iterator[tuple[str, preview.Signal]]:
-    for draft in run.drafts:
-        for name, series in draft.values.items():
-            if draft.time is not None:
-                odd = draft.time[list(draft.spikes.get(name, {}))]
-                yield name, preview.Signal(name, BY_NAME[name].unit.name, draft.part.device.name, draft.time, series, odd)
 
 
 def _show(campaign: Path, faults: list[Fault], counts: dict[str, int]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from ..quantities import Parameter
 from .fit import REACH, Fit, Problem
 from .likelihood import Likelihood
-from .statistics import standard_errors
+from .statistics import finite, standard_errors
 
 DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
 CLOSE = 1e-3  # of a prior's standard deviation, or of a bound: as near as a fit comes to it
@@ -21,7 +21,8 @@ CLOSE = 1e-3  # of a prior's standard deviation, or of a bound: as near as a fit
 class Calibrated:
     """A value as fitted, with its standard error, beside what was given, `prior` ± `prior_sd` (inf: nothing known).
 
-    `at_bound` where the fit would have gone on; `beyond` where that is as far as a prior lets it go.
+    A fit goes no further than `lower` and `upper`; it is `at_bound` where it would have gone on, `beyond` where that is as far
+    as a prior lets it go.
     """
 
     record: Parameter
@@ -30,6 +31,8 @@ class Calibrated:
     prior: float
     prior_sd: float
     at_bound: bool
+    lower: float = -np.inf
+    upper: float = np.inf
 
     @property
     def off(self) -> float:
@@ -69,6 +72,8 @@ class Calibrated:
             "prior_sd": self.prior_sd if np.isfinite(self.prior_sd) else None,
             "at_bound": self.at_bound,
             "beyond": self.beyond,
+            "lower": finite(self.lower),
+            "upper": finite(self.upper),
         }
 
 
@@ -80,7 +85,8 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
     for i, name in enumerate(names):
         value, sd = found.values[name], float(problem.prior.sd[i])
         record, mean = likelihood.records[name], float(problem.prior.mean[i])
-        out.append(Calibrated(record, value, errors[name], mean, sd, at_bound(record, value, mean, sd)))
+        stopped, reach = at_bound(record, value, mean, sd), (float(problem.lower[i]), float(problem.upper[i]))
+        out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach))
     return out
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..loop.ties import grouped
-from .told import Told, actions, capital, exceeds, fall_words, number, rival_words, size_lines, sized
+from .told import Told, actions, capital, exceeds, fall_words, number, odds_words, rival_words, size_lines, sized
 from .words import listed, probability_words, value_text
 
 
@@ -56,10 +56,9 @@ def _outside(t: Told) -> tuple[str, list[str]]:
 def _how_sure(t: Told) -> tuple[str, list[str]]:
     fall, rivals = fall_words(t), rival_words(t)
     if t.verdict == "tie":
-        together = [
-            f"{capital(t.title(e))} leaves {t.rows[e]['heldout_after']:.2f}." for e in t.found if t.rows[e]["heldout_after"]
-        ]
-        return "That one of them is there: yes. Which: not yet", ["Both explain these runs equally well.", *together]
+        left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
+        together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
+        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
     if t.verdict in ("missing", "small") and t.found:
         sure = min(exceeds(t.rows[e]) for e in t.found)
         what = "all are" if len(t.found) > 1 else "it is"

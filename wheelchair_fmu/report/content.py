@@ -14,14 +14,16 @@ from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import modules
 from ..loop.factory import ModelFactory
 from ..loop.landscape import landscape
-from ..loop.likelihood import SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd
+from ..loop.likelihood import CASTERS, SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd, starts_of
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
+from ..loop.verdict import FORCES as UNRECORDED
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..quantities import N, Parameter, Unit
 
+STARTS = (*START, *CASTERS)  # of which a model has those of its own states
 TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
 FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
@@ -38,12 +40,12 @@ def content(
     factory = ModelFactory(campaign, variant, fixed)
     factory.noise_model = colour
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
-    compiled = modules([(v.choice, v.active()) for v in variants], START, driven(campaign))
+    compiled = modules([(v.choice, v.active()) for v in variants], STARTS, driven(campaign))
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
         "diagnosis": diagnosis,
-        "landscape": landscape(factory, diagnosis),
+        "landscape": _landscape(factory, diagnosis),
         "runs": [_run(r, campaign) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},
@@ -57,11 +59,16 @@ def content(
         "regimes": _regimes(variant),
         "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
-        "start": START,
         "tuning": TUNING,
         "settled": SETTLED,
         "tolerance": TOLERANCE,
     }
+
+
+def _landscape(factory: ModelFactory, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
+    """See `landscape`; none of what was found beside forces that nobody recorded, of which a plain simulation knows nothing."""
+    led = any(step["step"] == UNRECORDED for step in diagnosis["ladder"])
+    return {"profiles": [], "pair": None} if led else landscape(factory, diagnosis)
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
@@ -89,7 +96,8 @@ def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
         "outputs": [o.name for o in model.outputs],
         "states": model.x.numel(),
         "sensors": [model.outputs[i].name for i in sensed(model)],
-        "columns": [p.name for p in differentiable(model) if p.name in START],
+        "columns": [p.name for p in differentiable(model, STARTS)],
+        "starts": starts_of(p.name for p in model.parameters),
         "delays": [p.name for e in model.effects if e.delays_record for p in e.owned],
     }
 
@@ -103,8 +111,8 @@ def _run(run: Run, campaign: Campaign) -> dict[str, Any]:
         "time": _series(run.time),
         "inputs": {name: _series(v) for name, v in run.inputs.items()},
         "channels": {c.name: _series(run.channels[c.name]) for c in CHANNELS if c.name in run.channels},
-        "start": prior_start(run, {**campaign.known, **run.set}),
-        "start_sd": start_sd(run),
+        "start": prior_start(run, {**campaign.known, **run.set}, STARTS),
+        "start_sd": start_sd(run, STARTS),
     }
 
 

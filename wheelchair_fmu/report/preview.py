@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import html
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..campaign import BY_NAME, Recorded
 from .canvas import blank
 from .figures import BLUE, GREY, ORANGE
 from .saving import save_svg
@@ -50,6 +51,19 @@ class Run:
     name: str
     role: str
     signals: dict[str, Signal]
+
+
+def seen(recorded: Iterable[Recorded]) -> list[Run]:
+    """Runs as their devices recorded them."""
+    return [Run(run.name, run.entry.text("role"), dict(_signals(run))) for run in recorded]
+
+
+def _signals(run: Recorded) -> Iterator[tuple[str, Signal]]:
+    for draft in run.drafts:
+        for name, series in draft.values.items():
+            if draft.time is not None:
+                odd = draft.time[list(draft.spikes.get(name, {}))]
+                yield name, Signal(name, BY_NAME[name].unit.name, draft.part.device.name, draft.time, series, odd)
 
 
 def figures(runs: Sequence[Run]) -> list[Figure]:

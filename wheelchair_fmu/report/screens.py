@@ -94,17 +94,18 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"With {what}, the error on {whose} goes from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
+        each = "either" if len(t.found) == 2 else "any of them"
         if abs(before - after) < 0.03:
             return {
                 "title": "Put one in: these runs hardly change",
                 "lines": [
                     "The effect shows in the runs it was fitted to, a little at a time, not yet in those that were kept back.",
-                    f"There the error is {after:.2f} times the noise with either.",
+                    f"There the error is {after:.2f} times the noise with {each}.",
                 ],
             }
         return {
             "title": "Put one in and watch the error fall",
-            "lines": [f"With either, the error on {whose} falls to {after:.2f}."],
+            "lines": [f"With {each}, the error on {whose} falls to about {after:.2f}."],
         }
     return {
         "title": f"Put {'it' if len(t.found) == 1 else 'them'} in and watch the error fall",
@@ -116,7 +117,7 @@ def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
             "Why not one of them",
-            ["These runs favour neither. The sizes that each would need:", *(sized(t, e) for e in t.found)],
+            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.found)],
         )
     elif t.found and t.verdict != "outside":
         title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..quantities import Quantity
 from .advice import inspect
-from .words import listed, title_of, value_text
+from .words import listed, probability_words, title_of, value_text
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
@@ -106,7 +106,7 @@ def fall_words(t: Told) -> str:
         where = (
             ", before and after" if not t.found else ", as before: what was found shows at few moments, and there it is gone"
         )
-        return f"Over all of {t.runs} the error is {after:.2f} times what noise alone gives{where}."
+        return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
 
@@ -123,6 +123,15 @@ def near_rivals(t: Told) -> list[Mapping[str, Any]]:
 def _beside(row: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     """Were both put into the same model?"""
     return bool(row["heldout_before"] == other["heldout_before"])
+
+
+def odds_words(t: Told) -> list[str]:
+    """How likely each of those is that are tied, if one of them is what is missing."""
+    said = []
+    for odds in t.diagnosis.get("odds") or ():
+        shares = listed([f"{probability_words(p)} for {t.title(e)}" for e, p in odds.items()], "and")
+        said.append(f"If it is one of these, the chance is {shares}: to say which takes more than a hundred to one.")
+    return said or ["These runs do not tell them apart."]
 
 
 def rival_words(t: Told) -> list[str]:
@@ -215,6 +224,6 @@ def actions(t: Told) -> list[str]:
 
 
 def _measure(following: Mapping[str, Any]) -> str:
-    times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
+    times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
     more = "them apart" if len(following["separates"]) > 1 else "more"
-    return f"Measure {following['manoeuvre']}, {times}: it would tell {more}."
+    return f"Measure {following['manoeuvre']}{times}: it would tell {more}."

@@ -73,8 +73,8 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
     said += (diagnosis.get("disturbance") or {}).get("words", ())
     following = diagnosis.get("next_experiment")
     if following:
-        times = "once" if following["repeats"] == 1 else f"{following['repeats']} times"
-        said.append(f"Measure next, {times}: {following['manoeuvre']}.")
+        times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
+        said.append(f"Measure next{times}: {following['manoeuvre']}.")
     return [*said, *(f"Note: {note}." for note in diagnosis.get("notes", ()))]
 
 

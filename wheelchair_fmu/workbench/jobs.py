@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
@@ -33,10 +34,20 @@ class Job:
     state: str = "running"
     process: subprocess.Popen[str] | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
+    began: float = field(default_factory=time.monotonic)
+    ended: float | None = None
+    usual: tuple[int, float] | None = None  # steps and seconds of the last one of its kind
+    result: Any = None  # what the page shows of it
+
+    @property
+    def seconds(self) -> float:
+        return (time.monotonic() if self.ended is None else self.ended) - self.began
 
     def told(self) -> dict[str, Any]:
         shown = ["wheelchair " + shlex.join(words) for words in self.commands]
-        return {"kind": self.kind, "state": self.state, "lines": self.lines[-KEPT:], "commands": shown}
+        usual = None if self.usual is None else {"steps": self.usual[0], "seconds": self.usual[1]}
+        told = {"kind": self.kind, "state": self.state, "lines": self.lines[-KEPT:], "commands": shown}
+        return {**told, "steps": len(self.lines), "seconds": round(self.seconds, 1), "usual": usual, "result": self.result}
 
     def run(self, folder: Path) -> None:
         outputs = []
@@ -52,6 +63,8 @@ class Job:
             self.state = "failed"
         else:
             self.state = "done"
+        finally:
+            self.ended = time.monotonic()
 
     def _one(self, words: Sequence[str], folder: Path) -> str | None:
         """What the command printed; None where it failed or was cancelled."""
@@ -99,6 +112,7 @@ class Jobs:
 
     def __init__(self) -> None:
         self._jobs: dict[str, Job] = {}
+        self._took: dict[str, tuple[int, float]] = {}
         self._starting = threading.Lock()
 
     def start(self, session: str, job: Job, folder: Path) -> None:
@@ -107,8 +121,13 @@ class Jobs:
             now = self._jobs.get(session)
             if now and now.state == "running":
                 raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
-            self._jobs[session] = job
-        threading.Thread(target=job.run, args=(folder,), daemon=True).start()
+            job.usual, self._jobs[session] = self._took.get(job.kind), job
+        threading.Thread(target=self._run, args=(job, folder), daemon=True).start()
+
+    def _run(self, job: Job, folder: Path) -> None:
+        job.run(folder)
+        if job.state == "done":
+            self._took[job.kind] = (len(job.lines), job.seconds)
 
     def told(self, session: str) -> dict[str, Any] | None:
         job = self._jobs.get(session)

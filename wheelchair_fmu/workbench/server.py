@@ -34,12 +34,14 @@ from ..model.effects import bundled
 from ..model.expression import effect_file
 from ..model.variant import Variant
 from ..model.wheelchair import assemble
+from ..report import preview
 from ..report.page import ASSETS, asset
 from .bodies import Json, json_object, number
 from .guard import Guard
 from .intake import MOST_BYTES
 from .jobs import Job, Jobs, printed_json
 from .locks import Locks
+from .outcome import outcome
 from .session import Session, channel_list
 
 EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
@@ -93,6 +95,7 @@ class Workbench:
             Route(at, self.shown(self.page)),
             Route(f"{at}/state", self.shown(self.state)),
             Route(f"{at}/job", self.shown(self.job)),
+            Route(f"{at}/sample", self.shown(self.take_sample), methods=["POST"]),
             Route(f"{at}/files", self.shown(self.take_files), methods=["POST"]),
             Route(f"{at}/files/{{name:path}}", self.shown(self.drop_file), methods=["DELETE"]),
             Route(f"{at}/campaign", self.shown(self.set_campaign), methods=["PUT"]),
@@ -102,6 +105,7 @@ class Workbench:
             Route(f"{at}/expression", self.shown(self.check_expression), methods=["POST"]),
             Route(f"{at}/effects", self.shown(self.write_effect), methods=["POST"]),
             Route(f"{at}/report", self.shown(self.report)),
+            Route(f"{at}/preview", self.shown(self.preview)),
             Route(f"{at}/export/{{name}}", self.shown(self.export)),
         ]
 
@@ -174,6 +178,19 @@ class Workbench:
             raise HTTPException(404)
         return FileResponse(file, headers={"cache-control": "no-store"})
 
+    async def preview(self, request: Request, session: Session) -> Response:
+        """Every signal of every run on one page, with all faults."""
+
+        def drawn() -> str:
+            seen = session.seen(self.bounds)
+            pictures = preview.figures(preview.seen(seen.runs))
+            return preview.page(session.name, pictures, [(f.severity, str(f)) for f in seen.faults])
+
+        policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
+        return HTMLResponse(
+            await run_in_threadpool(drawn), headers={"cache-control": "no-store", "content-security-policy": policy}
+        )
+
     # -- what there is --------------------------------------------------------------------------------------
 
     async def state(self, request: Request, session: Session) -> Response:
@@ -184,19 +201,22 @@ class Workbench:
 
     def told(self, session: Session) -> dict[str, Any]:
         report = session.folder / "report.html"
-        own = session.own_effects()
+        own, catalogue, columns = session.own_effects(), session.catalogue(), session.columns()
         faults, noise = session.judged(known_parameters({**bundled(), **own}) if own else self.bounds)
         return {
             "campaign": session.content(),
             "files": session.files(),
-            "headers": session.headers(),
+            "headers": {header: column["files"] for header, column in columns.items()},
+            "times": [header for header, column in columns.items() if column["time"]],
+            "signals": {header: column["signal"] for header, column in columns.items()},
             "faults": faults,
             "channels": channel_list(),
             "noise": noise,
             "parameters": self.parameters,
             "history": session.history(),
             "variant": session.variant_text(),
-            "effects": [{"id": e.id, "title": e.title, "own": e.id in own} for e in session.catalogue().values()],
+            "effects": [{"id": e.id, "title": e.title, "own": e.id in own} for e in catalogue.values()],
+            "outcome": outcome(session, catalogue),
             "words": self.words,
             "most_upload": self.most_upload,
             "report": report.stat().st_mtime_ns if report.exists() else None,
@@ -218,6 +238,9 @@ class Workbench:
             session.put(file.filename or "", file.file, self.most_upload)
         session.draft()
 
+    async def take_sample(self, request: Request, session: Session) -> Response:
+        return await self.change(session, session.try_sample)
+
     async def drop_file(self, request: Request, session: Session) -> Response:
         return await self.change(session, partial(session.drop, request.path_params["name"]))
 
@@ -228,7 +251,13 @@ class Workbench:
 
     async def start_job(self, request: Request, session: Session) -> Response:
         asked = await json_object(request)
-        makers = {"calibrate": self._calibrate, "diagnose": self._diagnose, "add": self._add}
+        makers = {
+            "import": self._import,
+            "calibrate": self._calibrate,
+            "diagnose": self._diagnose,
+            "try": self._try,
+            "add": self._add,
+        }
         kind = str(asked.get("kind"))
         if kind not in makers:
             raise unknown("kind of work", kind[:40], makers)
@@ -255,16 +284,45 @@ class Workbench:
         words = ["compare", "campaign", "--calibrate", ",".join(names), "--json", *self._with(session)]
         return Job("calibrate", [words], after)
 
+    def _import(self, session: Session, asked: dict[str, Any]) -> Job:
+        """Find out which file is which run and device, and what its columns are; the campaign.toml that was there can be had
+        back."""
+        sizes = [(f"--{name}", number(asked, name)) for name in ("mass", "radius", "track") if asked.get(name) is not None]
+
+        def after(outputs: list[str]) -> None:
+            with self.locks.held(session):
+                session.read_anew()
+
+        session.note_campaign()
+        words = ["import", "campaign", "-o", "campaign", "--yes", "--force"]
+        return Job("import", [[*words, *(word for name, size in sizes for word in (name, f"{size:g}"))]], after)
+
     def _diagnose(self, session: Session, asked: dict[str, Any]) -> Job:
         chair = self._with(session)
+        of = session.at_hand()
         diagnose = ["diagnose", "campaign", "--json", "diagnosis.json", "--progress", *chair]
         report = ["report", "campaign", "--diagnosis", "diagnosis.json", "-o", "report.html", "--progress", *chair]
-        return Job("diagnose", [diagnose, report], lambda outputs: None)
+        return Job("diagnose", [diagnose, report], lambda outputs: session.note_diagnosed(of))
 
-    def _add(self, session: Session, asked: dict[str, Any]) -> Job:
+    def _effect(self, session: Session, asked: dict[str, Any]) -> str:
         effect = str(asked.get("effect"))
         if effect not in session.catalogue():
             raise unknown("effect", effect[:40], session.catalogue())
+        return effect
+
+    def _try(self, session: Session, asked: dict[str, Any]) -> Job:
+        """What an effect would do; nothing is kept."""
+        effect = self._effect(session, asked)
+
+        def after(outputs: list[str]) -> None:
+            job.result = {"effect": effect, "ladder": printed_json(outputs[0])["ladder"]}
+
+        words = ["add", effect, "campaign", "-o", "tried.toml", "--json", "--progress", *self._with(session)]
+        job = Job("try", [words], after)
+        return job
+
+    def _add(self, session: Session, asked: dict[str, Any]) -> Job:
+        effect = self._effect(session, asked)
         target = session.folder / "better.toml"
 
         def after(outputs: list[str]) -> None:

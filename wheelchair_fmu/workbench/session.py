@@ -6,7 +6,7 @@
     effects/*.py                     effects written in the page
     variants/N.toml                  one for each step; history.json says which, and where undo has gone
     campaigns/*.toml                 campaign.toml as it was at each step
-    diagnosis.json, report.html      of the last diagnosis
+    diagnosis.json, report.html      of the last diagnosis; diagnosed.json says of which variant and campaign.toml
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO
 from uuid import uuid4
 
-from ..campaign import CHANNELS, INPUTS, judged, read
+import numpy as np
+
+from ..campaign import CHANNELS, INPUTS, Judged, judged, read
 from ..campaign.binding import split
 from ..campaign.channels import BY_NAME, TIME
 from ..campaign.formats import open_recording
@@ -35,6 +37,7 @@ from ..errors import CampaignError, EffectError, Failure, ModelError, UsageError
 from ..model.effects import bundled, sources
 from ..model.stage import Effect
 from ..model.variant import Variant, programs_in, variant_text
+from ..resources import EXAMPLES
 from ..writing import written
 from .bodies import refuse_unusual, too_deep
 from .history import broken, recovered
@@ -45,6 +48,8 @@ KEPT = 90  # days for which work is kept after it was last looked at
 SCRATCH = 1  # the same, for what holds no recordings
 DAY = 86400.0  # s
 NAME = re.compile(r"[0-9a-f]{12}")
+SAMPLE = "sample-campaign"
+THUMB = 120  # values of a signal that is drawn beside its column
 FIRST_HOLDOUT = "holdout"  # a file whose name says so is held out
 
 
@@ -66,12 +71,28 @@ class Session:
         for folder in (session.folder, session.campaign, session.effects, session.variants, session.campaigns):
             folder.mkdir(mode=0o700, parents=True)
         session.keep(Variant(), "nominal")
-        for file in sorted(campaign.rglob("*")) if campaign else ():
-            if campaign and file.is_file() and file.suffix.lower() in SUFFIXES:
-                with file.open("rb") as content:
-                    session.put(file.relative_to(campaign).as_posix(), content)
+        if campaign:
+            session._copy(campaign)
         session.draft()
         return session
+
+    def _copy(self, campaign: Path) -> None:
+        for file in sorted(campaign.rglob("*")):
+            if file.is_file() and file.suffix.lower() in SUFFIXES:
+                with file.open("rb") as content:
+                    self.put(file.relative_to(campaign).as_posix(), content)
+
+    def try_sample(self) -> None:
+        """Take in the sample campaign, under a name that does not give its answer away.
+
+        Raises UsageError where there are recordings already.
+        """
+        if self.files():
+            raise UsageError("there are recordings here already; begin new work, and try the sample there")
+        self._copy(EXAMPLES / SAMPLE)
+        content = self.content() or {}
+        content["campaign"]["name"] = SAMPLE.replace("-", " ")
+        self.write_content(content)
 
     @classmethod
     def latest(cls, root: Path, most: int) -> list[Session]:
@@ -141,7 +162,7 @@ class Session:
 
     def _every_run(self, runs: list[Any]) -> list[Any]:
         """These, and one for each recording that has none yet."""
-        named = [run.get("file") for run in runs if isinstance(run, Mapping)]
+        named = {name for run in runs for name in _files_of(run)}
         return [*runs, *(_run(name) for name in self.files() if name not in named)]
 
     def files(self) -> list[str]:
@@ -151,12 +172,20 @@ class Session:
 
     def headers(self) -> dict[str, list[str]]:
         """Every header there is, with the files that have it."""
-        found: dict[str, list[str]] = {}
+        return {header: column["files"] for header, column in self.columns().items()}
+
+    def columns(self) -> dict[str, dict[str, Any]]:
+        """Every header there is, with the `files` that have it, and its `signal` in the first of them, of few values, null in
+        gaps, so that a sign or a unit that is wrong can be seen, empty where there are no numbers; and whether the files call
+        it their `time`."""
+        found: dict[str, dict[str, Any]] = {}
         for name in self.files():
             table, _ = open_recording(self.campaign / name, name, {})
-            for header in table.headers if table else ():
+            for i, header in enumerate(table.headers if table else ()):
+                if table and header and header not in found:
+                    found[header] = {"files": [], "signal": _thinned(table.rows([i]).values[i]), "time": table.time == i}
                 if header:
-                    found.setdefault(header, []).append(name)
+                    found[header]["files"].append(name)
         return found
 
     def content(self) -> dict[str, Any] | None:
@@ -188,10 +217,10 @@ class Session:
             raise UsageError(f"campaign.toml cannot hold this: {error}") from None
 
     def without(self, keep: Callable[[Any], bool]) -> None:
-        """Leave out the runs of campaign.toml whose file is not to be kept."""
+        """Leave out the runs of campaign.toml of which a file is not to be kept."""
         content = self.content()
         if content and isinstance(content.get("run"), list):
-            runs = [r for r in content["run"] if not isinstance(r, Mapping) or keep(r.get("file"))]
+            runs = [r for r in content["run"] if not isinstance(r, Mapping) or _kept(r, keep)]
             self.write_content({**content, "run": runs})
 
     def drop(self, name: str) -> None:
@@ -207,12 +236,17 @@ class Session:
         strange = self._toml()[1]
         own = [text for text in (*self.own_faults(), broken(self.folder), strange) if text]
         found: list[dict[str, Any]] = [{"text": text, "severity": "error"} for text in own]
-        if strange or (not self.files() and not (self.campaign / "campaign.toml").exists()):
+        content = self.content()
+        if strange or (content is not None and not self.files() and not content.get("run")):  # nothing was given yet
             return found, {}
-        seen = judged(self.campaign, dict(known))
+        seen = self.seen(known)
         campaign, faults = seen.campaign, seen.faults
         found += [{"text": str(f), "severity": f.severity} for f in faults]
         return found, campaign.noise if campaign else {}
+
+    def seen(self, known: Mapping[str, tuple[float, float]]) -> Judged:
+        """The recordings as they are read, with all that is wrong with them."""
+        return judged(self.campaign, dict(known))
 
     # -- effects and variants -------------------------------------------------------------------------------
 
@@ -281,6 +315,34 @@ class Session:
             self._restore(self.campaigns / steps[at]["campaign"])
         self._write_history(at, steps)
 
+    def note_campaign(self) -> None:
+        """Keep campaign.toml as it is now, because something else is about to write it."""
+        steps = self._steps_so_far()
+        self._write_history(len(steps) - 1, steps)
+
+    def read_anew(self) -> None:
+        """One step more, with a campaign.toml that something else has written."""
+        history = self.history()
+        steps = history["steps"][: history["at"] + 1]
+        self._append(steps, "files read anew", self.variant_file.name, None)
+
+    def at_hand(self) -> list[str | None]:
+        """Which model and which campaign.toml there are now, by their names."""
+        file = self.campaign / "campaign.toml"
+        return [self.variant_file.name, _named(file.read_bytes()) if file.exists() else None]
+
+    def note_diagnosed(self, what: list[str | None]) -> None:
+        """The last diagnosis is of the model and the campaign that `at_hand` told when it began."""
+        write(self.folder / "diagnosed.json", json.dumps(what).encode())
+
+    @property
+    def diagnosed(self) -> bool:
+        """Is the last diagnosis of the model and the campaign as they are?"""
+        try:
+            return bool(json.loads((self.folder / "diagnosed.json").read_text(encoding="utf-8")) == self.at_hand())
+        except (OSError, ValueError, Failure):
+            return False
+
     def _steps_so_far(self) -> list[dict[str, Any]]:
         """Steps up to now, the last with the campaign as it is: recordings may have come since."""
         history = self.history()
@@ -299,7 +361,7 @@ class Session:
         if not file.exists():
             return None
         content = file.read_bytes()
-        kept = self.campaigns / f"{sha256(content).hexdigest()[:16]}.toml"
+        kept = self.campaigns / _named(content)
         if not kept.exists():
             write(kept, content)
         return kept.name
@@ -359,6 +421,11 @@ def prune(root: Path, days: float = KEPT) -> list[str]:
     return gone
 
 
+def _thinned(values: np.ndarray) -> list[float | None]:
+    step = max(1, len(values) // THUMB)
+    return [float(f"{v:.4g}") if np.isfinite(v) else None for v in values[::step]] if np.isfinite(values).any() else []
+
+
 def _difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> str:
     """What an edit did, in words: "noise.yaw_rate = 0.2 deg/s"; nothing where nothing changed."""
     old, new = dict(_flat(before)), dict(_flat(after))
@@ -386,6 +453,24 @@ def write(path: Path, content: bytes) -> None:
     with written(path) as beside:
         beside.touch(mode=0o600)
         beside.write_bytes(content)
+
+
+def _named(content: bytes) -> str:
+    return f"{sha256(content).hexdigest()[:16]}.toml"
+
+
+def _kept(run: Mapping[str, Any], keep: Callable[[Any], bool]) -> bool:
+    files = _files_of(run)
+    return all(map(keep, files)) if files else keep(run.get("file"))
+
+
+def _files_of(run: Any) -> list[str]:
+    """The recordings of a run, of one device or of several."""
+    if not isinstance(run, Mapping):
+        return []
+    several = run.get("files")
+    names = several.values() if isinstance(several, Mapping) else [run.get("file")]
+    return [name for name in names if isinstance(name, str)]
 
 
 def _run(name: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The sample campaign's diagnosis, as `wheelchair diagnose examples/sample-campaign --json` wrote it, and changes of it."""
+"""The sample campaign's diagnosis, as `tests.kit` keeps it, and changes of it."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tests.kit import SAMPLE_DIAGNOSIS as TOLD
 from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.paper.case import Case, checked
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "sample-campaign"
-TOLD = Path(__file__).parent / "diagnosis.json"
 DRAG = "rolling_resistance_asymmetry"
 SIZE = f"effect.{DRAG}.D"
 

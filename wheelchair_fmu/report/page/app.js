@@ -21,7 +21,9 @@ import { channelOf, runOf, stepOf } from "page/words";
 const REST = 180; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
+const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
 const DEEP = 60; // changes that can be undone
+const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
 class App {
   constructor(campaign) {
@@ -29,10 +31,13 @@ class App {
     this.results = [];
     this.timings = [];
     this.costs = [];
+    this.doubts = new Map(); // by run: variances of readings by the uncertainty of the last model's values; null while they are made
     this.steps = new Map(); // by step of the search: brief results of every run
     this.known = new Set(["calibrated", "effects"].flatMap((k) => campaign[k]).flatMap((p) => (p.parameters ?? [p]).map((q) => q.name)).concat(campaign.diagnosis.models.flatMap((m) => Object.keys(m.values))));
     this.state = address.read(location.hash, campaign, this.known);
     if (this.state.theme) document.documentElement.dataset.theme = this.state.theme;
+    this.forces = campaign.diagnosis.ladder.some((s) => s.step === FORCES);
+    byId("forces").hidden = !this.forces;
     this.figures = new Figures(campaign, this);
     evidence(campaign);
   }
@@ -71,7 +76,7 @@ class App {
 
   /** Where the page opens at a step of the search, its errors are in the diagnosis: they stand at once. */
   foretell() {
-    const step = this.opensAtStart && this.campaign.diagnosis.ladder.find((s) => s.step === this.start.step);
+    const step = this.opensAtStart && !this.forces && this.campaign.diagnosis.ladder.find((s) => s.step === this.start.step);
     if (!step) return;
     byId("now-fit").textContent = rms(step.fit);
     byId("now-heldout").textContent = rms(step.heldout);
@@ -132,10 +137,10 @@ class App {
       this.want(exact ? "rested" : "all");
       if (exact && !this.pending) this.record();
       this.say(this.fitting ? "fitting the sizes together …" : exact ? "exact" : "about, while it moves", this.fitting ? "busy" : exact ? "exact" : "quick");
-      requestAnimationFrame(() => setTimeout(() => { this.timings.push({ exact, one, all: performance.now() - began }); this.settled = exact && !this.fitting; }));
+      requestAnimationFrame(() => setTimeout(() => { this.timings.push({ exact, one, all: performance.now() - began }); this.settled = exact && !this.fitting && !this.running; }));
     }
     if (this.pending) this.ask(false);
-    else if (!exact) this.resting = setTimeout(() => this.ask(true), REST);
+    else if (!exact && !this.fitting) this.resting = setTimeout(() => this.ask(true), REST); // a fit ends with values of its own
   }
 
   error() {
@@ -146,6 +151,7 @@ class App {
   /** After the first exact numbers: the largest error is what the reader sees, until it is known what the search gained. */
   firstTime() {
     this.opened = this.opensAtStart ? [...this.results] : [];
+    this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
     this.earlier();
     this.pinned();
@@ -207,6 +213,26 @@ class App {
       this.pool.later({ run, values: this.start.values, aside: true }).then((result) => { this.beforehand[run] = result; this.want("run"); }).catch(() => {});
     }
     return null;
+  }
+
+  /** What the uncertainty of fitted values adds to the shown run's readings: variances by channel, null where values were set by
+   *  hand, or not yet known. */
+  doubt() {
+    const { diagnosis } = this.campaign, { run } = this.shown, { values } = diagnosis.models.at(-1);
+    if (!diagnosis.final || !same(this.values, values)) return null;
+    if (!this.doubts.has(run)) {
+      const { parameters, covariance } = diagnosis.final;
+      this.doubts.set(run, null);
+      this.pool.later({ run, values, doubt: { names: parameters.map((p) => p.name), covariance } }).then(({ variance }) => { this.doubts.set(run, variance); this.want("run"); if (this.settled) this.want("rested"); }).catch(() => {});
+    }
+    return this.doubts.get(run);
+  }
+
+  /** [low, high] about the shown channel of a result of the shown run: 95 % of readings lie between them where the model is right;
+   *  `variance` is what the uncertainty of its values adds. */
+  band(result, variance = this.doubt()?.[this.shown.channel]) {
+    const { channel } = this.shown, mean = result.predicted[channel];
+    return [-1, 1].map((way) => mean.map((v, i) => v + way * NORMAL * Math.sqrt(result.sd[channel][i] ** 2 + (variance ? variance[i] : 0))));
   }
 
   /** [{channel, unit, values: [{step, value, times}]}] of runs held out, as they are known. */
@@ -276,7 +302,7 @@ class App {
       rolled: rolled(run.time, at, geometry.t_r), lacking: lacking(run, result, { mass: this.values["chair.m"] ?? geometry.m, inertia: this.values["chair.I_z"] ?? geometry.I_z }) };
     this.scene.show(this.motion, this.look ??= look(), run.name);
     const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
-    this.timeline.show(this.shown.channel, result, before, pinned);
+    this.timeline.show(this.shown.channel, result, before, pinned, this.band(result));
     mini(document.querySelector(".mini"), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
   }
 
@@ -446,14 +472,17 @@ addEventListener("resize", () => {
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
 addEventListener("hashchange", () => { if (address.isState(location.hash) && location.hash !== app.hash) location.reload(); });
-let theme;
+let theme, sheet = null;
 addEventListener("beforeprint", () => {
   theme = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
+  sheet?.remove();
+  if (app.timeline?.result) app.figures.all.overlay.drawing.after(sheet = h("div", { class: "paper" }, app.figures.all.overlay.says.draw(900, look())));
 });
 addEventListener("afterprint", () => {
+  sheet?.remove();
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
   app.recolour();

@@ -27,9 +27,9 @@ function decoded(value) {
   return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, decoded(v)]));
 }
 
-/** Offer text or an address as a file. */
+/** Offer text, bytes of a kind of their own or an address as a file. */
 export function save(name, content, type = "text/csv;charset=utf-8") {
-  const url = content instanceof Blob || !content.startsWith("data:") ? URL.createObjectURL(new Blob([content], { type })) : content;
+  const held = content instanceof Blob ? content : content.startsWith("data:") ? null : new Blob([content], { type }), url = held ? URL.createObjectURL(held) : content;
   h("a", { href: url, download: name }).click();
   if (url.startsWith("blob:")) setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

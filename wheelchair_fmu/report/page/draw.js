@@ -46,6 +46,17 @@ export function course(xs, ys, stroke, more = {}) {
   return svg("path", { d, stroke, fill: "none", "stroke-linejoin": "round", ...more });
 }
 
+const LAPSE = 5; // usual steps of a series: what is further apart is a gap in it
+
+/** Where a series has values: their places, and the longest time between two of them that is no gap. Rows of several devices lie
+ *  between one another's samples, so that most of a series may be NaN without a gap in it. */
+export function present(time, values) {
+  const at = [];
+  for (let i = 0; i < values.length; i++) if (Number.isFinite(values[i])) at.push(i);
+  const steps = Float64Array.from(at.slice(1), (i, k) => time[i] - time[at[k]]).sort();
+  return { at, lapse: LAPSE * (steps[steps.length >> 1] ?? Infinity) };
+}
+
 export const round = (v) => Math.round(v * 10) / 10;
 
 /** Round numbers from low to high, about so many. */

@@ -35,7 +35,8 @@ function table(ranking, records, campaign) {
 
 function line(campaign, row, record, later) {
   const parameters = record.parameters.map((p) => [p, row.parameters[p.name.split(".").at(-1)]]).filter(([, v]) => v);
-  const several = parameters.length > 1;
+  const several = parameters.length > 1, better = campaign.diagnosis.effects.length || campaign.diagnosis.leftover?.proposal;
+  const slight = parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta);
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, p.name.split(".").at(-1), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
@@ -47,7 +48,7 @@ function line(campaign, row, record, later) {
     h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed"].includes(row.verdict) ? "another explains it better" : VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed"].includes(row.verdict) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : VERDICTS[row.verdict] ?? row.verdict)));
 }
 
 function columns(ranking) {
@@ -66,13 +67,13 @@ const alike = (cosine) => (cosine >= 0.995 && cosine < 1 ? cosine.toFixed(4) : c
 
 function ties(section, campaign) {
   const { diagnosis } = campaign, named = (id) => titleOf(campaign, id);
-  for (const group of diagnosis.ties) section.append(h("p", {}, `These explain the campaign equally well: ${listed(group.map(named))}.`));
+  for (const group of diagnosis.ties) section.append(h("p", {}, `This campaign cannot tell these apart: ${listed(group.map(named))}.`));
   const told = campaign.story.screens.find((s) => s.kind === "rivals").lines;
   if (!diagnosis.ties.length) section.append(...(diagnosis.effects.length ? told.map((line) => h("p", {}, line)) : [h("p", {}, "No effect was found, so none is tied.")]));
   const next = diagnosis.next_experiment;
   if (next) {
-    const times = next.repeats === 1 ? "once" : `${next.repeats} times`;
-    section.append(h("p", { class: "next" }, h("b", {}, `Measure next, ${times}: `), `${next.manoeuvre}. It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
+    const times = next.repeats === 1 ? "" : `, ${next.repeats} times`;
+    section.append(h("p", { class: "next" }, h("b", {}, `Measure next${times}: `), `${next.manoeuvre}. It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
   }
   const left = diagnosis.leftover;
   if (left?.where) {

@@ -9,7 +9,7 @@ import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, runOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, listed, runOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
@@ -59,8 +59,8 @@ export class Figures {
 
   /** Is what is set now no step of the search? */
   apart() {
-    const { now } = this.app;
-    return now && !this.ladder.some((s) => Math.abs(s.fit - now.fit) < 0.006 && Math.abs((s.heldout ?? 0) - (now.heldout || 0)) < 0.006);
+    const { now, forces } = this.app;
+    return now && !forces && !this.ladder.some((s) => Math.abs(s.fit - now.fit) < 0.006 && Math.abs((s.heldout ?? 0) - (now.heldout || 0)) < 0.006);
   }
 
   sizes() {
@@ -84,12 +84,15 @@ export class Figures {
     const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
-      return { name: capital(record.meaning ?? name), value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), strong: Math.abs(off) > 2 || v.at_bound, parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, bound: v.at_bound ? "at its bound" : "" };
+      const bounds = v.at_bound ? [v.lower, v.upper].filter(Number.isFinite).map((b) => (b - v.prior) / v.prior_sd) : [];
+      const words = record.meaning ?? name;
+      return { name: capital(words), words, value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
+        parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
       draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
-      columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "bound"].map((k) => [k, rows.map((r) => r[k])])),
-      caption: () => `What calibration made of the values that the campaign gives; zero is the value given and the band one standard deviation of it.${rows.some((r) => r.bound) ? ` At a bound: ${rows.filter((r) => r.bound).map((r) => r.name).join(", ")}.` : ""}`,
+      columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "from", "to", "bound"].map((k) => [k, rows.map((r) => r[k])])),
+      caption: () => `What calibration made of the values that the campaign gives; zero is the value given, the band one standard deviation of it, and each bar a 95 % interval.${rows.some((r) => r.bound) ? ` Upright bars are bounds, shown where a value stands on one: ${listed(rows.filter((r) => r.bound).map((r) => r.words))}.` : " None stands on a bound."}`,
     };
   }
 
@@ -159,15 +162,15 @@ export class Figures {
       draw: (width, look) => {
         const { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
         const most = Math.max(4, ...Array.from(timeline.errors).filter(Number.isFinite).map(Math.abs));
-        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, height: 0.36 * width }, { label: "error [σ]", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
+        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error [σ]", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
       },
       columns: () => {
-        const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor);
-        return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), "error [sd]": result.errors[c] };
+        const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);
+        return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high, "error [sd]": result.errors[c] };
       },
       caption: () => {
         const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie in the band of ±2 σ.` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within ±2 σ. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
       },
     };
   }

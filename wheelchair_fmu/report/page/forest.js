@@ -7,22 +7,22 @@ const ROW = 24, CLIP = 12;
 
 /** Where names, rows and numbers of a forest plot have their places: beside one another, or, where it is narrow, above. */
 function places(width, look, rows) {
-  const narrow = width < 560, weight = (r) => (r.strong ? 600 : 400), noted = Math.max(...rows.map((r) => long(r.note, look, 11.5)));
+  const narrow = width < 560, weight = (r) => (r.strong ? 600 : 400), noted = Math.max(...rows.flatMap((r) => [long(r.note, look, 11.5), long(r.under ?? "", look, 11)]));
   const left = narrow ? 12 : Math.min(0.48 * width, 14 + Math.max(...rows.map((r) => long(r.name, look, 12, weight(r))))), right = narrow ? 12 : noted + 20;
   let y = 24;
   const all = rows.map((r) => {
-    const name = broken(r.name, narrow ? width - 2 * left - long(r.note, look, 11) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 ? (narrow ? 14 : 10) : 0), top = y;
+    const name = broken(r.name, narrow ? width - 2 * left - long(r.note, look, 11) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 || r.under ? (narrow ? 14 : 10) : 0), top = y;
     y += high;
     return { name, top, high, middle: narrow ? top + high - 14 : top + high / 2 };
   });
   return { narrow, left, right, all, end: y + 6 };
 }
 
-/** `rows` are [{name, value, low, high, note, strong}], in units of `unit`; the band from −`band` to `band` is
- *  what the words `shaded` say. */
+/** `rows` are [{name, value, low, high, note, strong}], in units of `unit`, some with a second note `under` the first and `bounds`
+ *  that a value could not leave; the band from −`band` to `band` is what the words `shaded` say. */
 export function forest(width, look, rows, unit, shaded, band = 1) {
   const { narrow, left, right, all, end } = places(width, look, rows);
-  const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
+  const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
@@ -36,13 +36,16 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
 /** A row's name and number. */
 function written(r, { name, top, middle }, narrow, left, right, look) {
   const weight = { "font-weight": r.strong ? 600 : 400 };
-  if (narrow) return [name.map((t, k) => text(left, top + 17 + 14 * k, t, look.ink, "start", weight)), text(right, top + 17, r.note, look.faint, "end", { "font-size": 11 })];
-  return [name.map((t, k) => text(left - 10, middle + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end", weight)), text(right + 10, middle + 4, r.note, r.strong ? look.ink : look.faint, "start", { "font-size": 11.5 })];
+  const [at, side, step, first] = narrow ? [right, "end", 13, top + 17] : [right + 10, "start", 13, middle + (r.under ? -2 : 4)];
+  const notes = [text(at, first, r.note, r.strong && !narrow ? look.ink : look.faint, side, { "font-size": narrow ? 11 : 11.5 }), r.under ? text(at, first + step, r.under, look.faint, side, { "font-size": 11 }) : null];
+  if (narrow) return [name.map((t, k) => text(left, top + 17 + 14 * k, t, look.ink, "start", weight)), notes];
+  return [name.map((t, k) => text(left - 10, middle + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end", weight)), notes];
 }
 
-/** A row's interval and value. */
+/** A row's bounds, interval and value. */
 function drawnRow(r, y, across, [low, most], look) {
   const colour = r.strong ? look.accent : look.faint, [a, b] = [Math.max(r.low, low), Math.min(r.high, most)], out = [];
+  for (const at of r.bounds ?? []) if (at >= low && at <= most) out.push(line(across(at), y - 10, across(at), y + 10, look.error, { "stroke-width": 2.5 }));
   if (a < b) out.push(line(across(a), y, across(b), y, colour, { "stroke-width": r.strong ? 3 : 2 }));
   for (const [beyond, at, way] of [[r.low < low, low, -1], [r.high > most, most, 1]])
     if (beyond) out.push(svg("path", { d: `M${across(at)} ${y}l${-7 * way} -4v8z`, fill: colour }));

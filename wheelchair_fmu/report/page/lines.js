@@ -1,28 +1,35 @@
 // Curves over time as SVG, for files: what uPlot draws on the page.
 
-import { canvas, course, extent, line, long, svg, text, tick, ticks } from "page/draw";
+import { canvas, course, extent, line, long, present, round, svg, text, tick, ticks } from "page/draw";
 import { display, unitText } from "page/numbers";
 
 const LEFT = 54, RIGHT = 8;
+const MOST = 1500; // points of a curve
 
-/** Panels above one another with one time: [{label, lines: [[name, values, colour, width, dash]], band, height}]. */
+/** Panels above one another with one time: [{label, lines: [[name, values, colour, width, dash]], edges, band, height}]; the area
+ *  between `edges` [low, high] is shaded, and from −`band` to `band`. */
 export function lines(width, look, time, [from, to], panels) {
   const across = (t) => LEFT + ((width - LEFT - RIGHT) * (t - from)) / (to - from), drawn = [];
-  const inside = [...time.keys()].filter((i) => time[i] >= from && time[i] <= to), step = Math.max(1, Math.floor(inside.length / 1500));
+  const inside = [...time.keys()].filter((i) => time[i] >= from && time[i] <= to), step = Math.max(1, Math.floor(inside.length / MOST));
   const shown = inside.filter((_, k) => k % step === 0), xs = shown.map((i) => across(time[i])), marks = ticks(from, to, width / 90);
-  let top = 20, at = LEFT;
-  for (const [name, , colour, , dash] of panels[0].lines) {
-    drawn.push(line(at, 8, at + 20, 8, look[colour], { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }), text(at + 25, 12, name, look.ink));
-    at += 44 + long(name, look);
-  }
+  let { top } = key([...panels[0].lines.map(([name, , colour, , dash]) => [name, look[colour], dash]), ...(panels[0].edges ? [["95 % band", null]] : [])], width, look, drawn);
   for (const panel of panels) {
-    let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => shown.map((i) => v[i])));
+    let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => inside.map((i) => v[i])));
     if (low === high) [low, high] = [low - 1, high + 1];
     const down = (v) => top + panel.height * (1 - (v - low) / (high - low));
     if (panel.band) drawn.push(svg("rect", { x: LEFT, width: width - LEFT - RIGHT, y: down(panel.band), height: down(-panel.band) - down(panel.band), fill: look.band }));
+    if (panel.edges) drawn.push(svg("path", { d: area(xs, ...panel.edges.map((edge) => shown.map((i) => down(Math.min(Math.max(edge[i], low), high))))), fill: look.band }));
     for (const v of ticks(low, high, panel.height / 40)) drawn.push(line(LEFT, down(v), width - RIGHT, down(v), look.line), text(LEFT - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
-    for (const [, values, colour, thick, dash] of panel.lines)
-      drawn.push(course(xs, shown.map((i) => down(values[i])), look[colour], { "stroke-width": thick, "stroke-dasharray": dash?.join(" ") }));
+    for (const [, values, colour, thick, dash] of panel.lines) {
+      const { at, lapse } = present(time, values), own = at.filter((i) => time[i] >= from && time[i] <= to), every = Math.max(1, Math.floor(own.length / MOST)), xs = [], ys = [];
+      own.forEach((i, k) => {
+        if (k && time[i] - time[own[k - 1]] > lapse) { xs.push(NaN); ys.push(NaN); }
+        else if (k % every) return;
+        xs.push(across(time[i]));
+        ys.push(down(values[i]));
+      });
+      drawn.push(course(xs, ys, look[colour], { "stroke-width": thick, "stroke-dasharray": dash?.join(" ") }));
+    }
     drawn.push(text(0, 0, panel.label, look.ink, "middle", { transform: `translate(11 ${top + panel.height / 2}) rotate(-90)` }));
     top += panel.height + 14;
   }
@@ -30,6 +37,21 @@ export function lines(width, look, time, [from, to], panels) {
   drawn.push(text((LEFT + width - RIGHT) / 2, top + 20, "time [s]", look.ink, "middle"));
   return canvas(width, top + 26, drawn);
 }
+
+/** What each line is, [[name, colour, dash]], without a colour a band, in as many rows as it takes; returns where drawing goes on. */
+function key(entries, width, look, drawn) {
+  let at = LEFT, y = 8;
+  for (const [name, colour, dash] of entries) {
+    const wide = 25 + long(name, look);
+    if (at > LEFT && at + wide > width) [at, y] = [LEFT, y + 16];
+    drawn.push(colour ? line(at, y, at + 20, y, colour, { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }) : svg("rect", { x: at, y: y - 5, width: 20, height: 10, fill: look.band }), text(at + 25, y + 4, name, look.ink));
+    at += wide + 19;
+  }
+  return { top: y + 12 };
+}
+
+/** The outline of what lies between two courses over the same places. */
+const area = (xs, low, high) => `M${[...xs.map((x, i) => [x, low[i]]), ...xs.map((x, i) => [x, high[i]]).reverse()].map(([x, y]) => `${round(x)} ${round(y)}`).join("L")}Z`;
 
 /** The path from above, forward up. */
 export function path(width, look, motion) {

@@ -1,5 +1,6 @@
-// Workers that simulate runs. Each run stays with one worker, which remembers its start; only the newest question counts, and
-// what is asked aside waits until nothing else is to be done.
+// Workers that simulate runs. Each run stays with one worker, which remembers its start; of what the page shows only the newest
+// question counts, and it alone is ever dropped: somebody waits for each of the others. What is urgent goes before it, what is
+// asked aside waits until nothing else is to be done.
 
 export class Pool {
   /** `source` is the worker's text, `campaign` what it loads; `told(run, result)` hears every answer to the newest question,
@@ -9,7 +10,7 @@ export class Pool {
     const count = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 4, campaign.runs.length));
     Object.assign(this, { told, newest: 0, waiting: new Map(), aside: [], asked: 0 });
     this.workers = Array.from({ length: count }, () => {
-      const worker = { thread: new Worker(url), queue: [], aside: [], busy: false };
+      const worker = { thread: new Worker(url), urgent: [], queue: [], aside: [], busy: false };
       worker.thread.onmessage = ({ data }) => this.heard(worker, data);
       worker.thread.onerror = (event) => { event.preventDefault(); broken(event.message); };
       worker.thread.postMessage({ load: campaign });
@@ -17,8 +18,8 @@ export class Pool {
     });
   }
 
-  /** Simulate these runs, in this order, with these values; `full(run)` says of which the series are wanted. Questions not yet
-   *  begun are dropped. */
+  /** Simulate these runs, in this order, with these values; `full(run)` says of which the series are wanted. What was asked
+   *  here before and is not yet begun is dropped. */
   ask(runs, values, exact, full = () => true) {
     this.newest++;
     for (const worker of this.workers) worker.queue = [];
@@ -33,8 +34,7 @@ export class Pool {
     return new Promise((resolve, reject) => {
       const job = `aside ${++this.asked}`, worker = this.workers[(message.run ?? 0) % this.workers.length];
       this.waiting.set(job, { resolve, reject });
-      if (urgent) worker.queue.unshift({ ...message, job });
-      else worker.aside.push({ ...message, job });
+      worker[urgent ? "urgent" : "aside"].push({ ...message, job });
       this.next(worker);
     });
   }
@@ -45,8 +45,8 @@ export class Pool {
   }
 
   next(worker) {
-    const queue = worker.queue.length ? worker.queue : worker.aside;
-    if (worker.busy || !queue.length) return;
+    const queue = [worker.urgent, worker.queue, worker.aside].find((q) => q.length);
+    if (worker.busy || !queue) return;
     worker.busy = true;
     worker.thread.postMessage(queue.shift());
   }

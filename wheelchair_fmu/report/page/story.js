@@ -5,7 +5,7 @@ import { look } from "page/draw";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
-import { channelOf, runOf } from "page/words";
+import { capital, channelOf, runOf } from "page/words";
 
 export class Story {
   /** `app` has values, results and put; `turned(screen)` hears which is open. */
@@ -72,7 +72,7 @@ export class Story {
       stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
     if (kind === "put") {
-      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", start = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins);
+      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", told = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins), start = this.app.forces ? this.app.began : told;
       this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
       this.toggle.setAttribute("aria-pressed", this.isIn());
       this.before.textContent = rms(start?.[key]);
@@ -86,7 +86,7 @@ export class Story {
     if (!before?.predicted?.[channel]) return [];
     const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
     const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? ["model now", scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
-    const width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
-    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, height: 190 }]), h("p", { class: "caption" }, `${channelOf(channel)} in ${runOf(run)}`)];
+    const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
+    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];
   }
 }

@@ -1,13 +1,22 @@
 // One time for everything that is drawn against it: two charts by uPlot, the scene, and a row of readings for every channel.
 
 import { h } from "page/dom";
-import { look } from "page/draw";
+import { look, present } from "page/draw";
 import { display, significant, unitText } from "page/numbers";
 import { channelOf } from "page/words";
 
 const AXIS = 62; // px left of every chart, so that their times stand above one another
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
+
+/** A series as the charts take it: null where there is no sample. */
+const gapped = (values) => (values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values);
+
+/** The last sample that a series has at a place, or the place itself where it has none before. */
+function latest(values, at) {
+  for (let k = at; k >= 0; k--) if (!Number.isNaN(values[k])) return k;
+  return at;
+}
 
 export class Timeline {
   /** Curves and player go into `place`, readings `beside`. `choose(channel)` is called from the readings, `moved()` when time, zoom or speed have been set by hand. */
@@ -55,13 +64,15 @@ export class Timeline {
         h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
   }
 
-  /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...]. */
-  show(channel, result, before, pinned = []) {
+  /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...], `band` [low, high] about
+   *  the model. */
+  show(channel, result, before, pinned, band) {
     const record = this.campaign.channels.find((c) => c.name === channel), { unit, factor } = display(record);
     const scaled = (series) => (factor === 1 ? series : series.map((v) => v * factor));
     Object.assign(this, { result, channel });
     this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
       ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
+    this.edges = band.map(scaled);
     this.errors = result.errors[channel];
     this.unit = `${channel.replaceAll("_", " ")} [${unitText(unit) || "1"}]`;
     this.drawCurves();
@@ -70,7 +81,7 @@ export class Timeline {
   }
 
   drawCurves() {
-    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.lines.map(([, v]) => v)], [this.time, this.errors]];
+    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.edges, ...this.lines.map(([, v]) => gapped(v))], [this.time, gapped(this.errors)]];
     if (shape !== this.shape || !this.plots.length) return this.build(shape, data);
     this.plots.forEach((plot, i) => plot.batch(() => { plot.setData(data[i], false); plot.setScale("x", { min: this.from, max: this.to }); }));
   }
@@ -79,16 +90,17 @@ export class Timeline {
     this.shape = shape;
     for (const plot of this.plots) plot.destroy();
     const colour = (name) => () => this.look[name];
-    const series = [this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false } })), [{ stroke: colour("error"), width: 1, points: { show: false } }]];
+    const edge = { width: 0, auto: false, points: { show: false } }; // the scale is that of the curves
+    const series = [[edge, edge, ...this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false }, gaps: this.gaps }))], [{ stroke: colour("error"), width: 1, points: { show: false }, gaps: this.gaps }]];
     this.plots = [this.unit, "error [σ]"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
     this.marks = this.plots.map((plot) => plot.over.appendChild(h("div", { class: "now-line" })));
-    this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)));
+    this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)), h("span", {}, h("i", { class: "band" }), "95 % band"));
   }
 
   options(index, label, series) {
     const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
     return {
-      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
+      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series], bands: index ? [] : [{ series: [2, 1], fill: () => this.look.band }],
       cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
@@ -103,6 +115,13 @@ export class Timeline {
       },
     };
   }
+
+  /** Of the gaps between samples (px), those in which the series itself pauses. */
+  gaps = (plot, series, from, to, found) => {
+    if (!found.length) return found;
+    const { lapse } = present(this.time, plot.data[series].map((v) => v ?? NaN)), { min, max } = plot.scales.x, scale = (max - min) / plot.bbox.width;
+    return found.filter(([a, b]) => (b - a) * scale > lapse);
+  };
 
   size(index) {
     return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 200 : 330 };
@@ -151,10 +170,11 @@ export class Timeline {
       this.marks[k].style.transform = inside ? `translateX(${plot.valToPos(this.at, "x")}px)` : "translateX(-9999px)";
     });
     for (const { name, measured, model, error } of this.cells) {
+      const k = latest(this.run.channels[name], i);
       const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), suffix = unitText(unit);
-      measured.textContent = `${significant(this.run.channels[name][i] * factor, 3)} ${suffix}`;
+      measured.textContent = `${significant(this.run.channels[name][k] * factor, 3)} ${suffix}`;
       model.textContent = `${significant(this.result.predicted[name][i] * factor, 3)} ${suffix}`;
-      error.textContent = significant(this.result.errors[name][i], 2);
+      error.textContent = significant(this.result.errors[name][k], 2);
     }
     const said = `${(this.at - this.time[0]).toFixed(2)} s`;
     this.clock.textContent = said;

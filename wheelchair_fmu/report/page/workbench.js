@@ -1,11 +1,15 @@
 // The workbench: forms over a session that the server keeps. Nothing lives only in this page.
 
-import { byId, h } from "page/dom";
-import { rms, significant, unitText } from "page/numbers";
+import { byId, h, save } from "page/dom";
+import { chair, columns, noise, priors, runs } from "page/forms";
+import { rms, unitText } from "page/numbers";
+import { capital } from "page/words";
 
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
-const ROLES = { fit: "fit", holdout: "held out" };
+const PLACE = /^(?:run )?(?<where>.+?): (?<what>.+)$/; // of a fault's sentence
+const FIRST = { diagnose: "of ten short runs it takes about a minute", add: "it takes some seconds", try: "it takes some seconds" };
+const DONE = { import: "the files were read together", calibrate: "calibrated", diagnose: "diagnosed", add: "added and refitted", try: "tried" };
 
 class Refused extends Error {}
 
@@ -66,43 +70,64 @@ class Workbench {
     this.showHistory();
     this.showEffects();
     this.showJob(state.job);
-    this.showReport();
+    this.showOutcome();
     byId("earlier").replaceChildren(...(state.earlier.length ? ["Earlier work: ", ...state.earlier.map((s) => h("a", { class: "button", href: `/s/${s.id}` }, s.name))] : []));
   }
 
   showFaults() {
-    const { faults, files } = this.state, errors = faults.filter((f) => f.severity === "error").length;
-    const tally = !files.length ? "" : errors ? `${errors} fault${errors > 1 ? "s" : ""} to mend before anything can be concluded` : "These recordings can be read.";
-    const lines = (severity) => h("ul", {}, faults.filter((f) => f.severity === severity).map((f) => h("li", { "data-severity": severity }, f.text)));
-    const remarks = faults.length - errors;
-    byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), lines("error"),
-      remarks ? h("details", {}, h("summary", {}, `${remarks} remark${remarks > 1 ? "s" : ""}`), lines("warning"), lines("note")) : "");
-    this.ready = files.length > 0 && !errors;
+    const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), remarks = faults.filter((f) => f.severity !== "error");
+    const tally = !files.length && !errors.length ? "" : errors.length ? `${errors.length} fault${errors.length > 1 ? "s" : ""} to mend before anything can be concluded` : "These recordings can be read.";
+    byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
+      remarks.length ? h("details", {}, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}`), causes(remarks)) : "");
+    byId("lab").hidden = !files.length || (!errors.length && !Array.isArray(campaign?.recording));
+    byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
+    byId("preview-link").hidden = !files.length;
+    byId("preview").href = `${this.here}/preview`;
+    this.ready = files.length > 0 && !errors.length;
     this.enable();
   }
 
   enable() {
-    const busy = this.state.job?.state === "running";
+    const busy = this.state.job?.state === "running", { at, steps } = this.state.history;
     for (const id of ["calibrate", "diagnose", "add"]) byId(id).disabled = busy || !this.ready;
+    for (const id of ["import", "sample"]) byId(id).disabled = busy;
+    for (const b of document.querySelectorAll("[data-add]")) b.disabled = busy || !this.ready;
+    const own = byId("own").querySelector("[type=submit]");
+    own.disabled = busy;
+    own.textContent = this.ready ? "put it into the catalogue and try it" : "put it into the catalogue";
     byId("cancel").hidden = !busy;
-    const { at, steps } = this.state.history;
-    byId("undo").disabled = busy || at <= 0;
-    byId("redo").disabled = busy || at >= steps.length - 1;
+    for (const [id, there, step, word] of [["undo", at > 0, steps[at], "undo"], ["redo", at < steps.length - 1, steps[at + 1], "redo"]]) {
+      byId(id).disabled = busy || !there;
+      byId(id).title = there ? `${word}: ${this.labelOf(step)}` : "";
+    }
   }
 
+  /** What a step did, in words. */
+  labelOf(step) {
+    if (step.label === "nominal") return "the model as given";
+    if (step.label.startsWith("+ ")) return `with ${this.titleOf(step.label.slice(2))}`;
+    return step.label.replaceAll("_", " ");
+  }
+
+  titleOf(id) {
+    return this.state.effects.find((e) => e.id === id)?.title ?? id.replaceAll("_", " ");
+  }
+
+  /** Models only: what forms changed is undone and redone, but is no model. */
   showHistory() {
-    const { at, steps } = this.state.history;
-    byId("history").replaceChildren(...steps.map((step, i) => h("li", { "aria-current": i === at ? "step" : null, class: i > at ? "undone" : null },
-      step.label.replaceAll("_", " "), step.ladder ? h("small", {}, fall(step.ladder)) : null)));
-    byId("export-variant").href = `${this.here}/export/variant.toml`;
-    byId("export-fmu").href = `${this.here}/export/Wheelchair.fmu`;
-    byId("export-ssv").href = `${this.here}/export/parameters.ssv`;
+    const { at, steps } = this.state.history, models = steps.map((step, i) => ({ step, i })).filter(({ step, i }) => !i || step.file !== steps[i - 1].file), now = models.filter(({ i }) => i <= at).at(-1);
+    byId("history").replaceChildren(...models.map((model) => h("li", { "aria-current": model === now ? "step" : null, class: model.i > at ? "undone" : null },
+      capital(this.labelOf(model.step)), model.step.ladder ? h("small", {}, fall(model.step.ladder)) : null)));
+    byId("export-report").disabled = !this.state.report;
   }
 
+  /** The likeliest effects of the last diagnosis come first. */
   showEffects() {
-    const { effects, words } = this.state, select = byId("effect"), chosen = select.value;
-    select.replaceChildren(...effects.map((e) => h("option", { value: e.id, title: e.title }, `${e.id.replaceAll("_", " ")}${e.own ? " (your own)" : ""}`)));
-    if (effects.some((e) => e.id === chosen)) select.value = chosen;
+    const { effects, words, outcome } = this.state, select = byId("effect"), chosen = select.value, order = new Map((outcome?.order ?? []).map((id, i) => [id, i]));
+    const all = [...effects].sort((a, b) => (order.get(a.id) ?? 1e9) - (order.get(b.id) ?? 1e9));
+    select.replaceChildren(...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
+    if (this.ranked === (outcome?.order ?? []).join() && effects.some((e) => e.id === chosen)) select.value = chosen;
+    this.ranked = (outcome?.order ?? []).join();
     if (byId("readable").childElementCount) return;
     byId("readable").append(...words.readable.map((q) => h("option", { value: q.name })));
     byId("own").elements.to.append(...words.targets.map((q) => h("option", { value: q.name, title: q.meaning }, `${q.name} [${unitText(q.unit) || "1"}]`)));
@@ -112,18 +137,39 @@ class Workbench {
 
   showJob(job) {
     this.state.job = job;
-    const box = byId("job");
-    box.hidden = !job;
+    byId("job").hidden = byId("progress").hidden = !job;
     if (job) {
-      const told = { running: "…", done: "done", failed: "failed", cancelled: "cancelled; nothing was changed" }[job.state];
-      const low = box.scrollTop + box.clientHeight > box.scrollHeight - 40;
-      box.dataset.state = job.state;
-      box.replaceChildren(...job.commands.map((c) => h("div", { class: "command" }, `$ ${c}`)), ...job.lines.map((l) => h("div", {}, l)), h("b", {}, told));
+      const box = byId("job").querySelector("[role=log]"), low = box.scrollTop + box.clientHeight > box.scrollHeight - 40;
+      box.replaceChildren(...job.commands.map((c) => h("div", { class: "command" }, `$ ${c}`)), ...job.lines.map((l) => h("div", {}, l)));
       if (low) box.scrollTop = box.scrollHeight;
+      this.showProgress(job);
     }
     this.enable();
     clearTimeout(this.polling);
     if (job?.state === "running") this.polling = setTimeout(() => this.poll(), POLL);
+  }
+
+  /** How far it has come; how long it will take is said where one of its kind has been seen. */
+  showProgress(job) {
+    const [bar, words] = byId("progress").children, { usual, steps, seconds } = job, running = job.state === "running";
+    byId("progress").dataset.state = job.state;
+    bar.hidden = !running;
+    if (usual) bar.value = Math.min(0.98, seconds / usual.seconds);
+    else bar.removeAttribute("value");
+    const left = usual && usual.seconds > seconds ? `about ${whole(usual.seconds - seconds)} left` : usual ? "longer than the last time" : FIRST[job.kind] ?? "";
+    words.textContent = running ? [capital(job.lines.at(-1) ?? "starting"), `step ${Math.max(1, steps)}${usual ? ` of about ${Math.max(usual.steps, steps)}` : ""}`, `${whole(seconds)} so far`, left].filter(Boolean).join(" · ")
+      : job.state === "done" ? `${capital(DONE[job.kind] ?? job.kind)}, in ${whole(seconds)}.` : job.state === "cancelled" ? "Cancelled; nothing was changed." : `Failed: ${job.lines.at(-1) ?? "nothing was said"}`;
+    const said = running ? job.lines.at(-1) ?? "starting" : words.textContent;
+    if (byId("said").textContent !== said) byId("said").textContent = said;
+    const found = job.kind === "try" && job.state === "done" ? job.result : null;
+    if (job.kind === "try") byId("tried").replaceChildren(...(found ? this.triedWords(found) : [running ? "It is being fitted …" : ""]));
+  }
+
+  /** What an effect that was tried does to the error, and the way to keep it. */
+  triedWords({ effect, ladder }) {
+    const [before, after] = [ladder.at(-2), ladder.at(-1)].map((s) => s.heldout ?? s.fit), where = ladder.at(-1).heldout === null ? "the fitted runs" : "runs held out", falls = before - after;
+    const says = falls > 0.005 ? `falls from ${rms(before)} to ${rms(after)}` : falls < -0.005 ? `rises from ${rms(before)} to ${rms(after)}` : `stays at ${rms(after)}`;
+    return [`With ${this.titleOf(effect)}, the error on ${where} ${says} times the noise. `, h("button", { type: "button", "data-add": effect, onclick: () => this.job("add", { effect }) }, "keep it in the model")];
   }
 
   async poll() {
@@ -132,15 +178,19 @@ class Workbench {
     await this.take(() => ask("state"));
   }
 
-  showReport() {
-    const { report } = this.state, frame = byId("report");
-    byId("no-report").hidden = Boolean(report);
-    byId("old-report").hidden = !(report && ["add", "calibrate"].includes(this.state.job?.kind) && this.state.job.state === "done");
-    frame.hidden = !report;
-    byId("export-report").toggleAttribute("href", Boolean(report));
-    if (report) byId("export-report").href = `${this.here}/export/report.html`;
-    if (report && this.reported !== report) frame.src = `${this.here}/report?${report}`;
-    this.reported = report;
+  /** What the last diagnosis says, beside the button that made it, with what can be done about it. */
+  showOutcome() {
+    const { outcome, report } = this.state, box = byId("outcome"), done = outcome && report && this.state.job?.state !== "running";
+    box.hidden = !done;
+    if (!done) return;
+    const inModel = this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label), add = outcome.effects.filter((e) => !inModel.includes(`+ ${e}`));
+    box.replaceChildren(
+      outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This is of the model, or of the measurements, before the last change, and so is the report. Diagnose again for what is so now."),
+      h("h3", {}, outcome.sentence),
+      h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, l))))),
+      h("p", { class: "tools wide-tools" }, add.map((e) => h("button", { type: "button", class: "step", "aria-pressed": "true", "data-add": e, onclick: () => this.job("add", { effect: e }) }, `add it: ${this.titleOf(e)}`)),
+        h("a", { class: "button", id: "report", href: `${this.here}/report?${report}`, target: "_blank", rel: "noopener" }, "open the report, in which the model runs ↗")));
+    this.enable();
   }
 
   /** A form changed the campaign: send it, and show what the checks say. The forms stand as they are. */
@@ -152,18 +202,47 @@ class Workbench {
     this.state = { ...state, job: this.state.job };
     this.showFaults();
     this.showHistory();
+    this.showOutcome();
     byId("name").textContent = state.campaign.campaign?.name ?? "";
   }
 
+  job(kind, more = {}) {
+    return this.take(() => send("POST", "jobs", { kind, ...more }));
+  }
+
+  /** Take the files of a run out, one after the other. */
+  async remove(files) {
+    for (const file of files) if (!(await this.take(() => ask(`files/${file}`, { method: "DELETE" })))) return;
+  }
+
+  /** Hand out a file that the server may have to make first. */
+  async export(name, making) {
+    const button = document.activeElement;
+    byId("taken").textContent = making;
+    button.disabled = true;
+    const done = await tried(async () => {
+      const response = await fetch(`${await place}/export/${name}`, { headers: { "x-workbench": "1" } });
+      if (!response.ok) throw new Refused((await response.json()).error);
+      return response.blob();
+    });
+    button.disabled = false;
+    if (done) save(name, done);
+    byId("taken").textContent = done ? `${name} was handed out, ${Math.max(1, Math.round(done.size / 1000))} kB.` : "";
+  }
+
   listen() {
-    const drop = byId("drop"), job = (kind, more = {}) => this.take(() => send("POST", "jobs", { kind, ...more }));
+    const drop = byId("drop"), sizes = () => Object.fromEntries(["mass", "radius", "track"].map((n) => [n, byId("lab").querySelector(`[name=${n}]`).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
+    byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {})));
+    byId("import").addEventListener("click", () => this.job("import", sizes()));
+    for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled, for a minute or less …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
+      byId(`export-${id}`).addEventListener("click", () => this.export(name, making));
     for (const id of ["files", "folder"]) byId(id).addEventListener("change", ({ target }) => this.upload([...target.files].map((f) => [f.webkitRelativePath || f.name, f])));
     drop.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
     drop.addEventListener("dragleave", () => drop.classList.remove("over"));
     drop.addEventListener("drop", async (event) => { event.preventDefault(); drop.classList.remove("over"); this.upload(await dropped(event.dataTransfer)); });
-    byId("calibrate").addEventListener("click", () => job("calibrate"));
-    byId("diagnose").addEventListener("click", () => job("diagnose"));
-    byId("add").addEventListener("click", () => job("add", { effect: byId("effect").value }));
+    byId("calibrate").addEventListener("click", () => this.job("calibrate"));
+    byId("diagnose").addEventListener("click", () => this.job("diagnose"));
+    byId("add").addEventListener("click", () => this.job("add", { effect: byId("effect").value }));
     byId("cancel").addEventListener("click", () => this.take(() => ask("jobs", { method: "DELETE" })));
     byId("undo").addEventListener("click", () => this.take(() => send("POST", "history", { by: -1 })));
     byId("redo").addEventListener("click", () => this.take(() => send("POST", "history", { by: 1 })));
@@ -187,7 +266,10 @@ class Workbench {
       event.preventDefault();
       const text = (name) => form.elements[name].value.trim(), number = (name) => form.elements[name].valueAsNumber;
       const content = { id: text("id"), title: text("title"), to: text("to"), expression: text("expression"), size: number("size"), lower: number("lower"), upper: number("upper") };
-      if (await this.take(() => send("POST", "effects", content))) byId("effect").value = content.id;
+      byId("tried").replaceChildren();
+      if (!(await this.take(() => send("POST", "effects", content)))) return;
+      byId("effect").value = content.id;
+      if (this.ready) this.job("try", { effect: content.id });
     });
   }
 
@@ -202,6 +284,22 @@ class Workbench {
   }
 }
 
+const whole = (seconds) => (seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
+
+/** Faults by their cause: what is wrong alike in many places is said once, with the places behind it. */
+function causes(faults) {
+  const found = new Map();
+  for (const fault of faults) {
+    const { where, what } = fault.text.match(PLACE)?.groups ?? { where: "", what: fault.text };
+    if (!found.has(what)) found.set(what, { fault, places: [] });
+    found.get(what).places.push(where);
+  }
+  return h("ul", {}, [...found].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? fault.text
+    : h("details", {}, h("summary", {}, h("b", {}, `in ${places.length} places: `), what), h("small", {}, places.join("; "))))));
+}
+
+const fall = (ladder) => `error on runs held out: ${ladder.map((s) => rms(s.heldout)).join(" → ")}`;
+
 /** Every file of what was dropped, folders too, as [path, file]. */
 async function dropped(transfer) {
   const walk = async (entry, at) => {
@@ -215,132 +313,6 @@ async function dropped(transfer) {
     return (await Promise.all(inside.map((e) => walk(e, `${at}${entry.name}/`)))).flat();
   };
   return (await Promise.all([...transfer.items].map((i) => i.webkitGetAsEntry()).filter(Boolean).map((e) => walk(e, "")))).flat();
-}
-
-const fall = (ladder) => `held out: ${ladder.map((s) => rms(s.heldout)).join(" → ")}`;
-
-const table = (heads, rows) => {
-  for (const row of rows) [...row.children].forEach((cell, i) => { cell.dataset.head = heads[i]; }); // for narrow screens
-  return made(heads, rows);
-};
-
-const made = (heads, rows) => h("div", { class: "wide" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
-
-const select = (label, options, value, changed) => {
-  const made = h("select", { "aria-label": label, onchange: () => changed(made.value) }, Object.entries(options).map(([v, words]) => h("option", { value: v }, words)));
-  made.value = value;
-  return made;
-};
-
-const text = (label, value, changed, more = {}) => {
-  const made = h("input", { type: "text", "aria-label": label, value: value ?? "", autocomplete: "off", onchange: () => changed(made.value.trim()), ...more });
-  return made;
-};
-
-function runs(bench) {
-  const { campaign } = bench.state, list = Array.isArray(campaign.run) ? campaign.run : [];
-  const rows = list.map((run, i) => h("tr", {}, h("th", { scope: "row" }, run.file ?? "?"),
-    h("td", {}, select(`role of ${run.file}`, ROLES, run.role, (role) => bench.save((c) => { c.run[i].role = role; }))),
-    h("td", {}, text(`manoeuvre of ${run.file}`, run.manoeuvre, (words) => bench.save((c) => { c.run[i].manoeuvre = words; }))),
-    h("td", {}, text(`speed at the start of ${run.file} [m/s]`, run.u0, (value) => bench.save((c) => { put(c.run[i], "u0", value); }), { size: 6, inputmode: "decimal" })),
-    h("td", {}, h("button", { type: "button", class: "quiet", "aria-label": `remove ${run.file}`, onclick: () => bench.take(() => ask(`files/${run.file}`, { method: "DELETE" })) }, "remove"))));
-  const axes = select("axes", { "SAE-J670": "y to the right (SAE J670)", "ISO-8855": "y to the left (ISO 8855)" }, campaign.campaign?.axes, (value) => bench.save((c) => { c.campaign.axes = value; }));
-  return h("details", { open: true }, h("summary", {}, "Runs"),
-    h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes)),
-    table(["file", "role", "manoeuvre", "speed at the start, about [m/s]", ""], rows));
-}
-
-function columns(bench) {
-  const { campaign, headers, channels } = bench.state, given = campaign.columns ?? {};
-  const nothing = { "": "not used" }, options = { ...nothing, ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
-  const rows = Object.entries(headers).map(([header, files]) => {
-    const { bare, own } = parted(header);
-    const entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
-    const channel = entry?.[0] ?? (channels.some((c) => c.name === bare) ? bare : ""), was = entry?.[1] ?? {};
-    const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6 });
-    const which = select(`channel of ${header}`, options, channel, () => change());
-    const change = () => bench.save((c) => map(c, header, bare, own, which.value, unit.value.trim(), radius.value.trim()));
-    return h("tr", {}, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, which), h("td", {}, unit), h("td", {}, radius));
-  });
-  const needed = Object.keys(headers).length && bench.state.faults.some((f) => f.severity === "error");
-  return h("details", { open: Boolean(needed) }, h("summary", {}, "Columns and their units"), table(["column", "is", "unit", "wheel radius [m], where the unit turns"], rows));
-}
-
-/** Writes into [columns] that `header` is `channel`; what its header says by itself needs no entry. */
-function map(content, header, bare, own, channel, unit, radius) {
-  const all = (content.columns ??= {});
-  for (const [name, value] of Object.entries(all)) if ((value.column ?? value) === header) delete all[name];
-  if (channel && (channel !== bare || unit !== own || radius)) {
-    all[channel] = { column: header, ...(unit && unit !== own ? { unit } : {}) };
-    if (radius) put(all[channel], "radius", radius);
-  }
-  if (!channel && bare && Object.keys(all).length === 0) delete content.columns;
-}
-
-/** What sensors are worth: one standard deviation for each that is in the recordings. */
-function noise(bench) {
-  const { campaign, headers, channels, noise: found } = bench.state, mapped = campaign.columns ?? {};
-  const columnUnit = {};
-  for (const header of Object.keys(headers)) {
-    const { bare, own } = parted(header), entry = Object.entries(mapped).find(([, v]) => (v.column ?? v) === header);
-    columnUnit[entry?.[0] ?? bare] = entry?.[1].unit ?? own;
-  }
-  const fields = channels.filter((c) => c.name in columnUnit && c.name !== "time").map((c) => {
-    const seen = found[c.name];
-    return field(c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
-      seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());
-  });
-  return h("details", {}, h("summary", {}, "Noise of the sensors"),
-    h("p", { class: "hint" }, "One standard deviation, in the unit shown or with one of its own, as in 0.2 deg/s. Where none is given, the one in grey is used: it is estimated from the samples."),
-    h("div", { class: "grid" }, fields));
-}
-
-function chair(bench) {
-  const { campaign, parameters } = bench.state;
-  const fields = parameters.map((p) => {
-    const [group, key] = grouped(p.name);
-    return field(p.name, p.meaning + bracket(p.unit), campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
-  });
-  return h("details", {}, h("summary", {}, "What is known of the chair"), h("div", { class: "grid" }, fields));
-}
-
-/** How well it is known: a standard deviation about each value. */
-function priors(bench) {
-  const { campaign, parameters } = bench.state;
-  const fields = parameters.filter((p) => p.calibrated).map((p) => {
-    const [group, key] = grouped(p.name), value = campaign[group]?.[key] ?? p.default;
-    const change = (sd) => bench.save((c) => {
-      const all = (c.prior ??= {});
-      delete all[p.name];
-      put((all[group] ??= {}), key, sd);
-    });
-    return field(p.name, `standard deviation about ${value}${bracket(p.unit)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
-      significant(p.uncertainty * (Math.abs(value) || 1), 2), `prior of ${p.name}`);
-  });
-  return h("details", {}, h("summary", {}, "How sure these values are"),
-    h("p", { class: "hint" }, "These values are calibrated, and stay as near to what you gave as you are sure of it. Where you do not say, the standard deviation in grey is used."),
-    h("div", { class: "grid" }, fields));
-}
-
-/** " [m/s]"; nothing for a plain number. */
-const bracket = (unit) => (unitText(unit) ? ` [${unitText(unit)}]` : "");
-
-const grouped = (name) => [name.slice(0, name.indexOf(".")), name.slice(name.indexOf(".") + 1)];
-
-/** "yaw_rate [deg/s]" without its bracket, and what the bracket holds. */
-const parted = (header) => {
-  const [bare, own] = header.match(/^(.*?)\s*\[([^\]]*)\]\s*$/)?.slice(1) ?? [header, ""];
-  return { bare, own };
-};
-
-const field = (name, says, value, changed, placeholder, label = name) =>
-  h("label", {}, h("span", {}, name, h("small", {}, says)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
-
-/** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
-function put(table, key, value) {
-  const number = Number(String(value).replace(",", "."));
-  if (value === "") delete table[key];
-  else table[key] = Number.isFinite(number) ? number : value;
 }
 
 const bench = new Workbench();

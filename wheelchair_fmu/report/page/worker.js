@@ -1,10 +1,11 @@
 /* The chair in a worker: simulates runs by WebAssembly and whitens what is left, as loop/likelihood.py does.
  *
  * A page's worker has no imports, so this file stands alone. Messages in:
- *   {load: {models, runs, noise, pushed, start, tuning, tolerance}}   once; see report/content.py
+ *   {load: {models, runs, noise, pushed, tuning, tolerance}}   once; see report/content.py
  *   {job, run, values, exact, brief}        simulate one run with parameter values by name (SI); brief: errors' squares alone
  *   {job, run, values, aside}               the same exactly, without remembering it
  *   {job, run, values, slopes: [[name, step]]}   normal equations of a fit of these parameters
+ *   {job, run, values, doubt: {names, covariance}}   how uncertain readings are by values that are
  *   {job, trace}                                              only simulate: a record {values, time, inputs, tolerance, grid}
  * and out: {job, ...result} or {job, error}. Matrices are stored by rows throughout. */
 "use strict";
@@ -20,7 +21,7 @@ const REACH = 3; // standard deviations that a start may be moved
 /** One compiled model: a WebAssembly instance whose memory is handed out afresh for every call. */
 class Kernel {
   constructor(record) {
-    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, delays
+    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, starts, delays
     const bytes = Uint8Array.from(atob(record.wasm), (c) => c.charCodeAt(0));
     this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
     this.base = (this.wasm.wc_page_heap() + 15) & ~15;
@@ -271,7 +272,7 @@ function readings({ kernel, n, nz, place }, y) {
 
 /** Simulate from a start, linearise, and make the filter: {start, y, predicted, byStart, offset, whitener}. */
 function linearised(f, values, start) {
-  const { kernel, run, n, nz, which } = f, nx = kernel.states, k = campaign.start.length, ns = kernel.sensors.length;
+  const { kernel, run, n, nz, which } = f, nx = kernel.states, starts = kernel.starts, k = starts.length, ns = kernel.sensors.length;
   const s = kernel.linearise(...given(f, values, start), campaign.tolerance);
   const every = [...Array(nx).keys()], nq = campaign.pushed.length;
   const system = {
@@ -281,16 +282,16 @@ function linearised(f, values, start) {
     H: part(s.by_state, n, ns, nx, which, nx),
     D: part(s.by_push, n, ns, campaign.pushed.length, which, nq),
   };
-  const column = campaign.start.map((name) => kernel.columns.indexOf(name)), sd = campaign.start.map((name) => run.start_sd[name]);
+  const column = starts.map((name) => kernel.columns.indexOf(name)), sd = starts.map((name) => run.start_sd[name]);
   const byStart = new Float64Array(n * nz * k), cov = new Float64Array(nx * nx), offset = new Float64Array(nx);
   for (let c = 0; c < k; c++) {
-    const off = run.start[campaign.start[c]] - start[campaign.start[c]];
+    const off = run.start[starts[c]] - start[starts[c]];
     for (let r = 0; r < nx; r++) {
       const a = s.start[r * k + column[c]];
       offset[r] += a * off;
       for (let q = 0; q < nx; q++) cov[r * nx + q] += a * sd[c] * sd[c] * s.start[q * k + column[c]];
     }
-    if (campaign.start[c] in run.set) continue; // a run's own setting stands, so that parameter moves nothing in it
+    if (starts[c] in run.set) continue; // a run's own setting stands, so that parameter moves nothing in it
     for (let i = 0; i < n; i++) for (let z = 0; z < nz; z++) byStart[(i * nz + z) * k + c] = s.by_parameter[(i * ns + which[z]) * k + column[c]];
   }
   const whitener = new Whitener(kernel, system, f.noise, f.present, n, cov, usualStep(run.time));
@@ -304,14 +305,13 @@ function innovations(f, s, predicted) {
 
 /** How each innovation goes with the start (n, nz, k). */
 function startSlopes(f, s) {
-  const k = campaign.start.length;
-  return s.whitener.whiten(s.byStart.slice(), k, new Float64Array(f.kernel.states));
+  return s.whitener.whiten(s.byStart.slice(), f.kernel.starts.length, new Float64Array(f.kernel.states));
 }
 
 /** The start given all readings, to first order: prior mean + P0 S0' r, of innovations r and how they go with the start. */
-function betterStart({ run }, r, slopes) {
-  const k = campaign.start.length, found = {};
-  campaign.start.forEach((name, c) => {
+function betterStart({ kernel, run }, r, slopes) {
+  const k = kernel.starts.length, found = {};
+  kernel.starts.forEach((name, c) => {
     let sum = 0;
     for (let i = 0; i < r.length; i++) sum += r[i] * slopes[i * k + c];
     const sd = run.start_sd[name], step = sd * sd * sum;
@@ -320,12 +320,16 @@ function betterStart({ run }, r, slopes) {
   return found;
 }
 
+/** Where a run is expected to start before its readings are asked, by parameters that the model has: not every one has casters
+ *  that swing. */
+const expectedStart = ({ kernel, run }) => Object.fromEntries(kernel.starts.map((name) => [name, run.start[name]]));
+
 /** As `wheelchair compare` does it: the start is moved to where the readings want it, until it is there. */
 function exactly(f, values) {
-  let start = f.run.start, s = whitened(f, values, start);
+  let start = expectedStart(f), s = whitened(f, values, start);
   for (let round = 0; round < campaign.tuning; round++) {
     const better = betterStart(f, s.innovations, s.slopes);
-    if (campaign.start.every((name) => Math.abs(better[name] - start[name]) <= campaign.settled * f.run.start_sd[name])) break;
+    if (f.kernel.starts.every((name) => Math.abs(better[name] - start[name]) <= campaign.settled * f.run.start_sd[name])) break;
     start = better;
     s = whitened(f, values, start);
   }
@@ -342,8 +346,8 @@ function whitened(f, values, start) {
 function nearby(f, values, last) {
   const { y } = f.kernel.run(...given(f, values, last.start), campaign.tolerance), predicted = readings(f, y);
   const r = innovations(f, last, predicted); // to first order the same wherever the simulation starts
-  const start = betterStart(f, r, last.slopes), k = campaign.start.length;
-  campaign.start.forEach((name, c) => {
+  const start = betterStart(f, r, last.slopes), k = f.kernel.starts.length;
+  f.kernel.starts.forEach((name, c) => {
     const step = start[name] - last.start[name];
     for (let i = 0; i < predicted.length; i++) predicted[i] += step * last.byStart[i * k + c];
   });
@@ -362,7 +366,7 @@ function evaluate(index, values, exact, aside) {
  *  The filter is that of the values themselves, as in loop/fit.py. */
 function slopes(index, values, steps) {
   const kernel = kernelFor({ ...values, ...Object.fromEntries(steps.map(([name]) => [name, values[name] || 1])) }), f = frame(kernel, index, values);
-  const s = linearised(f, values, f.run.start), r = innovations(f, s, s.predicted), k = steps.length;
+  const s = linearised(f, values, expectedStart(f)), r = innovations(f, s, s.predicted), k = steps.length;
   const moved = steps.map(([name, step]) => {
     const there = frame(kernel, index, { ...values, [name]: (values[name] ?? campaign.known[name] ?? kernel.start(name)) + step });
     const { y } = kernel.run(...given(there, { ...values, [name]: (values[name] ?? campaign.known[name] ?? kernel.start(name)) + step }, s.start), campaign.tolerance);
@@ -382,27 +386,48 @@ function slopes(index, values, steps) {
   return { jtj, jtr, squares };
 }
 
+/** Variances that readings have by channel because values have these covariances (k, k): to first order, from a start that
+ *  follows the values as far as readings have it. */
+function doubted(index, values, { names, covariance }) {
+  const kernel = kernelFor(values), f = frame(kernel, index, values), last = exactly(f, values), k = names.length;
+  const moved = names.map((name, a) => {
+    const step = Math.sqrt(covariance[a][a]), there = { ...values, [name]: (values[name] ?? campaign.known[name] ?? kernel.start(name)) + step };
+    const g = frame(kernel, index, there), { predicted } = nearby(g, there, last);
+    return predicted.map((v, i) => (v + g.offsets[i % f.nz] - last.predicted[i] - f.offsets[i % f.nz]) / step);
+  });
+  const variance = {};
+  f.names.forEach((name, z) => {
+    const series = (variance[name] = new Float64Array(f.n));
+    for (let i = 0; i < f.n; i++) {
+      const at = i * f.nz + z;
+      for (let a = 0; a < k; a++) for (let b = 0; b < k; b++) series[i] += moved[a][at] * covariance[a][b] * moved[b][at];
+    }
+  });
+  return { variance };
+}
+
 /** Errors by channel, as loop/likelihood.py's `errors`, their squares and those in SI units (`gaps`), and the series that the
- *  page draws. */
+ *  page draws: readings, and standard deviations of what is measured about them where values are right. */
 function summary({ kernel, names, n, nz, measured, offsets }, { start, y, predicted, spread, innovations }) {
-  const errors = {}, simulated = {}, squares = {}, counts = {}, gaps = {};
+  const errors = {}, simulated = {}, deviations = {}, squares = {}, counts = {}, gaps = {};
   names.forEach((name, z) => {
-    const e = new Float64Array(n), p = new Float64Array(n), offset = offsets[z], drifts = campaign.drifting.includes(name);
+    const e = new Float64Array(n), p = new Float64Array(n), sd = new Float64Array(n), offset = offsets[z], drifts = campaign.drifting.includes(name);
     let sum = 0, count = 0, apart = 0;
     for (let i = 0; i < n; i++) {
       const d = measured[i * nz + z] - predicted[i * nz + z]; // NaN in gaps
       e[i] = !drifts || Number.isNaN(d) ? d * spread[i * nz + z] : innovations[i * nz + z];
       p[i] = predicted[i * nz + z] + offset; // as the sensor reads it
+      sd[i] = 1 / spread[i * nz + z];
       if (!Number.isNaN(e[i])) { sum += e[i] * e[i]; apart += d * d; count++; }
     }
-    [errors[name], simulated[name], squares[name], counts[name], gaps[name]] = [e, p, sum, count, apart];
+    [errors[name], simulated[name], deviations[name], squares[name], counts[name], gaps[name]] = [e, p, sd, sum, count, apart];
   });
   const results = {}, width = kernel.outputs.length;
   for (const name of campaign.shown) {
     const at = kernel.outputs.indexOf(name), series = (results[name] = new Float64Array(n));
     for (let i = 0; i < n; i++) series[i] = y[i * width + at];
   }
-  return { errors, predicted: simulated, squares, counts, gaps, results, start };
+  return { errors, predicted: simulated, sd: deviations, squares, counts, gaps, results, start };
 }
 
 /** A bare simulation, for comparing this page with another program. */
@@ -415,11 +440,11 @@ function trace({ values, time, inputs, tolerance, grid }) {
 /** The same without series. */
 const briefly = ({ squares, counts, gaps, start }) => ({ squares, counts, gaps, start, brief: true });
 
-function answer({ load: all, job, run, values, exact, brief, aside, slopes: steps, trace: wanted }) {
+function answer({ load: all, job, run, values, exact, brief, aside, slopes: steps, doubt, trace: wanted }) {
   if (all) return load(all);
   const began = performance.now();
   try {
-    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : evaluate(run, values, exact, aside);
+    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : doubt ? doubted(run, values, doubt) : evaluate(run, values, exact, aside);
     return { job, run, ...(brief ? briefly(result) : result), ms: performance.now() - began };
   } catch (error) {
     return { job, run, error: error.message };
@@ -427,7 +452,7 @@ function answer({ load: all, job, run, values, exact, brief, aside, slopes: step
 }
 
 /** Series go to the page without being copied: nothing here needs them again. */
-const buffers = ({ errors, predicted, results }) => [errors, predicted, results].filter(Boolean).flatMap((all) => Object.values(all).map((a) => a.buffer));
+const buffers = ({ errors, predicted, sd, results, variance }) => [errors, predicted, sd, results, variance].filter(Boolean).flatMap((all) => Object.values(all).map((a) => a.buffer));
 
 self.onmessage = ({ data }) => {
   const reply = answer(data);

@@ -1,0 +1,174 @@
+// The workbench's forms: what the campaign says of its runs, columns, noise and chair. Each change is sent at once.
+
+import { h } from "page/dom";
+import { course, extent, svg } from "page/draw";
+import { significant, unitText } from "page/numbers";
+
+const ROLES = { fit: "fit", holdout: "held out" };
+const FEW = 6; // runs that are shown without asking where something is wrong
+const WIDE = 110, HIGH = 30; // px of a signal beside its column
+
+const table = (heads, rows) => {
+  for (const row of rows) [...row.children].forEach((cell, i) => { cell.dataset.head = heads[i]; }); // for narrow screens
+  return made(heads, rows);
+};
+
+const made = (heads, rows) => h("div", { class: "wide" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+
+const select = (label, options, value, changed) => {
+  const made = h("select", { "aria-label": label, onchange: () => changed(made.value) }, Object.entries(options).map(([v, words]) => h("option", { value: v }, words)));
+  made.value = value;
+  return made;
+};
+
+const text = (label, value, changed, more = {}) => {
+  const made = h("input", { type: "text", "aria-label": label, value: value ?? "", autocomplete: "off", onchange: () => changed(made.value.trim()), ...more });
+  return made;
+};
+
+export function runs(bench) {
+  const { campaign } = bench.state, list = Array.isArray(campaign.run) ? campaign.run : [];
+  const rows = list.map((run, i) => {
+    const files = run.files ? Object.values(run.files) : [run.file ?? "?"], name = run.name ?? files[0];
+    return h("tr", {}, h("th", { scope: "row" }, name, files.length > 1 || files[0] !== name ? h("small", {}, files.join(", ")) : null),
+      h("td", {}, select(`role of ${name}`, ROLES, run.role, (role) => bench.save((c) => { c.run[i].role = role; }))),
+      h("td", {}, text(`manoeuvre of ${name}`, run.manoeuvre, (words) => bench.save((c) => { c.run[i].manoeuvre = words; }))),
+      h("td", {}, text(`speed at the start of ${name} [m/s]`, run.u0, (value) => bench.save((c) => { put(c.run[i], "u0", value); }), { size: 6, inputmode: "decimal" })),
+      h("td", {}, h("button", { type: "button", class: "quiet", "aria-label": `remove ${name}`, onclick: () => bench.remove(files) }, "remove")));
+  });
+  const axes = select("axes", { "SAE-J670": "y to the right (SAE J670)", "ISO-8855": "y to the left (ISO 8855)" }, campaign.campaign?.axes, (value) => bench.save((c) => { c.campaign.axes = value; }));
+  const kept = list.filter((run) => run.role === "holdout").length, wrong = bench.state.faults.some((f) => f.severity === "error");
+  return h("details", { open: wrong && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
+    h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes)),
+    table(["run", "role", "manoeuvre", "speed at the start, about [m/s]", "take it out"], rows));
+}
+
+/** The columns of all files, or of each device's, with what every one of them holds. */
+export function columns(bench) {
+  const { campaign, headers, channels } = bench.state, devices = Array.isArray(campaign.recording) ? campaign.recording : null;
+  const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
+  const tables = devices ? devices.map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }))
+    : [{ name: "", files: null, of: (content) => (content.columns ??= {}), explicit: false }];
+  const needed = Object.keys(headers).length && bench.state.faults.some((f) => f.severity === "error");
+  return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
+    const given = (devices ? devices.find((d) => d.device === one.name).columns : campaign.columns) ?? {};
+    const rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options));
+    return h("div", {}, one.name ? device(bench, devices.findIndex((d) => d.device === one.name)) : null, table(["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], rows));
+  }));
+}
+
+/** A device's name and where it sits. */
+function device(bench, i) {
+  const { device: name, at } = bench.state.campaign.recording[i];
+  const change = (words) => bench.save((c) => {
+    const place = words.split(/[,;\s]+/).filter(Boolean).map(Number);
+    if (place.length) c.recording[i].at = place;
+    else delete c.recording[i].at;
+  });
+  return h("p", { class: "row" }, h("b", {}, name), h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" })));
+}
+
+/** The files of a device, in all runs. */
+const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? campaign.run : []).map((run) => run.files?.[device]).filter(Boolean));
+
+function columnRow(bench, header, place, given, options) {
+  const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
+  const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
+  const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6 });
+  const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : {};
+  const which = select(`channel of ${header}`, { ...options, ...unused }, channel, () => change());
+  const change = () => bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.value.trim()));
+  const files = headers[header].filter((f) => !place.files || place.files.has(f));
+  return h("tr", {}, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which), h("td", {}, unit), h("td", {}, radius));
+}
+
+/** A column's values over time, small, with the greatest and the least of them. */
+function signal(values) {
+  const there = values.map((v) => v ?? NaN);
+  if (!there.some(Number.isFinite)) return h("small", {}, "no numbers");
+  const [low, high] = extent(there), down = (v) => 2 + (HIGH - 4) * (1 - (v - low) / (high - low || 1));
+  return h("span", { class: "signal" }, svg("svg", { width: WIDE, height: HIGH, viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" },
+    low < 0 && high > 0 ? svg("path", { d: `M0 ${down(0)}H${WIDE}`, stroke: "var(--line)" }) : null, course(there.map((_, i) => (i * WIDE) / there.length), there.map(down), "var(--model)", { "stroke-width": 1.2 })),
+  h("small", {}, `${significant(low, 3)} to ${significant(high, 3)}`));
+}
+
+/** Writes into the columns of a campaign or device that `header` is `channel`; what its header says by itself needs no entry. */
+function map(content, place, header, bare, own, channel, unit, radius) {
+  const all = place.of(content), was = Object.values(all).find((v) => (v.column ?? v) === header);
+  for (const [name, value] of Object.entries(all)) if ((value.column ?? value) === header) delete all[name];
+  if (channel && (place.explicit || channel !== bare || unit !== own || radius)) {
+    all[channel] = { ...(typeof was === "object" ? was : {}), column: header };
+    if (unit && unit !== own) all[channel].unit = unit;
+    else delete all[channel].unit;
+    put(all[channel], "radius", radius);
+  }
+  if (!place.explicit && Object.keys(all).length === 0) delete content.columns;
+}
+
+/** What sensors are worth: one standard deviation for each that is in the recordings. */
+export function noise(bench) {
+  const { campaign, headers, channels, noise: found } = bench.state, mapped = campaign.columns ?? {};
+  const columnUnit = {};
+  for (const header of Object.keys(headers)) {
+    const { bare, own } = parted(header), entry = Object.entries(mapped).find(([, v]) => (v.column ?? v) === header);
+    columnUnit[entry?.[0] ?? bare] = entry?.[1].unit ?? own;
+  }
+  const fields = channels.filter((c) => c.name in columnUnit && c.name !== "time").map((c) => {
+    const seen = found[c.name];
+    return field(c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
+      seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());
+  });
+  return h("details", {}, h("summary", {}, "Noise of the sensors"),
+    h("p", { class: "hint" }, "One standard deviation, in the unit shown or with one of its own, as in 0.2 deg/s. Where none is given, the one in grey is used: it is estimated from the samples."),
+    h("div", { class: "grid" }, fields));
+}
+
+export function chair(bench) {
+  const { campaign, parameters } = bench.state;
+  const fields = parameters.map((p) => {
+    const [group, key] = grouped(p.name);
+    return field(p.name, p.meaning + bracket(p.unit), campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
+  });
+  const open = Array.isArray(campaign.recording) && ["m", "a", "b"].some((key) => campaign.chair?.[key] === undefined); // which no file tells
+  return h("details", { open }, h("summary", {}, "What is known of the chair"),
+    h("p", { class: "hint" }, "What you leave empty is taken as in grey, and calibrated where runs tell it."), h("div", { class: "grid" }, fields));
+}
+
+/** How well it is known: a standard deviation about each value. */
+export function priors(bench) {
+  const { campaign, parameters } = bench.state;
+  const fields = parameters.filter((p) => p.calibrated).map((p) => {
+    const [group, key] = grouped(p.name), value = campaign[group]?.[key] ?? p.default;
+    const change = (sd) => bench.save((c) => {
+      const all = (c.prior ??= {});
+      delete all[p.name];
+      put((all[group] ??= {}), key, sd);
+    });
+    return field(p.name, `standard deviation about ${value}${bracket(p.unit)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
+      significant(p.uncertainty * (Math.abs(value) || 1), 2), `prior of ${p.name}`);
+  });
+  return h("details", {}, h("summary", {}, "How sure these values are"),
+    h("p", { class: "hint" }, "These values are calibrated, and stay as near to what you gave as you are sure of it. Where you do not say, the standard deviation in grey is used."),
+    h("div", { class: "grid" }, fields));
+}
+
+/** " [m/s]"; nothing for a plain number. */
+const bracket = (unit) => (unitText(unit) ? ` [${unitText(unit)}]` : "");
+
+const grouped = (name) => [name.slice(0, name.indexOf(".")), name.slice(name.indexOf(".") + 1)];
+
+/** "yaw_rate [deg/s]" without its bracket, and what the bracket holds. */
+const parted = (header) => {
+  const [bare, own] = header.match(/^(.*?)\s*\[([^\]]*)\]\s*$/)?.slice(1) ?? [header, ""];
+  return { bare, own };
+};
+
+const field = (name, says, value, changed, placeholder, label = name) =>
+  h("label", {}, h("span", {}, name, h("small", {}, says)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
+
+/** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
+function put(table, key, value) {
+  const number = Number(String(value).replace(",", "."));
+  if (value === "") delete table[key];
+  else table[key] = Number.isFinite(number) ? number : value;
+}
