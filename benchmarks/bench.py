@@ -1,4 +1,4 @@
-"""Speed and accuracy beside peers in the same run:  python -m benchmarks.bench"""
+"""Speed and accuracy beside peers in the same run:  python -m benchmarks.bench [GROUP ...]"""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -42,29 +43,34 @@ def _processor() -> str:
     return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
-def main() -> int:
+def main(groups: Sequence[str] = ()) -> int:
+    """Measure these groups, or all and how cost grows."""
     from . import growth, limits
 
     console = Console(highlight=False, width=200)
     on = machine()
     rows = []
     with Console(stderr=True).status("measuring") as status:
-        for name in GROUPS:
+        for name in groups or GROUPS:
             group = import_module(f".{name}", __package__)
             status.update(f"measuring: {(group.__doc__ or '').partition('.')[0].partition(':')[0]}")
             rows += list(group.rows())
-        status.update("measuring how cost grows")
-        lines = growth.lines()
-        rows += list(growth.rows(lines))
+        lines = []
+        if not groups:
+            status.update("measuring how cost grows")
+            lines = growth.lines()
+            rows += list(growth.rows(lines))
     on["core"] = f"{limits.core(1)}; {limits.widest()}"
     on["load"] = " ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "not known"
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))
     with written(TARGET) as beside:
         beside.write_text(json.dumps({"machine": on, "rows": [row.as_json() for row in rows]}, indent=2) + "\n")
-    with written(FIGURE) as beside:
-        growth.figure(lines).savefig(beside, dpi=150)
-    console.print(f"{TARGET}\n{FIGURE}")
+    console.print(TARGET)
+    if lines:
+        with written(FIGURE) as beside:
+            growth.figure(lines).savefig(beside, dpi=150)
+        console.print(FIGURE)
     missed = [row for row in rows if row.met is False]
     console.print(f"{sum(row.met is True for row in rows)} targets met, {len(missed)} missed")
     for row in missed:
@@ -73,4 +79,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

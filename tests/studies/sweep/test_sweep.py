@@ -11,13 +11,14 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from wheelchair_fmu.chunks import bad, complete, dask, here, is_done
 from wheelchair_fmu.chunks.parts import folder
 from wheelchair_fmu.errors import Failure
-from wheelchair_fmu.studies.sweep import Job, prepare, read_plan
+from wheelchair_fmu.studies.sweep import Job, prepare, read_plan, running
 
 from ...kit import descendants, gone
 
@@ -85,6 +86,17 @@ def test_both_engines_give_the_same_numbers(tmp_path):
     assert set(tables[0]["tyre.law"]) == {"linear", "magic_formula"}
     pd.testing.assert_frame_equal(*tables, rtol=1e-4, atol=1e-6)
     assert tables[0].error.isna().all()
+
+
+def test_chairs_are_the_same_however_many_run_side_by_side(tmp_path, monkeypatch):
+    text = SMALL.replace("samples = 8", "samples = 64").replace('"tyre.law" = ["linear", "magic_formula"]', "")
+    job, by_two = job_of(tmp_path, text), job_of(tmp_path, text, chunk=4)
+    together = job.table(0).to_pandas()
+    assert len(together) == 128 and together.curvature.nunique() > 60
+    monkeypatch.setattr(running, "NUMBERS", 1)  # so the least at once, which are several times as many
+    pd.testing.assert_frame_equal(job.table(0).to_pandas(), together, check_exact=True)
+    apart = pa.concat_tables([by_two.table(n) for n in range(by_two.chunks)]).to_pandas()
+    pd.testing.assert_frame_equal(apart, together, check_exact=True)
 
 
 def test_processes_do_what_one_does(tmp_path):

@@ -40,7 +40,7 @@ def of_runs(
     `held` (chairs,): the speed is prescribed; `tread` (chairs,) is t_r [m].
     """
     y = dict(zip(READS, np.moveaxis(results, 1, 0), strict=True))
-    last = y["chair.curvature"][:, -1]
+    last = y["chair.curvature"][:, -1].copy()  # what the results stand in serves the next runs, too
     bent = np.abs(last) > 1 / STRAIGHT
     return {
         **none(len(results)),
@@ -49,7 +49,7 @@ def of_runs(
         "slip_peak_rl": _greatest(y["slip.rl"]),
         "slip_peak_rr": _greatest(y["slip.rr"]),
         "drift": y["chair.y"][:, -1] - y["chair.y"][:, 0],
-        "speed_end": y["chair.u"][:, -1],
+        "speed_end": y["chair.u"][:, -1].copy(),
         "push_work": _work(time, inputs, y, held, tread),
         "lifted": np.mean(y["load.lifted"], axis=1),
     }
