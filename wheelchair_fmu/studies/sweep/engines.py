@@ -12,8 +12,6 @@ from ...engine.simulate import Simulator
 from ...errors import WheelchairError
 from ...model.choice import names
 from ...model.variant import Variant, number
-from ..archives import fmu_of
-from ..driving import Fmu
 
 Values = Mapping[str, float]
 TOLERANCE = 1e-6  # of the kernel's steps, which are free of the FMU's grid
@@ -70,6 +68,8 @@ class FmuEngine:
     """The FMU that `build_fmu.py` makes of the variant, with its default effects, driven by fmpy."""
 
     def __init__(self, variant: Variant, laws: Iterable[int] = ()):
+        from .. import Fmu, fmu_of  # brings fmpy along, which the kernel does without
+
         self._fmu = Fmu(fmu_of(variant))
         self._own = {name: value for name, value in variant.values.items() if name in self._fmu.parameters}
         self._own["tyre.law"] = 1 + names(variant.choice)["tyre"].index(variant.choice.tyre)
