@@ -65,7 +65,7 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     what, sure, do = tale(CASES["missing"]).cards
     assert what["lead"] == "One rear wheel that rolls harder than the other"
     assert what["lines"][-1] == "That is 4 times the size that would matter, 0.4 N."
-    assert sure["lead"].startswith("More than 999 in 1000")
+    assert sure["lead"] == "99.6 % that it is large enough to matter"
     before, after = (CASES["missing"]["ladder"][i]["heldout"] for i in (1, -1))
     assert f"from {before:.2f} to {after:.2f}" in sure["lines"][0]
     assert do["lead"] == "Lift the rear and spin both wheels: one stops sooner."

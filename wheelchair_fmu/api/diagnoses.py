@@ -132,8 +132,9 @@ class Diagnosis:
         """The probability of each effect, by its id, that its size exceeds the smallest interesting one, the likeliest effect
         first.
 
-        >>> next(iter(found.probabilities.items()))
-        ('rolling_resistance_asymmetry', 1.0)
+        >>> effect, probability = next(iter(found.probabilities.items()))
+        >>> print(f"{effect}: {probability:.2f}")
+        rolling_resistance_asymmetry: 1.00
         """
         return probabilities_in(self._told["ranking"])
 
