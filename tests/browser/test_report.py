@@ -223,7 +223,13 @@ def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "figure", ["staircase", "where", "overlay", "path", "regimes", "forest", "physical", "profiles", "joint"]
+    "figure",
+    [
+        "staircase",
+        "overlay",
+        "joint",
+        *(pytest.param(f, marks=pytest.mark.nightly) for f in ("where", "path", "regimes", "forest", "physical", "profiles")),
+    ],
 )
 def test_every_figure_can_be_published(open_report, figure, tmp_path):
     """On white, as wide as it says, with its campaign, and a table that is whole."""
