@@ -100,6 +100,22 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     page.wait_for_function("() => !document.getElementById('faults').innerText.includes('measures a length')")
 
 
+def test_an_answer_that_comes_late_does_not_hide_what_came_after(page: Any) -> None:
+    """The state before the files were read, asked for first, is answered last."""
+    page.wait_for_function("() => window.workbench?.state")
+    page.evaluate("""() => {
+        const states = [{...workbench.state, files: ['late']}, {...workbench.state, files: ['new']}];
+        const shown = workbench.show;
+        window.seen = [];
+        workbench.show = (state) => { window.seen.push(state.files[0]); };
+        const late = new Promise((resolve) => setTimeout(() => resolve(states[0]), 300));
+        workbench.take(() => late);
+        workbench.take(() => Promise.resolve(states[1])).then(() => { workbench.show = shown; });
+    }""")
+    page.wait_for_function("() => window.seen.length === 2")
+    assert page.evaluate("window.seen") == ["late", "new"]
+
+
 def test_cancelling_leaves_things_as_they_were(page: Any) -> None:
     take_in(page, *recordings())
     page.click("#diagnose")

@@ -49,13 +49,22 @@ async function tried(act) {
 }
 
 class Workbench {
+  before = Promise.resolve();
+
   async open() {
     this.listen();
     await this.take(() => ask("state"));
   }
 
-  /** Ask the server for something that answers with the new state, and show it all. */
-  async take(act) {
+  /** Ask the server for something that answers with the new state, and show it all. One after the other: an answer that was
+   *  overtaken on its way would show an older state over a newer one. */
+  take(act) {
+    const mine = this.before.then(() => this.taken(act));
+    this.before = mine.catch(() => null);
+    return mine;
+  }
+
+  async taken(act) {
     const state = await tried(act);
     this.here = location.pathname.replace(/\/$/, "");
     if (state) this.show(state);
