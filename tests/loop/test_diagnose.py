@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
-from types import SimpleNamespace as Some
 
 import numpy as np
 import pytest
@@ -15,13 +13,14 @@ from tests.loop.conftest import among, measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
-from wheelchair_fmu.loop.diagnose import Round, Search
 from wheelchair_fmu.loop.factory import MEASURED, ModelFactory
 from wheelchair_fmu.loop.interval import half_width
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.ranking import as_json
+from wheelchair_fmu.loop.rounds import Round
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.staircase import Step
-from wheelchair_fmu.loop.statistics import sandwich, size_seen
+from wheelchair_fmu.loop.statistics import sandwich
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient, share_seen
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
@@ -104,27 +103,6 @@ def test_lasting_structure_is_no_noise(sampled):
 def test_effects_that_leave_much_of_what_they_were_to_explain_do_not_suffice(calibrated, top, expected):
     ladder = [Step("nominal", 10.0, 10.0), Step("calibrated", *calibrated), Step("+effect", *top)]
     assert insufficient(ladder) == expected
-
-
-@pytest.mark.parametrize(
-    ("size", "left", "large"),
-    [(0.7, 1.3, False), (0.85, 1.3, True), (-0.85, 1.3, True), (0.85, 1.01, False), (1.0, 1.01, True)],
-)
-def test_an_effect_is_named_by_its_size_and_by_what_there_is_to_explain(sampled, monkeypatch, size, left, large):
-    """Sizes in δ, and the whitened error of the model without it, fitted and held out."""
-    search, found = sampled.search, sampled.final
-    sized = (np.array([size * 0.4]), 1e-6 * np.eye(1))
-    monkeypatch.setattr("wheelchair_fmu.loop.diagnose.estimates", lambda fit, names: sized)
-    base = replace(found, evidence=Some(runs=(), rms=left, fall_to=lambda after: 0.1))
-    judged = search.judge(base, Some(runs=(1,), rms=left), found, None, DRAG.split(".")[1], [DRAG], 30)
-    assert judged.large == large
-
-
-def test_the_size_of_several_parameters_is_what_the_data_see_of_it():
-    alike, apart = np.eye(2) * 1e-4, np.array([[1.0, -1.0], [-1.0, 1.0]]) * 100
-    assert size_seen(np.array([0.9, 0.0]), alike) == pytest.approx(0.9)
-    assert size_seen(np.array([0.6, 0.6]), alike) == pytest.approx(0.6 * np.sqrt(2))
-    assert size_seen(np.array([0.7, 0.5]), alike + apart) == pytest.approx(1.2)  # only the sum shows
 
 
 def test_an_effect_is_judged_from_its_own_starts(tmp_path):

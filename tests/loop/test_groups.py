@@ -9,12 +9,12 @@ import casadi as cs
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory, groups_of
 from wheelchair_fmu.loop.joint import parted
 from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.screen import Screen
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.stage import Effect, adds

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.fit import fit, prior_of
 from wheelchair_fmu.loop.likelihood import Likelihood
 from wheelchair_fmu.loop.score import _long_run_variance
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.measured import PREDICTS
 

@@ -10,6 +10,7 @@ import pytest
 from wheelchair_fmu.loop import ties
 from wheelchair_fmu.loop.fit import Fit
 from wheelchair_fmu.loop.likelihood import Evidence
+from wheelchair_fmu.loop.policy import DEFAULT
 from wheelchair_fmu.loop.selection import StepwiseSelection
 from wheelchair_fmu.loop.ties import beside, overtaker, tied
 
@@ -36,7 +37,7 @@ def one(effect, misfit):
     ],
 )
 def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again, expected):
-    r = Some(winner=ahead, again=again, candidates=[one("gain", 0.0)])
+    r = Some(winner=ahead, again=again, candidates=[one("gain", 0.0)], policy=DEFAULT)
     assert overtaker(r, "gain") is (ahead if expected else None)
 
 
@@ -44,7 +45,7 @@ class Known:
     """A search that knows what every model does; it notes what refits it is `asked` for."""
 
     def __init__(self, misfits):
-        self.misfits, self.asked = misfits, []
+        self.misfits, self.asked, self.policy = misfits, [], DEFAULT
         self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"], likelihood=lambda effects: self)
 
     def restarted(self, evidence, values):
@@ -70,16 +71,16 @@ class Known:
         assert names == [f"effect.{effect}.size"] and tests == len(self.misfits)
         return one(effect, found.misfit)
 
-    def candidate(self, base, held, effects, s, tests, least, visible):
+    def candidate(self, base, held, effects, s, tests, least):
         self.asked.append((s.score.effect, least))
         return one(s.score.effect, self.misfits[s.score.effect]) if s.score.drop >= least else None
 
 
 def before(*others, alone=0.0, small=False):
     """The round that found a gain of the force sensors, alone, and others with these misfits."""
-    gain = Some(**vars(one("gain", alone)) | {"small": small})
+    gain = Some(**vars(one("gain", alone)) | {"matters": not small})
     rest = (Some(**vars(one(e, m)), lawful=True) for e, m in others)
-    return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest), again=True)
+    return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest), again=True, policy=DEFAULT)
 
 
 @pytest.fixture
@@ -116,10 +117,10 @@ def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(search):
 def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_found():
     """Without held-out runs, say, nobody is found who is not plain: then the best found may be far behind."""
     lawful = [
-        Some(**vars(one(e, m)), lawful=True, found=e == "slope")
+        Some(**vars(one(e, m)), lawful=True, matters=e == "slope")
         for e, m in (("gain", 0.0), ("inertia", 8.0), ("radius", 20.0), ("slope", 450.0))
     ]
-    assert tied(Some(candidates=lawful, again=True), "gain") == ("gain", "inertia")
+    assert tied(Some(candidates=lawful, again=True, policy=DEFAULT), "gain") == ("gain", "inertia")
 
 
 @pytest.mark.parametrize(
@@ -135,8 +136,10 @@ def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_fou
 )
 def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, behind, ahead, se, is_tied):
     monkeypatch.setattr(ties, "_ahead_on_heldout", lambda one, other: (ahead, se) if one is not other else (0.0, 0.0))
-    candidates = [Some(**vars(one(e, m)), lawful=True, found=True) for e, m in (("drag", 0.0), ("speed", behind))]
-    assert tied(Some(candidates=candidates, again=False), "drag") == (("drag", "speed") if is_tied else ("drag",))
+    candidates = [Some(**vars(one(e, m)), lawful=True, matters=True) for e, m in (("drag", 0.0), ("speed", behind))]
+    assert tied(Some(candidates=candidates, again=False, policy=DEFAULT), "drag") == (
+        ("drag", "speed") if is_tied else ("drag",)
+    )
 
 
 @pytest.mark.parametrize(("rms", "stays"), [(1.0, True), (1.2, True), (1.3, False)])

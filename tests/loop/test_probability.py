@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from wheelchair_fmu.loop.marginal import LARGE, SLIGHT, support
+from wheelchair_fmu.loop.marginal import support
+from wheelchair_fmu.loop.policy import DEFAULT
 
 FREE, POSITIVE = np.array([False]), np.array([True])
+LARGE, SLIGHT = DEFAULT.large, DEFAULT.slight
 
 
 def _likelihood_ratio(size: float, sd: float, width: float, positive: bool) -> float:

@@ -7,18 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.loop.diagnose import Candidate, Round, ranked
+from wheelchair_fmu.loop.candidate import Candidate, ranked
 from wheelchair_fmu.loop.fit import Fit
 from wheelchair_fmu.loop.likelihood import Evidence
-from wheelchair_fmu.loop.marginal import LARGE
-from wheelchair_fmu.loop.probability import _rivals, instead
+from wheelchair_fmu.loop.policy import DEFAULT
+from wheelchair_fmu.loop.probability import _rivals
+from wheelchair_fmu.loop.rounds import Round, instead
 
 NONE = Fit((), {}, np.zeros((0, 0)), Evidence((), ()), 0.0, np.zeros(0))
 
 
 def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, dispersion=1.0) -> Candidate:
     """Of sizes in δ; `fall` of squares."""
-    known = dict(p=0.0, falls=True, visible=1.0, heldout=None, small=False, large=True, lawful=True)
+    known = dict(p=0.0, heldout=None, lawful=True)
     one = np.ones(len(estimate))
     scale = dict(delta=one, one_sided=one < 0, dispersion=dispersion, correlation=correlation, gain=gain)
     return Candidate(effect, NONE, fall / dispersion, estimate, covariance, covariance, **scale, **known)
@@ -37,7 +38,7 @@ def drawn(rng):
     a, b, c = (rng.normal(size=n) * size for size in (0.12, 0.02, 0.12))
     slopes = a[:, None], np.stack([a + b, c], axis=1)
     true = int(rng.random() < 0.5)
-    return slopes, slopes[true] @ rng.normal(0, LARGE, 1 + true) + rng.normal(size=n), true
+    return slopes, slopes[true] @ rng.normal(0, DEFAULT.large, 1 + true) + rng.normal(size=n), true
 
 
 def test_odds_between_effects_of_one_and_of_two_parameters_are_right():
@@ -89,7 +90,10 @@ def test_a_group_may_be_what_a_round_finds():
     r = Round((), NONE, evidence, (), (alone,), groups=(joined,))
     assert r.winner.effect == "a+b"
     assert replace(r, groups=(replace(joined, drop=42.0),)).winner.effect == "a"
-    assert replace(r, groups=(replace(joined, large=False, small=True),), candidates=()).winner is None
+    slight = replace(joined, estimate=0.3 * joined.estimate)
+    assert replace(r, groups=(slight,), candidates=()).winner is None
+    assert replace(r, groups=(replace(joined, stretched=True),), candidates=()).winner is None
+    assert replace(r, groups=(replace(joined, lawful=False),), candidates=()).winner is None
 
 
 def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
@@ -97,8 +101,49 @@ def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
     lone = candidate("c", 36.0, np.array([2.4]), certain[:1, :1])
     joined, other = (candidate(e, 40.5, np.array([1.8, 1.8]), certain) for e in ("a+b", "d"))
     r = Round((), NONE, Evidence((), ()), (None,) * 12, (lone,), groups=(joined,))  # scores only count here
-    by = instead(_rivals(r, "c", {"c"}))
+    by = instead(r, _rivals(r, "c", {"c"}))
     assert 0.02 < by["a+b"].there < by["c"].there
-    as_one = instead(replace(r, candidates=(lone, other), groups=()))
+    as_one = instead(r, (lone, other))
     assert by["a+b"].there == pytest.approx(as_one["d"].there) and by["c"].there == pytest.approx(as_one["c"].there)
-    assert set(instead(_rivals(r, "c", {"c", "b"}))) == {"c"}, "a member was found beside it"
+    assert set(instead(r, _rivals(r, "c", {"c", "b"}))) == {"c"}, "a member was found beside it"
+
+
+@pytest.mark.parametrize(("size", "found"), [(0.8, False), (0.95, True), (-0.95, True), (4.0, True)])
+def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, found):
+    """Known to a twentieth of δ, in a catalogue of thirty."""
+    known = candidate("a", (size / 0.05) ** 2, np.array([size]), np.array([[0.05**2]]))
+    r = Round((), NONE, Evidence((), ()), (None,) * 30, (known,))
+    assert (r.winner is not None) == found
+    assert (r.winner is not None) == (r.beliefs["a"].there > 0.5)
+    assert r.help is known, "however small, it is surely there"
+    assert replace(r, odds=1e-4).winner is None or size == 4.0
+
+
+def test_what_another_effect_explains_by_being_slight_is_no_large_one():
+    """A fifth of δ of one effect does what three δ of another nearly do."""
+    slight = candidate("a", 100.0, np.array([0.2]), np.array([[0.02**2]]))
+    large = candidate("b", 90.0, np.array([3.0]), np.array([[0.3**2]]))
+    r = Round((), NONE, Evidence((), ()), (None,) * 30, tuple(ranked([slight, large])))
+    assert r.winner is None and r.help.effect == "a"
+    assert replace(r, candidates=(large,)).winner.effect == "b"
+
+
+def test_what_is_found_is_there_as_often_as_it_says():
+    """Of 3000 campaigns with twenty effects, of which one is large in half of them and all others are slight, each known to
+    between a tenth of δ and three δ."""
+    rng, said, right, false = np.random.default_rng(4), [], [], 0
+    for campaign in range(3000):
+        sd, true = 0.1 * 30 ** rng.random(20), rng.normal(0, DEFAULT.slight, 20)
+        if there := campaign % 2:
+            true[0] = rng.normal(0, DEFAULT.large)
+        estimate = true + rng.normal(0, sd)
+        pairs = enumerate(zip(estimate, sd, strict=True))
+        tried = [candidate(str(i), (e / s) ** 2, np.array([e]), np.array([[s * s]])) for i, (e, s) in pairs]
+        r = Round((), NONE, Evidence((), ()), (None,) * 20, tuple(ranked(tried)))
+        if r.winner:
+            false += not there
+            said.append(r.beliefs[r.winner.effect].there)
+            right.append(r.winner.effect == "0" and there)
+    assert len(said) > 500 and false < 0.05 * 1500
+    error = np.sqrt(np.mean(right) * (1 - np.mean(right)) / len(said))
+    assert np.mean(right) == pytest.approx(np.mean(said), abs=3 * error)

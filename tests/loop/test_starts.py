@@ -10,7 +10,7 @@ import pytest
 from wheelchair_fmu.loop import starts
 from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.loop.fit import Problem, fit
-from wheelchair_fmu.loop.starts import most_promising, outlook, visible_fall
+from wheelchair_fmu.loop.starts import most_promising, outlook
 from wheelchair_fmu.loop.statistics import standard_errors
 from wheelchair_fmu.model.variant import Variant
 
@@ -47,9 +47,6 @@ def test_a_step_leads_where_a_fit_of_a_linear_effect_ends(shop, calibrated):
 
     assert to.reached[-1] == pytest.approx(whole.values[DRAG], abs=0.2 * standard_errors(whole)[DRAG])
     assert to.misfit == pytest.approx(Problem(likelihood, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
-    after = whole.evidence.table()
-    fall = max(rms - after[run][c] for run, row in known.table().items() for c, rms in row.items())
-    assert visible_fall(likelihood, known, names, to) == pytest.approx(fall, abs=2e-3) and fall > 0.02
 
 
 def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkeypatch):
@@ -70,8 +67,8 @@ def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkey
     assert glances < 0.7 * sum(calls)
 
 
-def test_where_the_model_cannot_run_nothing_is_promised_and_nothing_ruled_out(shop, calibrated):
+def test_where_the_model_cannot_run_nothing_is_promised(shop, calibrated):
     likelihood, sigma = shop.likelihood(["relaxation_length"]), "effect.relaxation_length.sigma"
     known = linearised(shop, calibrated, CALIBRATED)
     to = outlook(likelihood, known, (*CALIBRATED, sigma), [*(calibrated.values[n] for n in CALIBRATED), -0.05])
-    assert to.misfit == visible_fall(likelihood, known, (*CALIBRATED, sigma), to) == float("inf")
+    assert to.misfit == float("inf")

@@ -16,13 +16,13 @@ from scipy import stats
 from tests.loop.linear import STEP, evidence, least_squares, noise, signals, values
 from wheelchair_fmu.loop.bootstrap import _estimates
 from wheelchair_fmu.loop.chance import student
-from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.interval import NORMAL, half_width
 from wheelchair_fmu.loop.likelihood import START, START_SD, Evidence, Likelihood
+from wheelchair_fmu.loop.policy import SearchPolicy
 from wheelchair_fmu.loop.score import Projector, robust_variance, score
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.statistics import (
-    TIED,
     between_runs,
     correlation_time,
     decisive,
@@ -79,9 +79,9 @@ def test_a_slow_sensors_samples_are_as_correlated_as_they_are():
 def test_the_margin_of_a_tie_is_odds_of_a_hundred_to_one_for_what_is_independent():
     """9.2 = 2 ln 100, times the samples that are worth one, times how much larger residuals are than the noise has it."""
     left = evidence([3 * white((20000, 1), 3, 0.5)], [np.zeros((20000, 1, 0))], ())
-    assert pytest.approx(2 * np.log(100), abs=0.02) == TIED
-    assert decisive(left) == pytest.approx(TIED * 3, rel=0.1)
-    assert margin(left) == pytest.approx(TIED * 3 * 9, rel=0.1)
+    assert decisive(left) == pytest.approx(9.2 * 3, rel=0.1)
+    assert margin(left) == pytest.approx(9.2 * 3 * 9, rel=0.1)
+    assert decisive(left, SearchPolicy(tie_odds=10.0)) == pytest.approx(decisive(left) / 2)
 
 
 # Intervals

@@ -11,10 +11,10 @@ import pytest
 from benchmarks.shifts import NIGHT, Case, less, shifted, with_shift
 from tests.loop.conftest import among
 from wheelchair_fmu.campaign import covered
-from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.likelihood import Evidence
 from wheelchair_fmu.loop.preflight import begin, retime_by_slopes, settle_clocks
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.timing import Late, by_model, by_signals, retimed, unlike_the_others
 from wheelchair_fmu.loop.verdict import diagnose
 from wheelchair_fmu.model.variant import Variant

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import Campaign
-from wheelchair_fmu.loop.diagnose import Search
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.improve import add
 from wheelchair_fmu.loop.preflight import begin
+from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.wiring import SIDES, Wiring, wiring
 from wheelchair_fmu.model.variant import Variant
 

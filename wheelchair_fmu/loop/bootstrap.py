@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .diagnose import Round
 from .fit import Fit
 from .likelihood import Evidence, block_length
+from .rounds import Round
 from .statistics import decisive, difference_blocks
 from .verdict import Diagnosis
 

@@ -11,10 +11,11 @@ import numpy as np
 
 from ..campaign import CHANNELS, Run
 from ..errors import SimulationError
-from .diagnose import Search
 from .fit import Fit, prior_of
 from .likelihood import Likelihood, NoiseModel
-from .statistics import TIED, decisive
+from .policy import DEFAULT
+from .search import Search
+from .statistics import decisive
 
 MOST_REPEATS = 20
 
@@ -85,7 +86,7 @@ def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Exp
             best = (len(shown), experiment, shown, weakest)
     if best is None:
         return None
-    repeats = int(np.ceil(TIED / best[3]))
+    repeats = int(np.ceil(DEFAULT.tied / best[3]))
     return {
         "manoeuvre": best[1].words,
         "separates": best[2],
@@ -107,7 +108,7 @@ def _shown(
         X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
         information = X.T @ X - X.T @ Z @ inverse @ Z.T @ X
         size = float(np.linalg.eigvalsh(information)[-1])
-        if size > TIED:
+        if size > DEFAULT.tied:
             shown.append(effect)
             weakest = min(weakest, size)
     return shown, weakest

@@ -9,11 +9,11 @@ from ..campaign import Campaign, windows
 from ..errors import Failure
 from ..model.variant import Variant
 from ..quantities import Parameter
-from .diagnose import Search
 from .factory import ModelFactory
 from .fit import Fit
 from .likelihood import Evidence
 from .preflight import begin, settle_clocks
+from .search import Search
 from .staircase import Step
 from .statistics import standard_errors
 from .verdict import Diagnosis

@@ -14,9 +14,11 @@ from itertools import product
 import numpy as np
 
 from ..errors import SimulationError
-from .diagnose import HALFWAY, Candidate, Round, Search
+from .candidate import Candidate
 from .fit import Fit
+from .rounds import Round
 from .score import Score
+from .search import HALFWAY, Search
 from .starts import most_promising
 from .statistics import decisive, margin
 
@@ -65,7 +67,7 @@ def parted(search: Search, now: Round, group: Candidate) -> list[Round]:
         without = search.refit(others, found.values) if others != known else now.fit
         before, names = search.heldout(w.likelihood(others), without.values), w.parameters(effect)
         judged = search.judge(without, before, search.compared(found, effect, without), held, effect, names, len(now.scores))
-        rounds.append(Round(others, without, before, now.scores, (judged,), contested=contested))
+        rounds.append(Round(others, without, before, now.scores, (judged,), contested=contested, policy=search.policy))
     return rounds
 
 
@@ -130,8 +132,6 @@ def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], s
         before, after = (search.heldout(w.likelihood(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
         found = replace(s.fit, evidence=w.likelihood(more).restarted(s.fit.evidence, s.fit.values))
         judged = search.judge(s.without, before, found, after, s.effect, w.parameters(s.effect), len(scores))
-        small = search.small(stages[-1].fit, s.effect)
-        judged = replace(judged, small=small, large=not small)
-        rounds.append(Round(effects, s.without, before, tuple(scores), (judged,)))
+        rounds.append(Round(effects, s.without, before, tuple(scores), (judged,), policy=search.policy))
         effects = more
     return rounds

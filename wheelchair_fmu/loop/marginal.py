@@ -17,10 +17,9 @@ from math import log
 import numpy as np
 from scipy import special
 
+from .policy import DEFAULT, SearchPolicy
 from .statistics import seen_axes
 
-LARGE = 4.0  # δ: standard deviation of a size that matters
-SLIGHT = 0.25  # δ: of one that does not
 DRAWS = 4000  # of a size, from its posterior
 LEAST = 0.1  # fall of −2 log likelihood that tells of an estimate as much as none
 
@@ -40,7 +39,13 @@ class Support:
 
 
 def support(
-    effect: str, size: np.ndarray, covariance: np.ndarray, lawful: np.ndarray, fall: float, ahead: float = 0.0
+    effect: str,
+    size: np.ndarray,
+    covariance: np.ndarray,
+    lawful: np.ndarray,
+    fall: float,
+    ahead: float = 0.0,
+    policy: SearchPolicy = DEFAULT,
 ) -> Support:
     """Of an estimate (k,) with its covariance (k, k), in units of δ; `lawful` (k,) says which may only be positive. `fall` is
     by how much −2 log likelihood falls up to the estimate, `ahead` by how much it does so on runs held out."""
@@ -56,18 +61,21 @@ def support(
     def marginal(sd: float, ahead: float) -> tuple[float, float]:
         """The log marginal likelihood for sizes with this standard deviation, and the share of the fall that these leave."""
         mean, variance = posterior(sd)
-        width = spread + sd**2
-        sides = (axes @ mean)[lawful] / np.sqrt((axes**2 @ variance)[lawful])
+        at, scatter = (axes @ mean)[lawful], np.sqrt((axes**2 @ variance)[lawful])
+        sides = np.divide(at, scatter, out=np.zeros(len(at)), where=scatter > 0)  # of what nobody sees, either is as likely
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
         left = float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
-        value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * float(np.sum(np.log(width / spread) + along**2 / width)) + allowed
+        width = spread + sd**2
+        paid = float(np.sum(np.log(width / spread) + along**2 / width))
+        value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * paid + allowed
         return value, left
 
-    mean, variance = posterior(LARGE)
+    mean, variance = posterior(policy.large)
     draws = mean + np.sqrt(variance) * np.random.default_rng(0).standard_normal((DRAWS, len(along)))
     free = draws[np.all((draws @ axes.T)[:, lawful] >= 0, axis=1)]
     beyond = float(np.mean(np.linalg.norm(free, axis=1) > one)) if len(free) else 0.0
-    (fitted, _), (large, _), (slight, left) = marginal(LARGE, 0.0), marginal(LARGE, ahead), marginal(SLIGHT, ahead)
+    (fitted, _), (large, _) = marginal(policy.large, 0.0), marginal(policy.large, ahead)
+    slight, left = marginal(policy.slight, ahead)
     return Support(effect, fitted, large, slight, left, beyond)
 
 
@@ -79,13 +87,14 @@ def support_of(
     lawful: np.ndarray,
     fall: float,
     ahead: float,
+    policy: SearchPolicy = DEFAULT,
 ) -> Support:
     """Support of a refitted effect, in its own units, by the widest of its covariances (k, k). Where zero is likelier than its
     standard errors have it, they are widened to say so."""
     size, scale = estimate / delta, np.outer(delta, delta)
     covariance = max((c / scale for c in covariances), key=np.trace)
     widen = max(1.0, squared(size, covariance) / max(fall, LEAST))
-    return support(effect, size, covariance * widen, lawful, fall, ahead)
+    return support(effect, size, covariance * widen, lawful, fall, ahead, policy)
 
 
 def squared(estimate: np.ndarray, covariance: np.ndarray) -> float:

@@ -13,7 +13,8 @@ from .factory import ModelFactory
 from .fit import Fit, Problem, fit, start_value
 from .likelihood import Evidence, Likelihood, offsets_of
 from .noise import QUIETER, by_run, noise_model_of
-from .statistics import TIED, estimates, margin
+from .policy import DEFAULT, SearchPolicy
+from .statistics import estimates, margin
 from .timing import Late
 
 PLAINLY = 100.0  # times what would be decisive
@@ -22,8 +23,10 @@ PLAINLY = 100.0  # times what would be decisive
 class Models:
     """A factory's models, with any of its effects."""
 
-    def __init__(self, factory: ModelFactory, progress: Callable[[str], None] = lambda words: None):
-        self.factory, self.say = factory, progress
+    def __init__(
+        self, factory: ModelFactory, progress: Callable[[str], None] = lambda words: None, policy: SearchPolicy = DEFAULT
+    ):
+        self.factory, self.say, self.policy = factory, progress, policy
         self.records = {p.name: p for e in factory.catalogue.values() for p in e.owned}
         self.confounded: dict[str, frozenset[str]] = {}
         self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
@@ -90,16 +93,16 @@ class Models:
             if effect in keep or self._plainly_needed(found, effect):
                 continue
             fewer = tuple(e for e in effects if e != effect)
-            if self.factory.leads and self.weight(found, effect) > margin(found.evidence):
+            if self.factory.leads and self.weight(found, effect) > margin(found.evidence, self.policy):
                 continue
             without = self.refit(fewer, found.values)
-            if self.factory.leads or without.misfit - found.misfit < margin(found.evidence):
+            if self.factory.leads or without.misfit - found.misfit < margin(found.evidence, self.policy):
                 return self.pruned(fewer, without, keep)
         return effects, found
 
     def _plainly_needed(self, found: Fit, effect: str) -> bool:
         """Is an effect's estimate, by its standard errors, so far from zero that nobody needs to try without?"""
-        return self.weight(found, effect) > PLAINLY * TIED
+        return self.weight(found, effect) > PLAINLY * self.policy.tied
 
     def weight(self, found: Fit, effect: str) -> float:
         """How far an effect's estimate is from zero, by its covariance: about as much as −2 log likelihood would rise without

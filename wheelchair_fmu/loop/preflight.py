@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..campaign.recorded import PUSHES_CLOCK
-from .diagnose import Search
 from .fit import Fit, Problem
 from .likelihood import Evidence
+from .search import Search
 from .staircase import Step
 from .timing import Late, by_model, by_signals, by_slopes, clocks
 from .wiring import wiring

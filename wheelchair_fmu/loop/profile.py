@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.stage import Effect
-from .diagnose import Search
 from .fit import Fit, prior_of
 from .score import robust_variance
+from .search import Search
 
 SUPPORTED = 0.9  # of a knot's prior variance that the data must take away, for the knot to be drawn
 

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from .diagnose import Candidate, Round
+from .candidate import Candidate
+from .rounds import Round
 from .score import Score
 from .statistics import cosines, estimates, finite
-from .verdict import ENOUGH_POWER, Diagnosis
+from .verdict import Diagnosis
 
+SIGNIFICANT = 0.05  # level at which a slight effect is said to show
 RIVALS = 4  # that are listed of an effect, if their
 ALIKE_AT_ALL = 0.5  # cosine is larger
 
@@ -77,7 +79,7 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
             "parameters": {n: {"estimate": float(v), "se": finite(e)} for n, v, e in zip(names, c.estimate, c.se, strict=True)},
             "p": c.p,
             "lr": c.drop,
-            "found": c.found,
+            "found": c.effect == (r.winner.effect if r.winner else None),
         }
         for r in d.rounds
         for c in r.groups
@@ -137,9 +139,9 @@ def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
         return "tie"
     if s.effect in d.effects:
         return "small" if d.verdict == "small" else "missing"
-    if s.effect in d.included or (c and c.small and c.p < 0.05):
+    if s.effect in d.included or (c and not c.matters and c.p < SIGNIFICANT):
         return "small"
-    return "not needed" if s.power >= ENOUGH_POWER else "cannot_see"
+    return "not needed" if s.power >= d.search.policy.power else "cannot_see"
 
 
 def leftover_json(d: Diagnosis) -> dict[str, Any]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .calibration import DOUBTED, Calibrated
-from .diagnose import SIGNIFICANT, Candidate, Round
+from .candidate import Candidate
+from .rounds import Round
 
 MOST = 3  # that are named
 
@@ -13,12 +14,8 @@ MOST = 3  # that are named
 def reliefs(latest: Round, values: Sequence[Calibrated]) -> list[str]:
     """A sentence for each effect of the latest round with which no value is bent, the likeliest first."""
     strained = [v for v in values if v.beyond]
-    able = (c for c in latest.candidates if _plausible(c) and all(_relieved(v, c) for v in strained))
+    able = (c for c in latest.candidates if c.matters and all(_relieved(v, c) for v in strained))
     return [_words(c, strained) for c in list(able)[:MOST]] if strained else []
-
-
-def _plausible(c: Candidate) -> bool:
-    return c.lawful and not c.stretched and c.p < SIGNIFICANT
 
 
 def _relieved(v: Calibrated, c: Candidate) -> bool:

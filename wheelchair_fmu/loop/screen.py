@@ -19,9 +19,7 @@ CURVED = 2  # effects that slopes say little of, beside the best
 HINT = 30.0  # expected fall, above which these are not judged by their expected size, where the mean square innovation is above
 ROOM = 1.01
 NEGLIGIBLE = 0.3  # of δ
-FAINTLY = 0.1  # of the fall that is asked for, as slopes have it
 LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
-FAR = 1.1  # mean square innovation of a model that slopes are not to be trusted at
 BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
 SLIGHTLY = 0.1  # the same, where it costs little to look at both
 AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
@@ -46,22 +44,9 @@ class Screened:
         return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
     @property
-    def far(self) -> bool:
-        """Is so much left, and hoped for, that an effect may do more than slopes say?"""
-        return float(np.mean(self.evidence.r**2)) > FAR and self.score.drop > LITTLE
-
-    @property
     def nonlinear_candidate(self) -> bool:
         """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
         return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
-
-    def forced(self, visible: float) -> bool:
-        """Is it refitted whatever one simulated step shows?"""
-        return visible == 0 or self.score.drop > LITTLE
-
-    def shows(self, visible: float) -> bool:
-        """Might it lower some channel's RMS in some run by so much, for all that a slope can tell?"""
-        return self.far or self.score.visible > FAINTLY * visible
 
 
 class Screen(Models):

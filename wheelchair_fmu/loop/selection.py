@@ -6,15 +6,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ..errors import SimulationError
-from .diagnose import SURELY, VISIBLE, Candidate, Round, Search
+from .candidate import Candidate
 from .fit import Fit
 from .joint import parted, together
 from .preflight import begin, first_steps
+from .rounds import Round
 from .screen import AT_THE_FLOOR
+from .search import Search
 from .staircase import Step
 from .ties import beside, overtaker
 
-MOST_EFFECTS = 4
 MOST_STEPS = 8  # that put one in, or one in the place of another
 RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
@@ -51,7 +52,7 @@ class StepwiseSelection:
         """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
         overtake, as long as anything is found."""
         for _ in range(MOST_STEPS):
-            best = self._found() if len(self.effects) - len(self.already) < MOST_EFFECTS else None
+            best = self._found() if len(self.effects) - len(self.already) < self.search.policy.most_effects else None
             if not (best and self._put_in(best)) and not self._overtaken():
                 return  # which has looked beside all
         self.beside = {effect: self._beside(effect) for effect in self.effects[len(self.already) :]}
@@ -72,13 +73,12 @@ class StepwiseSelection:
         return True
 
     def named(self) -> tuple[str, ...]:
-        """The effects that were found, without those that only help: what is surely small, and of groups those members that
-        are not as large as an effect is that is named, unless none is."""
+        """The effects that were found, without those that only help: what is likelier slight, be it of a group, unless all of
+        the group are."""
         found = [e for e in self.effects if e not in self.already]
-        small = {e for e in self.helping.intersection(found) if self.search.small(self.base, e)}
-        parts = [e for e in found if e in self.parts]
-        large = {e for e in parts if self.search.size(self.base, e) >= SURELY}
-        return tuple(e for e in found if e not in small and (e not in parts or e in large or not large))
+        large = {e for e in self.helping.union(self.parts).intersection(found) if self.search.matters(self.base, e)}
+        helping, parts = self.helping.difference(large), self.parts.difference(large)
+        return tuple(e for e in found if e not in helping and (e not in parts or not large.intersection(self.parts)))
 
     def _prune(self) -> None:
         """The model without what its last effect makes needless."""
@@ -117,8 +117,7 @@ class StepwiseSelection:
         """What a round of search finds: one effect, or a group; failing that, several of one law; failing that, one that only
         helps."""
         self.search.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
-        visible = VISIBLE if self.rounds else 0.0  # the first round may find what is small
-        now = self.search.round(self.effects, self.base, self.held, visible=visible)
+        now = self.search.round(self.effects, self.base, self.held)
         self.rounds.append(now)
         best = now.winner
         if best is not None and len(best.members) > 1:
@@ -155,7 +154,7 @@ class StepwiseSelection:
         if not joined:
             return None
         self.ladder += [Step.of(f"+{r.effects[-1]}", r.fit.evidence, r.heldout) for r in joined[1:]]
-        self.helping |= {c.effect for r in joined for c in r.candidates if c.small}
+        self.helping |= {c.effect for r in joined for c in r.candidates if not c.matters}
         self.rounds[-1:] = joined
         return joined[-1].candidates[0]
 

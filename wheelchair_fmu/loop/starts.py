@@ -80,15 +80,6 @@ def _of_each(ranked: Iterable[Outlook], kind: Callable[[Outlook], object], most:
     return found
 
 
-def visible_fall(likelihood: Likelihood, known: Evidence, names: Sequence[str], to: Outlook) -> float:
-    """Of a channel's whitened RMS in the run where it falls most, by that step; infinite where nobody can say."""
-    values = dict(zip(names, to.reached, strict=True))
-    try:
-        return known.fall_to(likelihood.restarted(likelihood.resimulated(known, values), values))
-    except SimulationError:
-        return float("inf")
-
-
 def _ranked(likelihood: Likelihood, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
     return sorted(parallel_map(lambda theta: outlook(likelihood, known, names, theta), thetas), key=_misfit)
 

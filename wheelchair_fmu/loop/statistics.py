@@ -9,11 +9,11 @@ import numpy as np
 from .chance import student
 from .fit import Fit
 from .likelihood import Evidence, block_length
+from .policy import DEFAULT, SearchPolicy
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
 ALONE = 1e-6  # of what a run decides, left to the others: it decides alone
-TIED = 9.2  # −2 log likelihood: odds of a hundred to one
 
 
 def finite(value: float) -> float | None:
@@ -127,14 +127,14 @@ def correlation_time(evidence: Evidence) -> float:
     return max(1.0, time / max(weight, 1))
 
 
-def decisive(evidence: Evidence) -> float:
-    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for odds of a hundred to one."""
-    return TIED * correlation_time(evidence)
+def decisive(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:
+    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for decisive odds."""
+    return policy.tied * correlation_time(evidence)
 
 
-def margin(evidence: Evidence) -> float:
+def margin(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:
     """The same where residuals are not as large as the noise has it: `decisive`, times their mean square."""
-    return decisive(evidence) * float(np.mean(evidence.r**2))
+    return decisive(evidence, policy) * float(np.mean(evidence.r**2))
 
 
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:

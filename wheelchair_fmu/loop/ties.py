@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..errors import SimulationError
-from .diagnose import ALIKE, SHORTLIST, VISIBLE, Candidate, Round, Search, ranked
+from .candidate import Candidate, ranked
 from .fit import Fit
 from .likelihood import Evidence
+from .rounds import Round
 from .screen import shortlist
-from .statistics import TIED, difference_blocks, resampled_totals
+from .search import ALIKE, Search
+from .statistics import difference_blocks, resampled_totals
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
@@ -33,8 +35,8 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
             continue
         ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
         behind = _behind(c, leader)
-        near = behind <= TIED or (behind - ahead / leader.scale <= TIED and c.found)
-        same = abs(ahead) < se and c.found and c.drop >= NEARLY * leader.drop
+        near = behind <= r.policy.tied or (behind - ahead / leader.scale <= r.policy.tied and c.matters)
+        same = abs(ahead) < se and c.matters and c.drop >= NEARLY * leader.drop
         if near or same:
             group.append(c.effect)
     return tuple(group)
@@ -59,11 +61,12 @@ def beside(
         return None
     screened = search.screen(base, others)
     own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
-    promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
-    tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall, visible=VISIBLE) for s in promising)
+    promising = shortlist([s for s in screened if s.score.effect != effect], search.policy.shortlist, ALIKE)
+    tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall) for s in promising)
     candidates = ranked([own, *(c for c in tried if c)])
     base = replace(base, evidence=base.evidence.summary())
-    return Round(others, base, base_held.summary(), tuple(s.score for s in screened), tuple(candidates), again=True)
+    scores = tuple(s.score for s in screened)
+    return Round(others, base, base_held.summary(), scores, tuple(candidates), again=True, policy=search.policy)
 
 
 def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:
@@ -72,7 +75,7 @@ def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> 
     then = _of(before, effect)
     near = {c.effect for c in before.candidates if c.lawful and c.drop >= HALF * then.drop}
     most = fall >= HALF * (before.fit.misfit - then.fit.misfit)
-    return most and not then.small and near.union(tied(before, effect)) <= set(effects)
+    return most and then.matters and near.union(tied(before, effect)) <= set(effects)
 
 
 def _of(r: Round, effect: str) -> Candidate:
@@ -83,7 +86,7 @@ def overtaker(r: Round, effect: str) -> Candidate | None:
     """What a search again for one effect of a model found, if it is another, with which that explains more by far."""
     ahead = r.winner
     another = r.again and ahead is not None and ahead.effect != effect
-    return ahead if another and ahead and _behind(_of(r, effect), ahead) > TIED else None
+    return ahead if another and ahead and _behind(_of(r, effect), ahead) > r.policy.tied else None
 
 
 def _behind(one: Candidate, other: Candidate) -> float:

@@ -17,32 +17,30 @@ from ..errors import SimulationError
 from ..model.stage import Effect
 from ..model.variant import Variant
 from .calibration import Calibrated, calibration, doubts
-from .diagnose import HALFWAY, HOPELESS, PROMISING, Candidate, Round, Search, at_the_floor
+from .candidate import Candidate, ranked
 from .disturbance import Strength, acting, strength
 from .experiment import Experiment, reveal, separate
-from .factory import CALIBRATED, MEASURED, ModelFactory
+from .factory import CALIBRATED, MEASURED, TOGETHER, ModelFactory
 from .fit import Fit
 from .foretold import on_led_runs, worsened
 from .interval import profile_interval
-from .joint import explains
 from .lead import lead
 from .likelihood import MASS, Evidence, NoiseModel
 from .limits import beyond
+from .policy import DEFAULT, SearchPolicy
 from .preflight import retime_by_slopes, settle_clocks
-from .probability import Belief, beliefs, shared
+from .probability import beliefs, shared
 from .relief import reliefs
-from .screen import AT_THE_FLOOR
+from .rounds import Belief, Round
+from .screen import AT_THE_FLOOR, PROMISING
+from .search import HALFWAY, HOPELESS, Search, at_the_floor
 from .selection import StepwiseSelection
 from .staircase import Step
-from .statistics import correlation_time, decisive, estimates, standard_errors
-from .ties import NEARLY, grouped, tied
+from .statistics import correlation_time, estimates, standard_errors
+from .ties import grouped, tied
 from .timing import unlike_the_others
 from .unexplained import Unexplained, unexplained
 
-ENOUGH_POWER = 0.8
-WHOLE_LIBRARY = 0.75  # share of the causes that must have been seen if they were there
-SMALL_VISIBLE = 0.005
-PLAINLY_VISIBLE = 0.06
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
 A_LITTLE = 1.06  # the same, that two models of one chair may differ by; where more is left, effects that are said to explain
@@ -129,6 +127,7 @@ def diagnose(
     experiments: Sequence[Experiment] = (),
     fixed: Iterable[str] = (),
     stepped: Callable[[Sequence[Step]], None] = lambda ladder: None,
+    policy: SearchPolicy = DEFAULT,
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
@@ -140,7 +139,7 @@ def diagnose(
     campaign = windows(campaign)
 
     factory = ModelFactory(campaign, variant or Variant(), fixed, calibrated)
-    found = _searched(Search(factory, progress), generic or {}, experiments, stepped)
+    found = _searched(Search(factory, progress, policy), generic or {}, experiments, stepped)
     found = _with_forces(found, lambda search: _searched(search, {}, experiments, stepped), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
@@ -174,7 +173,7 @@ def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Search:
     factory = found.search.factory.led(along, found.rounds[0].fit.values)
     mass = found.search.factory.likelihood().chair(found.rounds[0].fit.values)[MASS]
     factory.noise_model = forces.put_into(NoiseModel(factory.campaign.noise), mass)
-    search = Search(factory, found.search.say)
+    search = Search(factory, found.search.say, found.search.policy)
     search.notes = list(found.search.notes)
     return search
 
@@ -217,7 +216,7 @@ def _searched(
     values = calibration(search.factory.likelihood(included), proposal.fit if proposal else base)
     verdict = _verdict(search, effects, ties, rounds, proposal, ladder, base.evidence, values)
     found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
-    named = found if verdict in ("missing", "tie", "outside") else _small(rounds, verdict)
+    named = found if verdict in ("missing", "tie", "outside") else _slight(rounds[0]) if verdict == "small" else ()
     following = _next(search, verdict, groups, rounds, experiments)
     intervals = _intervals(search, included, effects, base) if proposal is None else {}
     settle_clocks(search, base.evidence, selection.held)
@@ -273,7 +272,7 @@ def _next(
         return separate(search, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments, found.effects)
     if verdict == "cannot_see":
         search.say("looking for an experiment that would show more")
-        weak = [s.effect for s in rounds[0].scores if s.power < ENOUGH_POWER]
+        weak = [s.effect for s in rounds[0].scores if s.power < search.policy.power]
         return reveal(search, rounds[0].fit, weak, experiments)
     return None
 
@@ -284,63 +283,53 @@ def _leftover(selection: StepwiseSelection, generic: Mapping[str, Effect]) -> tu
         return None, None
     search, effects, base, held, rounds = selection.search, selection.effects, selection.base, selection.held, selection.rounds
     search.say("looking for what no effect explains")
-    wider = search.factory.widened(generic)
-    generic_search = Search(wider, search.say)
-    found = effects[len(rounds[0].effects) :]
-    first = rounds[0]
-    plainly = max(decisive(base.evidence), (1 - NEARLY) * (first.fit.misfit - base.misfit))
-    asked = len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR)
-    if asked and plainly < _room(base.evidence):  # does one term do alone what these were to do, and plainly more?
+    terms = Search(search.factory.widened(generic), search.say, search.policy)
+    first, found = rounds[0], effects[len(rounds[0].effects) :]
+    if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
-        alone = generic_search.round(
-            first.effects,
-            first.fit,
-            first.heldout,
-            list(generic),
-            most=TERMS,
-            twin=1.0,
-            visible=PLAINLY_VISIBLE,
-            rival=base.misfit,
-            least=HOPELESS * promised,
-        )
-        lone = next((c for c in alone.candidates if _clear(c)), None)
-        if lone is not None and lone.fit.misfit < base.misfit - plainly:
-            return alone, lone
+        alone = _terms(terms, generic, first.effects, first.fit, first.heldout, HOPELESS * promised, base.misfit)
+        names = [n for e in found for n in search.factory.parameters(e)]
+        joint = search.judge(first.fit, first.heldout, base, held, TOGETHER.join(found), names, len(first.scores))
+        if alone.winner is not None and _likelier(alone.winner, joint, search.policy, len(first.scores)):
+            return alone, alone.winner
     if found and at_the_floor(base.evidence, held):
-        scores = (s.score for s in generic_search.screen(base, effects, list(generic)))
+        scores = (s.score for s in terms.screen(base, effects, list(generic)))
         return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
-    catalogued = max((c.drop for r in rounds if r.effects == effects for c in r.candidates if c.lawful), default=0.0)
-    better = max(catalogued + decisive(base.evidence), catalogued / NEARLY)  # than an effect too small, or not proven
-    left = generic_search.round(
-        effects,
-        base,
-        held,
-        list(generic),
-        most=TERMS,
-        visible=PLAINLY_VISIBLE,
-        twin=1.0,
-        least=max(PROMISING, HALFWAY * better),
-    )
-    terms = (c for c in left.candidates if _clear(c) and c.drop > better and (not found or explains(base, c.fit)))
-    return left, next(terms, None)
+    known = [c for r in rounds if r.effects == effects for c in r.every if c.lawful]
+    left = _terms(terms, generic, effects, base, held, HALFWAY * max((c.drop for c in known), default=0.0))
+    best = left.winner
+    if best is not None and not all(_likelier(best, c, search.policy, len(first.scores)) for c in known):
+        best = None  # an effect of the catalogue does so, be it too small to be named
+    return left, best
 
 
-def _room(left: Evidence) -> float:
-    """How far squares may fall from what is left: to the noise's, and by chance three standard deviations of these more."""
-    return float(left.r @ left.r) - len(left.r) + 3 * float(np.sqrt(2 * len(left.r)))
+def _terms(
+    search: Search,
+    generic: Mapping[str, Effect],
+    effects: tuple[str, ...],
+    base: Fit,
+    held: Evidence,
+    least: float,
+    rival: float = np.inf,
+) -> Round:
+    """A round of the generic terms beside these effects."""
+    odds, least = search.policy.generic_odds, max(PROMISING, least)
+    return search.round(effects, base, held, list(generic), most=TERMS, twin=1.0, least=least, rival=rival, odds=odds)
 
 
-def _clear(c: Candidate) -> bool:
-    """A term that nobody asked for must show more plainly than an effect of the catalogue. What size of it would be of
-    interest nobody has said."""
-    return c.proven and c.visible > PLAINLY_VISIBLE
+def _likelier(term: Candidate, other: Candidate, policy: SearchPolicy, effects: int) -> bool:
+    """Is a generic term likelier than an effect, or several, of a catalogue of so many, be these large or slight?"""
+    prior = policy.log_prior(effects)
+    both = {c.effect: c.support for c in ranked([term, other])}
+    ours, theirs = both[term.effect], both[other.effect]
+    return prior + np.log(policy.generic_odds) + ours.large > max(prior * len(other.members) + theirs.large, theirs.slight)
 
 
 def _settle(
     search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate, ladder: list[Step]
 ) -> tuple[tuple[str, ...], Candidate, list[Step]]:
     """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
-    wider = Search(search.factory.widened(generic), search.say)
+    wider = Search(search.factory.widened(generic), search.say, search.policy)
     beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
     whole = (*beside, proposal.effect)
     found, held = wider.settled(whole, proposal.fit)
@@ -376,10 +365,10 @@ def _verdict(
         return "tie" if ties else "missing"
     if _structured(left):
         return "outside"
-    if _small(rounds, "small"):
+    if _slight(rounds[0]):
         return "small"
     seen = _seen(search, rounds[0])
-    return "adequate" if share_seen(seen, search.factory.catalogue) >= WHOLE_LIBRARY else "cannot_see"
+    return "adequate" if share_seen(seen, search.factory.catalogue) >= search.policy.library else "cannot_see"
 
 
 def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:
@@ -394,11 +383,11 @@ def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> flo
 def _seen(search: Search, first: Round) -> dict[str, bool]:
     """Which effects would have been seen if they were there, but for what mass and geometry could be instead within what is
     known of them: in that case the model predicts as well without."""
-    weak = [s.effect for s in first.scores if s.power < ENOUGH_POWER]
+    weak = [s.effect for s in first.scores if s.power < search.policy.power]
     exact = replace(first.fit, names=tuple(n for n in first.fit.names if n not in MEASURED))
     again = search.screen(exact, first.effects, weak) if weak else []
     powers = {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}
-    return {effect: power >= ENOUGH_POWER for effect, power in powers.items()}
+    return {effect: power >= search.policy.power for effect, power in powers.items()}
 
 
 def insufficient(ladder: Sequence[Step]) -> bool:
@@ -416,12 +405,10 @@ def _structured(left: Evidence) -> bool:
     return correlation_time(left) > LASTING and (left.rms > MORE_THAN_NOISE or worst > FAR_OFF)
 
 
-def _small(rounds: Sequence[Round], verdict: str) -> tuple[str, ...]:
-    """Effects that are surely there, surely smaller than interesting, and just visible."""
-    if verdict != "small":
-        return ()
-    return tuple(
-        c.effect
-        for c in rounds[0].candidates
-        if c.small and c.lawful and c.p < 0.05 and c.visible > SMALL_VISIBLE and (c.gain is None or c.gain[1] > 0)
-    )
+def _slight(first: Round) -> tuple[str, ...]:
+    """Effects that are surely there and slight: the likeliest, and those that data cannot tell from it."""
+    decisive = 0.5 * first.policy.tied
+    slight = {c.effect: c.support.slight for c in first.candidates if c.lawful and not c.matters}
+    best = max(slight.values(), default=0.0)
+    sure = first.log_prior + best > decisive
+    return tuple(e for e, support in slight.items() if sure and support > best - decisive)

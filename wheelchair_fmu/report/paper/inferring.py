@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from ...campaign.channels import PUSH_NAMES
 from ...campaign.recorded import PUSHES_CLOCK
-from ...loop.diagnose import AS_LARGE, PLAIN, SIGNIFICANT, SURELY, VISIBLE
-from ...loop.likelihood import BLOCK, CASTER_SD, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
+from ...loop.likelihood import CASTER_SD, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
+from ...loop.policy import DEFAULT
 from ...loop.score import RUNS
 from ..words import listed, title_of
 from .case import OFFSET, PROFILE, Case, interval
@@ -147,27 +147,16 @@ def errors(case: Case) -> str:
 
 def search(case: Case) -> str:
     """How effects were chosen."""
-    asked = [
-        f"is significant at {SIGNIFICANT:g} after Bonferroni's correction for the number of effects",
-        "lowers the whitened root mean square (RMS) error of some channel in some run by more than "
-        f"{VISIBLE:g}, and does not raise the error as a whole",
-        f"has an estimate of at least {SURELY:g} δ ({AS_LARGE:g} δ where the error is at the noise floor without it) that is "
-        "not at a bound",
-    ]
-    if case.held:
-        asked.insert(
-            2,
-            f"predicts the held-out runs better by a 95 % interval over blocks of {BLOCK:g} s, or no worse where it is "
-            f"significant at {power(PLAIN)}",
-        )
+    held = ", and what was gained on the runs held out counts as on those fitted" if case.held else ""
     told = [
         f"The catalogue has {len(case.told['ranking'])} physical effects that the model might lack, each with a smallest "
         "interesting size δ.",
         "In each round every effect was scored from slopes, or secants where slopes mislead, with what calibration could do in "
         "its stead projected out, and the most promising were refitted together with all other values.",
-        "The likeliest of these entered the model if it "
-        + "; ".join(f"{'and ' if i == len(asked) else ''}({i}) {condition}" for i, condition in enumerate(asked, 1))
-        + ".",
+        f"Each of these has a marginal likelihood with its size normal about zero, with a standard deviation of "
+        f"{DEFAULT.large:g} δ where it is there and of {DEFAULT.slight:g} δ where it is not{held}.",
+        f"The likeliest entered the model if it was more probable that one of them is missing than that none is, where "
+        f"{DEFAULT.expected:g} effect of the catalogue was expected beforehand.",
         "Effects that a later one made needless were taken out again, and in the end each was searched for anew beside "
         "the others.",
     ]

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...campaign.channels import CHANNEL_NAMES
 from ...loop.calibration import DOUBTED
-from ...loop.marginal import LARGE, SLIGHT
+from ...loop.policy import DEFAULT
 from ..told import NAMED, Told, near_rivals
 from ..words import listed, sentence, title_of
 from .case import EFFECT, PROFILE, Case, interval
@@ -131,9 +131,9 @@ def _probability(averaged: bool) -> str:
     means = f"; those of what was found are means over resampled blocks of the runs {cite('HugginsMiller2023')}"
     return (
         f"Probabilities compare marginal likelihoods {cite('KassRaftery1995')} of an effect that is there, with a size about "
-        f"zero that has a standard deviation of {LARGE:g} δ, and of one that is not, with the slight size of {SLIGHT:g} δ that "
-        f"every chair has of everything{means if averaged else ''}. Beforehand, one effect of the catalogue was expected to be "
-        "missing."
+        f"zero that has a standard deviation of {DEFAULT.large:g} δ, and of one that is not, with the slight size of "
+        f"{DEFAULT.slight:g} δ that every chair has of everything{means if averaged else ''}. Beforehand, "
+        f"{DEFAULT.expected:g} effect of the catalogue was expected to be missing."
     )
 
 

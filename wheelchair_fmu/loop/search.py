@@ -4,35 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 
 from ..errors import SimulationError
 from ..quantities import Parameter
+from .candidate import Candidate, ranked
 from .chance import chance_beyond
-from .factory import TOGETHER
 from .fit import Fit
 from .likelihood import Evidence, Likelihood
-from .marginal import Support, support_of
+from .marginal import support_of
 from .parallel import parallel_map
-from .score import RUNS, Score
+from .rounds import Round
+from .score import RUNS
 from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, shortlist
-from .starts import Outlook, most_promising, outlook, visible_fall
-from .statistics import between_runs, correlation_time, decisive, estimates, held_out_gain, seen_directions, size_seen
+from .starts import most_promising, outlook
+from .statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
 
-SIGNIFICANT = 0.05
-VISIBLE = 0.03  # fall of the whitened RMS in the channel and run where it falls most
-PLAIN = 1e-6  # corrected p below which held-out runs need not confirm, so long as they do not contradict
-SHORTLIST = 5
 HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted,
 BESIDE = 0.5  # unless it may hope for this part of what slopes promised of the leader,
 BEYOND = 10.0  # or they say little of it, and it may do so many times what they say
-SAME = 1.002  # ratio of two RMS errors that do not differ
-NEARLY_ENOUGH = 0.7  # of the fall that is asked for, simulated
-SURELY = 0.8  # of δ, below which an effect is small
-AS_LARGE = 0.95  # the same, where a model without it leaves nothing to explain
 ALIKE = 0.9  # cosine above which a rival is refitted whatever its score
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
 STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
@@ -41,110 +33,6 @@ ENDED = 3  # refits go on to their end
 HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
 # where less is promised no refit starts, and if no size at all promises so much, refits start from
 GRID = (1.0, 2.0, 4.0)  # of δ as well
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One effect, or a group of them, added to the model at hand and refitted."""
-
-    effect: str  # or the group's name
-    fit: Fit
-    drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
-    estimate: np.ndarray
-    covariance: np.ndarray  # (k, k) of the estimate
-    between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
-    delta: np.ndarray
-    one_sided: np.ndarray  # (k,) which of its parameters may only be positive
-    dispersion: float  # mean square innovation
-    correlation: float  # samples per independent one
-    p: float
-    falls: bool  # does the RMS over all fitted runs, or over those held out, not rise?
-    visible: float  # largest fall of a channel's RMS in a run
-    gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
-    heldout: Evidence | None
-    small: bool  # surely
-    large: bool  # enough, by its estimate, to be named
-    lawful: bool
-    stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
-    beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
-
-    @property
-    def members(self) -> tuple[str, ...]:
-        """The effects that it is of."""
-        return tuple(self.effect.split(TOGETHER))
-
-    @property
-    def scale(self) -> float:
-        """−2 log likelihood that counts as one, with residuals as large and as correlated as the likeliest model leaves."""
-        dispersion, correlation = self.beside or (self.dispersion, self.correlation)
-        return dispersion * correlation
-
-    @cached_property
-    def support(self) -> Support:
-        """What bears it out, beside the model without it, and however many parameters it has."""
-        fall, ahead = max(self.drop, 0.0) * self.dispersion / self.scale, self.gain[0] / self.scale if self.gain else 0.0
-        return support_of(self.effect, self.estimate, (self.covariance, self.between), self.delta, self.one_sided, fall, ahead)
-
-    @property
-    def se(self) -> np.ndarray:
-        """Standard errors (k,)."""
-        return np.sqrt(np.maximum(np.diag(self.covariance), 0))
-
-    @property
-    def proven(self) -> bool:
-        """There, visible, and it predicts runs it has not seen."""
-        predicts = self.gain is None or self.gain[1] > 0 or (self.p < PLAIN and self.gain[2] > 0)
-        shows = self.visible > VISIBLE and self.falls
-        return self.lawful and not self.stretched and self.p < SIGNIFICANT and shows and predicts
-
-    @property
-    def found(self) -> bool:
-        """Proven, and large enough to matter."""
-        return self.proven and self.large
-
-
-def ranked(candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Candidates of one model, best first: by marginal likelihood, with residuals as the likeliest leaves them."""
-    found = list(candidates)
-    likeliest = max(found, key=lambda c: c.drop * c.dispersion, default=None)
-    if likeliest is None:
-        return []
-    beside = likeliest.dispersion, likeliest.correlation
-    return sorted((replace(c, beside=beside) for c in found), key=lambda c: -c.support.large)
-
-
-@dataclass(frozen=True)
-class Round:
-    """One round of search: the model it started from, all scores, and the refitted candidates, best first; `groups` are those
-    of several effects together. `again`: it is for what an earlier round found, beside all that was found later. `contested`:
-    it judges one effect of a group that others came near to, and nobody asked whether they do so in the place of this one."""
-
-    effects: tuple[str, ...]
-    fit: Fit
-    heldout: Evidence
-    scores: tuple[Score, ...]
-    candidates: tuple[Candidate, ...]
-    again: bool = False
-    groups: tuple[Candidate, ...] = ()
-    contested: bool = False
-
-    @property
-    def winner(self) -> Candidate | None:
-        """The best candidate found, or group of them, unless one that is not large explains the data better by far."""
-        every = sorted((*self.candidates, *self.groups), key=lambda c: -c.support.large) if self.groups else self.candidates
-        best = next((c for c in every if c.found), None)
-        if best is None:
-            return None
-        far = best.drop + decisive(best.fit.evidence)
-        better = (c for c in self.candidates if not c.large and c.lawful and c.drop > far)
-        return None if any(better) else best
-
-    @property
-    def help(self) -> Candidate | None:
-        """The best candidate proven, however small, if slopes promised about as much: a refit may owe its fall to a better
-        calibration."""
-        promised = {s.effect: s.drop for s in self.scores}
-        return next((c for c in self.candidates if c.proven and promised[c.effect] > BESIDE * c.drop), None)
 
 
 class Search(Screen):
@@ -159,15 +47,14 @@ class Search(Screen):
         tests: int,
         rival: float = math.inf,
         least: float = -math.inf,
-        visible: float = 0.0,
     ) -> Candidate | None:
         """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
-        `least`, and some channel's RMS in some run by `visible`; `rival` is the best misfit yet."""
+        `least`; `rival` is the best misfit yet."""
         w, effect = self.factory, s.score.effect
         likelihood = w.likelihood((*effects, effect))
         base, base_held = self.rival_of(effect, effects, base, base_held)
         rival = min(rival, base.misfit)  # which it has as a special case
-        starts = self._starts(likelihood, base, s, least, visible)
+        starts = self._starts(likelihood, base, s, least)
         if starts:
             self.say(f"refitting {effect}")
 
@@ -196,11 +83,10 @@ class Search(Screen):
         return self.judge(base, base_held, found, held, effect, own, tests)
 
     def _starts(
-        self, likelihood: Likelihood, base: Fit, s: Screened, least: float, visible: float
+        self, likelihood: Likelihood, base: Fit, s: Screened, least: float
     ) -> list[tuple[dict[str, float], Evidence | None]]:
-        """Where to start refits, and what is known there, where −2 log likelihood may fall by `least` and some channel's RMS
-        in some run by `visible`: a linear effect from zero, others from the most promising of several sizes: the expected
-        change, both signs of δ, and larger ones."""
+        """Where to start refits, and what is known there, where −2 log likelihood may fall by `least`: a linear effect from
+        zero, others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
         group = s.score.effect in self.factory.groups
         if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
             return []
@@ -214,12 +100,8 @@ class Search(Screen):
         if s.linear and len(calibrations) == 1:
             off = [base.values.get(n, 0.0) for n in names]
             known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
-            if known and not s.forced(visible):
-                step = outlook(likelihood, known, names, off)
-                if not self._shows(likelihood, known, names, s, step, visible):
-                    return []
             return [(dict(zip(names, off, strict=True)), known)]
-        thetas = self._sizes(likelihood, base, names, calibrations, s, least, visible)
+        thetas = self._sizes(likelihood, base, names, calibrations, s, least)
         return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
 
     def _expected(self, s: Screened) -> dict[str, float]:
@@ -236,7 +118,6 @@ class Search(Screen):
         calibrations: Sequence[Sequence[float]],
         s: Screened,
         least: float,
-        visible: float,
     ) -> list[tuple[float, ...]]:
         """The most promising calibrations and sizes of an effect together, by `names`."""
         records = [self.records[n] for n in self.factory.parameters(s.score.effect)]
@@ -250,24 +131,16 @@ class Search(Screen):
         off = [base.values.get(n, 0.0) for n in names]
         without, most = outlook(likelihood, known, names, off).misfit, np.inf
         if s.linear:
-            hopeful = (o for o in best if o.misfit <= without - HALFWAY * least)
-            return [o.theta for o in hopeful if self._shows(likelihood, known, names, s, o, visible)]
+            return [o.theta for o in best if o.misfit <= without - HALFWAY * least]
         if not (states or laws):  # with another law or more states runs may go another way altogether
             most = without - least
         if many and best:
             most = min(most, without - HALFWAY * (without - best[0].misfit))
-        found = [o.theta for o in best if o.misfit <= most and self._shows(likelihood, known, names, s, o, visible)]
-        as_expected = any(o.misfit < without - HALFWAY * s.score.drop for o in best)
-        negligible = s.negligible and as_expected
-        if states and s.nonlinear_candidate and (visible == 0 if negligible else found and not as_expected):
-            # the error may fall only close to the truth
+        found = [o.theta for o in best if o.misfit <= most]
+        negligible = s.negligible and any(o.misfit < without - HALFWAY * s.score.drop for o in best)
+        if states and s.nonlinear_candidate:  # the error may fall only close to the truth
             return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
         return [] if negligible else found
-
-    @staticmethod
-    def _shows(likelihood: Likelihood, known: Evidence, names: Sequence[str], s: Screened, to: Outlook, visible: float) -> bool:
-        """Does an effect lower some channel's RMS in some run by about so much, by a step that was simulated?"""
-        return s.forced(visible) or visible_fall(likelihood, known, names, to) > NEARLY_ENOUGH * visible
 
     def judge(
         self,
@@ -283,9 +156,7 @@ class Search(Screen):
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         lower, upper = (np.array([getattr(self.records[n], side) for n in names]) for side in ("lower", "upper"))
         one_sided, near = lower == 0, 1e-6 * delta
-        in_deltas = estimate / delta, covariance / np.outer(delta, delta)
-        along, spread = seen_directions(*in_deltas)
-        small = _small(along, spread)
+        along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
         dispersion = float(np.mean(found.evidence.r**2))
         drop, correlation = (base.misfit - found.misfit) / dispersion, correlation_time(found.evidence)
         p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
@@ -303,28 +174,21 @@ class Search(Screen):
             dispersion=dispersion,
             correlation=correlation,
             p=min(1.0, tests * p),
-            falls=found.evidence.rms < SAME * base.evidence.rms or bool(held and base_held and held.rms < base_held.rms),
-            visible=base.evidence.fall_to(found.evidence),
             gain=held_out_gain(base_held, held) if base_held and held and held.runs else None,
             heldout=held.summary() if held is not None else None,
-            small=small,
-            large=not small and size_seen(*in_deltas) >= (AS_LARGE if at_the_floor(base.evidence, base_held) else SURELY),
             lawful=not bool(np.all((estimate <= near) & one_sided)),
             stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
+            policy=self.policy,
         )
 
-    def small(self, found: Fit, effect: str) -> bool:
-        """Is an effect surely smaller than its smallest interesting size, in a fit with sensitivities?"""
-        return _small(*seen_directions(*self._in_deltas(found, effect)))
-
-    def size(self, found: Fit, effect: str) -> float:
-        """How large an effect is in such a fit, in δ; see `size_seen`."""
-        return size_seen(*self._in_deltas(found, effect))
-
-    def _in_deltas(self, found: Fit, effect: str) -> tuple[np.ndarray, np.ndarray]:
+    def matters(self, found: Fit, effect: str) -> bool:
+        """Is an effect of a fit with sensitivities likelier to be large than slight?"""
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
-        return estimate / delta, covariance / np.outer(delta, delta)
+        one_sided = np.array([self.records[n].lower == 0 for n in names])
+        between, fall = _between(found, names, covariance), self.weight(found, effect)
+        told = support_of(effect, estimate, (covariance, between), delta, one_sided, fall, 0.0, self.policy)
+        return self.policy.log_prior(len(self.factory.catalogue)) + told.large > max(0.0, told.slight)
 
     def round(
         self,
@@ -332,21 +196,20 @@ class Search(Screen):
         base: Fit,
         base_held: Evidence,
         among: Iterable[str] | None = None,
-        most: int = SHORTLIST,
-        visible: float = 0.0,
+        most: int | None = None,
         twin: float = ALIKE,
         rival: float = math.inf,
         least: float = PROMISING,
+        odds: float = 1.0,
     ) -> Round:
-        """Screen, refit the shortlist, and rank. What lowers no channel's error in a run by `visible`, or −2 log likelihood by
-        `least`, as far as slopes tell, is not refitted; what looks like the leader, by a cosine above `twin`, is, however many
-        there are; and groups of effects, where the whole catalogue is asked. `rival` is the misfit of another model to be
-        compared with."""
+        """Screen, refit the shortlist, and rank. What lowers −2 log likelihood by less than `least`, as far as slopes tell, is
+        not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are; and groups of effects,
+        where the whole catalogue is asked. `rival` is the misfit of another model to be compared with."""
         screened, joined = self.screen_groups(base, effects) if among is None else (self.screen(base, effects, among), [])
         candidates: list[Candidate] = []
         leader, hope, tests = math.inf, least, len(screened) + len(joined)
-        for s in (*shortlist([s for s in screened if not s.linear or s.shows(visible)], most, twin), *joined):
-            c = self.candidate(base, base_held, effects, s, tests, min(leader, rival), hope, visible)
+        for s in (*shortlist(screened, self.policy.shortlist if most is None else most, twin), *joined):
+            c = self.candidate(base, base_held, effects, s, tests, min(leader, rival), hope)
             if c is None:
                 continue
             candidates.append(c)
@@ -355,7 +218,8 @@ class Search(Screen):
                 hope = max(least, _hope(base.misfit - leader, s.score.drop))
         best = ranked(candidates)
         alone, groups = (tuple(c for c in best if (len(c.members) > 1) == several) for several in (False, True))
-        return Round(effects, base, base_held, tuple(s.score for s in screened), alone, groups=groups)
+        scores = tuple(s.score for s in screened)
+        return Round(effects, base, base_held, scores, alone, groups=groups, odds=odds, policy=self.policy)
 
 
 def _hope(fall: float, promised: float) -> float:
@@ -391,9 +255,3 @@ def _between(found: Fit, names: Sequence[str], otherwise: np.ndarray) -> np.ndar
 def at_the_floor(fitted: Evidence, held: Evidence | None) -> bool:
     """Does a model leave nothing to explain, on fitted and on held-out runs?"""
     return fitted.rms < AT_THE_FLOOR and (held is None or not held.runs or held.rms < AT_THE_FLOOR)
-
-
-def _small(along: np.ndarray, variance: np.ndarray) -> bool:
-    """Are all these sizes, in δ, surely below 1? Standard errors allow for noise, `SURELY` for models that mean the same by a
-    parameter and differ by a fifth."""
-    return bool(np.all(np.abs(along) + 1.96 * np.sqrt(variance) < SURELY))

@@ -1,0 +1,109 @@
+"""One round of the search: a model, what was tried beside it, and which of that is the most probable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .candidate import Candidate
+from .fit import Fit
+from .likelihood import Evidence
+from .marginal import Support
+from .policy import DEFAULT, SearchPolicy
+from .score import Score
+from .statistics import RESAMPLES, difference_blocks, resampled_totals
+
+
+@dataclass(frozen=True)
+class Belief:
+    """The probability that an effect is `there`, and that it is there and larger than δ."""
+
+    there: float
+    large: float
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round of search: the model it started from, all scores, and the refitted candidates, best first; `groups` are those
+    of several effects together. `again`: it is for what an earlier round found, beside all that was found later. `contested`:
+    it judges one effect of a group that others came near to, and nobody asked whether they do so in the place of this one.
+    `odds` are those of each of its candidates, before anything was measured, beside an effect's of the catalogue."""
+
+    effects: tuple[str, ...]
+    fit: Fit
+    heldout: Evidence
+    scores: tuple[Score, ...]
+    candidates: tuple[Candidate, ...]
+    again: bool = False
+    groups: tuple[Candidate, ...] = ()
+    contested: bool = False
+    odds: float = 1.0
+    policy: SearchPolicy = DEFAULT
+
+    @cached_property
+    def every(self) -> tuple[Candidate, ...]:
+        """Candidates and groups, best first."""
+        both = (*self.candidates, *self.groups)
+        return tuple(sorted(both, key=lambda c: -c.support.large)) if self.groups else self.candidates
+
+    @cached_property
+    def beliefs(self) -> dict[str, Belief]:
+        """Of each candidate and group."""
+        return instead(self, self.every)
+
+    @property
+    def winner(self) -> Candidate | None:
+        """The best candidate, or group of them, if it is more probable that some such thing is missing than that none is and
+        all have at most a little of everything."""
+        able = [c for c in self.every if c.possible]
+        there = sum(self.beliefs[c.effect].there for c in able)
+        return able[0] if able and there > 0.5 else None
+
+    @property
+    def help(self) -> Candidate | None:
+        """The best candidate that is slight, but surely there."""
+        able = (c for c in self.candidates if c.possible and c.support.slight + self.log_prior > 0.5 * self.policy.tied)
+        return max(able, key=lambda c: c.support.slight, default=None)
+
+    @property
+    def log_prior(self) -> float:
+        return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds))
+
+
+def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
+    """Of refitted effects, of which one is what a round's model lacks, or none: the mean of the posterior over measurements
+    resampled by blocks of time. Where no model is exact, odds between two of them owe more to chance than their likelihoods
+    say (Huggins and Miller 2023)."""
+    if not candidates:
+        return {}
+    supports = [c.support for c in candidates]
+    logs = np.array([max(0.0, *(s.slight for s in supports)), *(r.log_prior + s.large for s in supports)])
+    without, *others = _resampled(r, candidates)
+    best = max(supports, key=lambda s: s.slight)
+    logs = logs[:, None] + np.array([without * (best.left if best.slight > 0 else 1.0), *others])
+    weights = np.exp(logs - logs.max(axis=0))
+    shares = np.mean(weights / weights.sum(axis=0), axis=1)[1:]
+    return {s.effect: _belief(s, w) for s, w in zip(supports, map(float, shares), strict=True)}
+
+
+def _belief(s: Support, there: float) -> Belief:
+    return Belief(there, s.beyond * there)
+
+
+def _resampled(r: Round, candidates: Sequence[Candidate]) -> np.ndarray:
+    """By how much resampling moves the log likelihood of a round's model (first) and of each of its candidates, beside that of
+    the first candidate, (1 + m, RESAMPLES): on fitted runs and on those held out."""
+    leader = candidates[0]
+    fitted = [r.fit.evidence, *(c.fit.evidence for c in candidates)]
+    heldout = [r.heldout, *(c.heldout for c in candidates)]
+    out = np.zeros((len(fitted), RESAMPLES))
+    for of, models in ((leader.fit.evidence, fitted), (leader.heldout, heldout)):
+        if of is None or not of.runs:
+            continue
+        blocks = np.array([difference_blocks(of, m) if m is not None else 0 * difference_blocks(of, of) for m in models])
+        totals = np.array([resampled_totals(one) for one in blocks])
+        out += (totals - blocks.sum(axis=1)[:, None]) / (2 * leader.scale)
+    return out
