@@ -115,7 +115,7 @@ def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, fo
     r = Round((), NONE, Evidence((), ()), (None,) * 30, (known,))
     assert (r.winner is not None) == found
     assert (r.winner is not None) == (r.beliefs["a"].there > 0.5)
-    assert r.help is known, "however small, it is surely there"
+    assert r.slight == [known], "however small, it is surely there"
     assert replace(r, odds=1e-4).winner is None or size == 4.0
 
 
@@ -124,7 +124,7 @@ def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     slight = candidate("a", 100.0, np.array([0.2]), np.array([[0.02**2]]))
     large = candidate("b", 90.0, np.array([3.0]), np.array([[0.3**2]]))
     r = Round((), NONE, Evidence((), ()), (None,) * 30, tuple(ranked([slight, large])))
-    assert r.winner is None and r.help.effect == "a"
+    assert r.winner is None and r.slight[0].effect == "a"
     assert replace(r, candidates=(large,)).winner.effect == "b"
 
 

@@ -31,6 +31,9 @@ class SearchPolicy:
     """Odds up to which two effects are not told apart, and by which one takes another's place: what counts as decisive
     (Kass and Raftery 1995)."""
 
+    sure: float = 0.95
+    """Probability from which an effect that is slight is named: what is usual."""
+
     power: float = 0.8
     """Chance with which an effect of δ must be seen if it were there, for its absence to say anything: what studies are planned
     by (Cohen 1988)."""

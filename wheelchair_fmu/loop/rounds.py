@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy import special
 
 from .candidate import Candidate
 from .fit import Fit
@@ -63,10 +64,11 @@ class Round:
         return able[0] if able and there > 0.5 else None
 
     @property
-    def help(self) -> Candidate | None:
-        """The best candidate that is slight, but surely there."""
-        able = (c for c in self.candidates if c.possible and c.support.slight + self.log_prior > 0.5 * self.policy.tied)
-        return max(able, key=lambda c: c.support.slight, default=None)
+    def slight(self) -> list[Candidate]:
+        """Candidates of which a slight size is surely there, whatever the others do, the likeliest first."""
+        told = dict(zip((c.effect for c in self.candidates), _slightly(self), strict=True))
+        sure = (c for c in self.candidates if c.possible and told[c.effect] > self.policy.sure)
+        return sorted(sure, key=lambda c: -c.support.slight)
 
     @property
     def log_prior(self) -> float:
@@ -87,6 +89,17 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
     weights = np.exp(logs - logs.max(axis=0))
     shares = np.mean(weights / weights.sum(axis=0), axis=1)[1:]
     return {s.effect: _belief(s, w) for s, w in zip(supports, map(float, shares), strict=True)}
+
+
+def _slightly(r: Round) -> np.ndarray:
+    """(m,) probabilities that a slight size of each candidate is there, beside nothing; means as `instead`'s."""
+    if not r.candidates:
+        return np.empty(0)
+    supports = [c.support for c in r.candidates]
+    without, *others = _resampled(r, r.candidates)
+    changes = [(1 - s.left) * (other - without) for s, other in zip(supports, others, strict=True)]
+    logs = np.array([s.slight for s in supports])[:, None] + np.array(changes) + r.log_prior
+    return np.mean(special.expit(logs), axis=1)
 
 
 def _belief(s: Support, there: float) -> Belief:

@@ -124,9 +124,9 @@ class StepwiseSelection:
             best = self._parted(now, best) or replace(now, groups=()).winner
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
             best = self._together(now)
-        if best is None and self.ladder[-1].fit > AT_THE_FLOOR and now.help:
-            best = now.help
-            self.helping.add(best.effect)
+        if best is None and self.ladder[-1].fit > AT_THE_FLOOR:
+            best = next(iter(now.slight), None)
+            self.helping |= {best.effect} if best else set()
         return best
 
     def _parted(self, now: Round, group: Candidate) -> Candidate | None:

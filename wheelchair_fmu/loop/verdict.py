@@ -407,8 +407,5 @@ def _structured(left: Evidence) -> bool:
 
 def _slight(first: Round) -> tuple[str, ...]:
     """Effects that are surely there and slight: the likeliest, and those that data cannot tell from it."""
-    decisive = 0.5 * first.policy.tied
-    slight = {c.effect: c.support.slight for c in first.candidates if c.lawful and not c.matters}
-    best = max(slight.values(), default=0.0)
-    sure = first.log_prior + best > decisive
-    return tuple(e for e, support in slight.items() if sure and support > best - decisive)
+    small = [c for c in first.slight if not c.matters]
+    return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
