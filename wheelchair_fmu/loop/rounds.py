@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from scipy import special
 
-from .candidate import Candidate
+from .candidate import Candidate, ranked
 from .fit import Fit
 from .likelihood import Evidence
 from .marginal import Support
@@ -54,6 +54,13 @@ class Round:
     def beliefs(self) -> dict[str, Belief]:
         """Of each candidate and group."""
         return instead(self, self.every)
+
+    def decided_by(self, policy: SearchPolicy) -> Round:
+        """The same round, as another policy judges what was tried."""
+        candidates, groups = (
+            tuple(ranked(replace(c, policy=policy) for c in which)) for which in (self.candidates, self.groups)
+        )
+        return replace(self, policy=policy, candidates=candidates, groups=groups)
 
     @property
     def winner(self) -> Candidate | None:

@@ -188,7 +188,7 @@ class Search(Screen):
         one_sided = np.array([self.records[n].lower == 0 for n in names])
         between, fall = _between(found, names, covariance), self.weight(found, effect)
         told = support_of(effect, estimate, (covariance, between), delta, one_sided, fall, 0.0, self.policy)
-        return self.policy.log_prior(len(self.factory.catalogue)) + told.large > max(0.0, told.slight)
+        return told.large > max(0.0, told.slight)
 
     def round(
         self,

@@ -155,7 +155,7 @@ class StepwiseSelection:
             return None
         self.ladder += [Step.of(f"+{r.effects[-1]}", r.fit.evidence, r.heldout) for r in joined[1:]]
         self.helping |= {c.effect for r in joined for c in r.candidates if not c.matters}
-        self.rounds[-1:] = joined
+        self.rounds += joined
         return joined[-1].candidates[0]
 
     def _step(self) -> None:

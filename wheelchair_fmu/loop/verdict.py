@@ -56,13 +56,14 @@ LASTING = 2.0  # that is no noise where so many samples are alike
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything `diagnose` says. `already` are the effects that the variant came with, `rounds` the rounds of the search,
-    `beside` those that judge an effect beside all others, for those that do not stand without, `proposal` the generic term of
-    "outside", `calibration` what became of given values, `intervals` the profile-likelihood intervals of what was found."""
+    """Everything `diagnose` says. `included` are the effects of the model in the end, of which the variant came with `already`,
+    `rounds` the rounds of the search, `beside` those that judge an effect beside all others, for those that do not stand
+    without, `proposal` the generic term of "outside", `calibration` what became of given values, `intervals` the profile-likelihood intervals of what was found."""
 
     campaign: str
     verdict: str
     effects: tuple[str, ...]
+    included: tuple[str, ...]
     already: tuple[str, ...]
     ties: tuple[tuple[str, ...], ...]
     ladder: tuple[Step, ...]
@@ -106,15 +107,6 @@ class Diagnosis:
         again = (r for r in self.beside if {*r.effects, effect} == set(self.included) and effect not in r.effects)
         first = (r for r in reversed(self.rounds) if effect not in r.effects and any(c.effect == effect for c in r.candidates))
         return next(again, None) or next(first)
-
-    @property
-    def included(self) -> tuple[str, ...]:
-        """The effects that `final`, or the proposal's fit, has in it."""
-        return tuple(
-            step.name[1:]
-            for step in self.ladder
-            if step.name.startswith("+") and not (self.proposal and step.name[1:] == self.proposal.effect)
-        )
 
 
 @threadpool_limits.wrap(limits=1)  # runs are what is shared among the cores; BLAS threads would only wait for one another
@@ -229,6 +221,7 @@ def _searched(
         campaign.name,
         verdict,
         tuple(named),
+        tuple(included),
         selection.already,
         ties,
         tuple(ladder),
