@@ -15,12 +15,13 @@ from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.loop.bootstrap import bootstrap
 from wheelchair_fmu.loop.factory import MEASURED, ModelFactory
 from wheelchair_fmu.loop.interval import half_width
+from wheelchair_fmu.loop.policy import DEFAULT
 from wheelchair_fmu.loop.preflight import begin
 from wheelchair_fmu.loop.ranking import as_json
 from wheelchair_fmu.loop.rounds import Round
 from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.loop.staircase import Step
-from wheelchair_fmu.loop.statistics import sandwich
+from wheelchair_fmu.loop.statistics import correlation_time, sandwich
 from wheelchair_fmu.loop.verdict import Diagnosis, _structured, diagnose, insufficient, share_seen
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
@@ -79,7 +80,9 @@ def test_lasting_structure_is_no_noise(sampled):
     """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
     before = ModelFactory(sampled.search.factory.campaign, Variant()).likelihood()
     calibrated = before.evidence(sampled.search.factory.campaign.fit, sampled.rounds[0].fit.values)
-    assert _structured(calibrated) and not _structured(sampled.final.evidence)
+    final = sampled.final.evidence
+    assert _structured(calibrated, DEFAULT) and correlation_time(calibrated) > DEFAULT.lasting
+    assert not _structured(final, DEFAULT) and correlation_time(final) < DEFAULT.lasting
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,23 @@ class SearchPolicy:
     )
     library: float = _number(0.75, 0.65, 0.85, "share of the catalogue's causes that must be seen so, in an adequate model")
     most_effects: int = 4  # that are put in: whoever lacks more needs another model
-    shortlist: int = 5  # effects that are refitted in a round, by what slopes and secants promise of them: it costs time
+    unexplained: float = _number(
+        1.3, 1.2, 1.4, "whitened RMS error, fitted and held out, that no adequate model leaves, whatever was found"
+    )
+    a_little: float = _number(
+        1.06, 1.04, 1.08, "whitened RMS error by which two models of one chair differ, with other tyres and other casters"
+    )
+    rest: float = _number(
+        0.2,
+        0.15,
+        0.25,
+        "share of the mean square above the noise that what was found may leave, where that is more than a little",
+    )
+    structured: float = _number(
+        1.1, 1.08, 1.15, "whitened RMS error that is no noise where nothing was found and residuals last"
+    )
+    far_off: float = _number(2.0, 1.7, 2.5, "the same, of one channel in one run")
+    lasting: float = _number(2.0, 1.6, 2.5, "samples that are worth an independent one, from which residuals count as lasting")
 
     @property
     def tied(self) -> float:

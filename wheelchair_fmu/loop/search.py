@@ -22,6 +22,7 @@ from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, s
 from .starts import most_promising, outlook
 from .statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
 
+SHORTLIST = 5  # effects that are refitted in a round, by what slopes and secants promise of them
 HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted,
 BESIDE = 0.5  # unless it may hope for this part of what slopes promised of the leader,
 BEYOND = 10.0  # or they say little of it, and it may do so many times what they say
@@ -196,7 +197,7 @@ class Search(Screen):
         base: Fit,
         base_held: Evidence,
         among: Iterable[str] | None = None,
-        most: int | None = None,
+        most: int = SHORTLIST,
         twin: float = ALIKE,
         rival: float = math.inf,
         least: float = PROMISING,
@@ -208,7 +209,7 @@ class Search(Screen):
         screened, joined = self.screen_groups(base, effects) if among is None else (self.screen(base, effects, among), [])
         candidates: list[Candidate] = []
         leader, hope, tests = math.inf, least, len(screened) + len(joined)
-        for s in (*shortlist(screened, self.policy.shortlist if most is None else most, twin), *joined):
+        for s in (*shortlist(screened, most, twin), *joined):
             c = self.candidate(base, base_held, effects, s, tests, min(leader, rival), hope)
             if c is None:
                 continue

@@ -12,7 +12,7 @@ from .fit import Fit
 from .likelihood import Evidence
 from .rounds import Round
 from .screen import shortlist
-from .search import ALIKE, Search
+from .search import ALIKE, SHORTLIST, Search
 from .statistics import difference_blocks, resampled_totals
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
@@ -61,7 +61,7 @@ def beside(
         return None
     screened = search.screen(base, others)
     own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
-    promising = shortlist([s for s in screened if s.score.effect != effect], search.policy.shortlist, ALIKE)
+    promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
     tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall) for s in promising)
     candidates = ranked([own, *(c for c in tried if c)])
     base = replace(base, evidence=base.evidence.summary())

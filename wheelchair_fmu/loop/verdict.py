@@ -42,23 +42,18 @@ from .timing import unlike_the_others
 from .unexplained import Unexplained, unexplained
 
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
-UNEXPLAINED = 1.3  # whitened RMS error, fitted and held out, that no adequate model leaves
-A_LITTLE = 1.06  # the same, that two models of one chair may differ by; where more is left, effects that are said to explain
-REST = 0.15  # what calibration left may leave this much of its mean square error above the noise
-HARDLY = 1.04  # the same, where they explain next to nothing: they leave
-NEXT_TO_ALL = 0.9  # of it
-FORETOLD_BADLY, OF_WHAT_WAS = 1.2, 0.2  # the same two on held-out runs alone, to which nothing was fitted
 NORMAL = 1.96  # standard errors either side that hold 95 %
 FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
-MORE_THAN_NOISE, FAR_OFF = 1.1, 2.0  # whitened RMS error, of fitted runs, and of one channel in one of them,
-LASTING = 2.0  # that is no noise where so many samples are alike
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """Everything `diagnose` says. `included` are the effects of the model in the end, of which the variant came with `already`,
-    `rounds` the rounds of the search, `beside` those that judge an effect beside all others, for those that do not stand
-    without, `proposal` the generic term of "outside", `calibration` what became of given values, `intervals` the profile-likelihood intervals of what was found."""
+    """Everything `diagnose` says.
+
+    `included` are the effects of the model in the end, of which the variant came with `already`; `rounds` those of the search,
+    `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
+    "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood.
+    """
 
     campaign: str
     verdict: str
@@ -143,7 +138,7 @@ def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Ca
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
     before, along = _acting(found, (), found.rounds[0].fit)
-    if found.verdict != "outside" or found.ladder[-1].left < A_LITTLE or not before.fall:
+    if found.verdict != "outside" or found.ladder[-1].left < found.search.policy.a_little or not before.fall:
         return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
     say("searching again, with forces that nobody recorded")
     try:
@@ -350,13 +345,14 @@ def _verdict(
     # a body that swings with the pushes, and that nobody recorded, answers them as another mass would
     swings = search.factory.noise_model.body > 0
     strained = [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
-    if proposal is not None or ladder[-1].left > UNEXPLAINED or strained:
+    if proposal is not None or ladder[-1].left > search.policy.unexplained or strained:
         return "outside"
-    if effects and not search.factory.leads and insufficient(ladder) and correlation_time(left) > LASTING:
+    lasting = correlation_time(left) > search.policy.lasting
+    if effects and not search.factory.leads and insufficient(ladder, search.policy) and lasting:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
-    if _structured(left):
+    if lasting and _structured(left, search.policy):
         return "outside"
     if _slight(rounds[0]):
         return "small"
@@ -383,19 +379,19 @@ def _seen(search: Search, first: Round) -> dict[str, bool]:
     return {effect: power >= search.policy.power for effect, power in powers.items()}
 
 
-def insufficient(ladder: Sequence[Step]) -> bool:
-    """Does the model at the top of a staircase leave much, or more than a little of what calibration did, or next to all?"""
-    top, calibrated, held = ladder[-1].left, ladder[1].left, ladder[-1].heldout
-    if held > FORETOLD_BADLY and held**2 - 1 > OF_WHAT_WAS * (ladder[1].heldout ** 2 - 1):
-        return True
-    most = next((share for least, share in ((A_LITTLE, REST), (HARDLY, NEXT_TO_ALL)) if top > least), np.inf)
-    return top > UNEXPLAINED or top**2 - 1 > most * (calibrated**2 - 1)
+def insufficient(ladder: Sequence[Step], policy: SearchPolicy = DEFAULT) -> bool:
+    """Does the model at the top of a staircase leave much, or, on fitted or on held-out runs, more than a little and too large
+    a share of what calibration left above the noise?"""
+    top, calibrated = ladder[-1], ladder[1]
+    sides = ((top.fit, calibrated.fit), (top.heldout, calibrated.heldout))
+    rests = (after > policy.a_little and after**2 - 1 > policy.rest * (before**2 - 1) for after, before in sides)
+    return top.left > policy.unexplained or any(rests)
 
 
-def _structured(left: Evidence) -> bool:
-    """Is there more left than noise accounts for, over all or in one channel of one run, and alike from sample to sample?"""
+def _structured(left: Evidence, policy: SearchPolicy) -> bool:
+    """Is there more left than noise accounts for, over all or in one channel of one run?"""
     worst = max((rms for row in left.table().values() for rms in row.values()), default=0.0)
-    return correlation_time(left) > LASTING and (left.rms > MORE_THAN_NOISE or worst > FAR_OFF)
+    return left.rms > policy.structured or worst > policy.far_off
 
 
 def _slight(first: Round) -> tuple[str, ...]:

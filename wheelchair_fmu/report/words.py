@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..loop.policy import DEFAULT
 from ..loop.ties import grouped
-from ..loop.verdict import A_LITTLE
 from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
@@ -34,7 +34,7 @@ def outside(diagnosis: Mapping[str, Any]) -> str:
     """What "outside" means here: an error that nothing brings down, or one that only values bring down that nobody measured."""
     bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
     last, left = diagnosis["ladder"][-1], (diagnosis.get("leftover") or {}).get("proposal")
-    if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > A_LITTLE:
+    if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > DEFAULT.a_little:
         return "Something is left that no effect in the catalogue explains."
     return (
         f"The error comes down to the noise only with {listed(bent, 'and')} as nobody would have measured it: "
