@@ -18,6 +18,7 @@ import numpy as np
 from scipy import special
 
 from .policy import DEFAULT, SearchPolicy
+from .score import Score
 from .statistics import seen_axes
 
 DRAWS = 4000  # of a size, from its posterior
@@ -101,3 +102,9 @@ def squared(estimate: np.ndarray, covariance: np.ndarray) -> float:
     """Of an estimate, in standard errors, along the directions that the data see."""
     axes, spread = seen_axes(covariance)
     return float(np.sum((axes.T @ estimate) ** 2 / spread))
+
+
+def of_score(s: Score, lawful: np.ndarray, policy: SearchPolicy) -> Support:
+    """Support of an effect that was not refitted, by its slope."""
+    estimate = s.estimate / s.delta
+    return support(s.effect, estimate, s.covariance, lawful, squared(estimate, s.covariance), policy=policy)

@@ -12,10 +12,8 @@ from math import exp
 import numpy as np
 
 from .candidate import Candidate, ranked
-from .marginal import Support, squared, support
-from .policy import SearchPolicy
+from .marginal import of_score
 from .rounds import Belief, Round, instead
-from .score import Score
 from .statistics import cosines
 
 MOST = 500.0  # log odds that are told apart
@@ -62,9 +60,3 @@ def beside(r: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
     np.fill_diagonal(alike, 1.0)
     there = odds / (1 + alike @ np.array(odds))
     return {s.effect: Belief(p, s.beyond * p) for s, p in zip(supports, map(float, there), strict=True)}
-
-
-def of_score(s: Score, lawful: np.ndarray, policy: SearchPolicy) -> Support:
-    """Support of an effect that was not refitted, by its slope."""
-    estimate = s.estimate / s.delta
-    return support(s.effect, estimate, s.covariance, lawful, squared(estimate, s.covariance), policy=policy)

@@ -14,7 +14,7 @@ from .candidate import Candidate, ranked
 from .chance import chance_beyond
 from .fit import Fit
 from .likelihood import Evidence, Likelihood
-from .marginal import support_of
+from .marginal import of_score, support_of
 from .parallel import parallel_map
 from .rounds import Round
 from .score import RUNS
@@ -143,6 +143,15 @@ class Search(Screen):
             return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
         return [] if negligible else found
 
+    def _hopeful(self, s: Screened, effects: int, odds: float) -> bool:
+        """May a refit find that an effect is there, large or slight, as far as slopes tell, which is nearly all of it where it
+        is linear, or where forces make up for the rest?"""
+        if not (s.linear or self.factory.leads):
+            return True
+        one_sided = np.array([self.records[n].lower == 0 for n in s.score.names])
+        told = of_score(s.score, one_sided, self.policy)
+        return self.policy.log_prior(effects) + float(np.log(odds)) + max(told.large, told.slight) > -0.25 * self.policy.tied
+
     def judge(
         self,
         base: Fit,
@@ -209,7 +218,8 @@ class Search(Screen):
         screened, joined = self.screen_groups(base, effects) if among is None else (self.screen(base, effects, among), [])
         candidates: list[Candidate] = []
         leader, hope, tests = math.inf, least, len(screened) + len(joined)
-        for s in (*shortlist(screened, most, twin), *joined):
+        likely = [s for s in screened if self._hopeful(s, len(screened), odds)]
+        for s in (*shortlist(likely, most, twin), *joined):
             c = self.candidate(base, base_held, effects, s, tests, min(leader, rival), hope)
             if c is None:
                 continue
