@@ -67,13 +67,21 @@ def test_errors_of_scales_and_tape_are_no_effect(tmp_path):
     assert values["chair.t_r"].value == pytest.approx(true.t_r, abs=0.004)
 
 
-def test_a_gyro_is_not_told_from_a_tread_that_is_a_little_off(tmp_path):
-    """3 % of a gyro's scale is 16 mm of tread, which no tape excludes: nothing is called missing, and the gyro comes first."""
+def test_a_gyro_is_told_from_a_tread_that_is_a_little_off(tmp_path):
+    """3 % of a gyro's scale is 16 mm of tread, which no tape excludes; but how wheel speeds and slips go together is not."""
     found = diagnose(read(make(tmp_path / "c", {"gyro_scale": {"k": 0.03}}, seed=1)))
-    assert found.verdict in ("adequate", "cannot_see") and found.effects == ()
-    assert max(found.rounds[0].scores, key=lambda s: s.drop).effect == "gyro_scale"
+    assert found.verdict == "missing" and found.effects == ("gyro_scale",)
     values = {c.record.name: c for c in found.calibration}
-    assert abs(values["chair.t_r"].value - 0.55) > 0.01
+    assert abs(found.rounds[0].fit.values["chair.t_r"] - 0.55) > 0.01 > abs(values["chair.t_r"].value - 0.55)
+
+
+def test_a_tread_that_is_a_little_off_is_no_gyro(tmp_path):
+    """15 mm of tread, which is 2.7 % of a gyro's scale: the tread itself says so, and nothing is missing."""
+    campaign = read(make(tmp_path / "c", {}, seed=1))
+    found = diagnose(replace(campaign, known={**campaign.known, "chair.t_r": 0.565}))
+    assert found.verdict in ("adequate", "cannot_see", "small") and "gyro_scale" not in found.effects
+    values = {c.record.name: c for c in found.calibration}
+    assert values["chair.t_r"].value == pytest.approx(0.55, abs=0.004)
 
 
 def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):

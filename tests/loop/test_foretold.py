@@ -67,14 +67,14 @@ def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
         ({"a": 2.0, "b": 0.6}, (), ("a", "b"), ("a",)),  # of a group, what is large
         ({"a": 0.6, "b": 0.6}, (), ("a", "b"), ("a", "b")),  # which is large together
         ({"a": 2.0, "b": 0.6}, (), (), ("a", "b")),  # none of a group: found by itself
-        ({"a": 2.0, "b": 0.1}, ("b",), (), ("a",)),  # surely small
-        ({"a": 2.0, "b": 0.6}, ("b",), (), ("a", "b")),  # helped, and is perhaps not small
+        ({"a": 2.0, "b": 0.6}, ("b",), (), ("a",)),  # slight
+        ({"a": 2.0, "b": 0.8}, ("b",), (), ("a", "b")),  # helped, and is large beside the others
     ],
 )
 def test_what_is_named_of_what_is_in_a_model(sizes, helping, parts, expected):
     selection = object.__new__(StepwiseSelection)
     selection.__dict__ |= {
-        "search": Some(small=lambda base, e: sizes[e] < 0.3, size=lambda base, e: sizes[e]),
+        "search": Some(matters=lambda base, e: sizes[e] > 0.7),
         "effects": ("old", *sizes),
         "already": ("old",),
         "base": None,

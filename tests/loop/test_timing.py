@@ -68,7 +68,7 @@ def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):
     """`--fix effect.push_force_delay.tau`."""
     search = Search(ModelFactory(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
     base, *_ = search.calibrate()
-    assert not retime_by_slopes(search, (), base) and search.retimed == {}
+    assert not retime_by_slopes(search, (), (), base) and search.retimed == {}
 
 
 def test_a_delay_that_all_runs_share_is_no_clock(sample):

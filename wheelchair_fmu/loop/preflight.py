@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 
 import numpy as np
 
@@ -57,13 +57,16 @@ def _begin_led(search: Search) -> tuple[Fit, Evidence, list[Step]]:
     return base, held, ladder
 
 
-def retime_by_slopes(search: Search, effects: Sequence[str], base: Fit) -> bool:
+def retime_by_slopes(search: Search, effects: Sequence[str], named: Container[str], base: Fit) -> bool:
     """Read the pushes in time of the runs that the model with these effects shows to be a little early or late; are there any?
-    Not while a delay of all pushes is in it, or nobody is to estimate one."""
+    Not while a delay of all pushes is `named`, or nobody is to estimate one; one that only helps may come of a single run's."""
     w = search.factory
     delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
-    if not name or delay in effects or w.leads:
+    if not name or delay in named or w.leads:
         return False
+    if delay in effects:
+        effects = [e for e in effects if e != delay]
+        base = search.refit(effects, base.values)
     likelihood, theta = w.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
     prior = Problem(likelihood, base.names).prior
     evidence = likelihood.evidence(w.campaign.runs, base.values, (*base.names, name))

@@ -188,7 +188,7 @@ def _searched(
     campaign = search.factory.campaign
     selection = StepwiseSelection(search, stepped)
     selection.to_the_top()
-    if retime_by_slopes(search, selection.effects, selection.base):
+    if retime_by_slopes(search, selection.effects, (*selection.named(), *selection.already), selection.base):
         selection = StepwiseSelection(search, stepped)
         selection.to_the_top()
     leftover, proposal = _leftover(selection, generic)
