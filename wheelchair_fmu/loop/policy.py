@@ -6,13 +6,16 @@ ends of its range, and counts the answers that change.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from math import log
 
 
 def _number(value: float, low: float, high: float, reason: str) -> float:
     """A field with the range in which it was tried, and why it is what it is."""
     return field(default=value, metadata={"range": (low, high), "reason": reason})
+
+
+NOTHING = 1e-3  # δ, as good as nothing
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class SearchPolicy:
         300.0,
         "odds up to which effects are not told apart, and by which one takes another's place: decisive (Kass and Raftery 1995)",
     )
-    sure: float = _number(0.95, 0.9, 0.99, "probability from which a slight effect is named: what is usual")
+    sure: float = _number(0.95, 0.9, 0.99, "probability that an effect is there, large or slight, from which it is named")
     power: float = _number(
         0.8, 0.7, 0.9, "chance with which an effect of δ must be seen, for its absence to say anything (Cohen 1988)"
     )
@@ -62,6 +65,11 @@ class SearchPolicy:
     )
     far_off: float = _number(2.0, 1.7, 2.5, "the same, of one channel in one run")
     lasting: float = _number(2.0, 1.6, 2.5, "samples that are worth an independent one, from which residuals count as lasting")
+
+    @property
+    def of_terms(self) -> SearchPolicy:
+        """The same for generic terms, of which nobody has said what size is slight."""
+        return replace(self, slight=NOTHING)
 
     @property
     def tied(self) -> float:

@@ -62,19 +62,23 @@ class Round:
         )
         return replace(self, policy=policy, candidates=candidates, groups=groups)
 
+    @cached_property
+    def present(self) -> dict[str, float]:
+        """Of each candidate and group, the probability that it is there, large or slight, beside nothing."""
+        return dict(zip((c.effect for c in self.every), map(float, _present(self, self.every)), strict=True))
+
     @property
     def winner(self) -> Candidate | None:
-        """The best candidate, or group of them, if it is more probable that some such thing is missing than that none is and
-        all have at most a little of everything."""
+        """The best candidate, or group of them, if it is surely there, and it is more probable that some such thing is missing
+        than that all have at most a little of everything."""
         able = [c for c in self.every if c.possible]
-        there = sum(self.beliefs[c.effect].there for c in able)
-        return able[0] if able and there > 0.5 else None
+        large = sum(self.beliefs[c.effect].there for c in able) > 0.5
+        return able[0] if able and large and self.present[able[0].effect] > self.policy.sure else None
 
     @property
     def slight(self) -> list[Candidate]:
-        """Candidates of which a slight size is surely there, whatever the others do, the likeliest first."""
-        told = dict(zip((c.effect for c in self.candidates), _slightly(self), strict=True))
-        sure = (c for c in self.candidates if c.possible and told[c.effect] > self.policy.sure)
+        """Candidates that are surely there, be they slight, the likeliest first."""
+        sure = (c for c in self.candidates if c.possible and self.present[c.effect] > self.policy.sure)
         return sorted(sure, key=lambda c: -c.support.slight)
 
     @property
@@ -98,14 +102,15 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
     return {s.effect: _belief(s, w) for s, w in zip(supports, map(float, shares), strict=True)}
 
 
-def _slightly(r: Round) -> np.ndarray:
-    """(m,) probabilities that a slight size of each candidate is there, beside nothing; means as `instead`'s."""
-    if not r.candidates:
+def _present(r: Round, candidates: Sequence[Candidate]) -> np.ndarray:
+    """(m,) probabilities that each candidate is there at any size, beside nothing; means as `instead`'s."""
+    if not candidates:
         return np.empty(0)
-    supports = [c.support for c in r.candidates]
-    without, *others = _resampled(r, r.candidates)
-    changes = [(1 - s.left) * (other - without) for s, other in zip(supports, others, strict=True)]
-    logs = np.array([s.slight for s in supports])[:, None] + np.array(changes) + r.log_prior
+    supports = [c.support for c in candidates]
+    without, *others = _resampled(r, candidates)
+    moved = np.array(others) - without
+    large, slight, left = (np.array([getattr(s, what) for s in supports])[:, None] for what in ("large", "slight", "left"))
+    logs = np.logaddexp(large + moved, slight + (1 - left) * moved) + r.log_prior
     return np.mean(special.expit(logs), axis=1)
 
 

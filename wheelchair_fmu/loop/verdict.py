@@ -271,7 +271,7 @@ def _leftover(selection: StepwiseSelection, generic: Mapping[str, Effect]) -> tu
         return None, None
     search, effects, base, held, rounds = selection.search, selection.effects, selection.base, selection.held, selection.rounds
     search.say("looking for what no effect explains")
-    terms = Search(search.factory.widened(generic), search.say, search.policy)
+    terms = Search(search.factory.widened(generic), search.say, search.policy.of_terms)
     first, found = rounds[0], effects[len(rounds[0].effects) :]
     if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
