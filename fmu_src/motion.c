@@ -8,7 +8,7 @@
 static const char *why(wc_status status) {
     switch (status) {
     case WC_NOT_FINITE: return "the equations give NaN or infinity";
-    case WC_STEP_TOO_SMALL: return "no internal step is short enough for the tolerance";
+    case WC_STEP_TOO_SMALL: return "no internal step is short enough for the tolerance, or too many would be needed";
     default: return "the algebraic equations have no solution nearby";
     }
 }

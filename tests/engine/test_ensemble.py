@@ -105,6 +105,14 @@ def test_chairs_that_cannot_go_on_leave_the_others_alone():
         assert error == str(alone.value) and np.isnan(found.results[i]).all()
 
 
+def test_chairs_that_would_take_hours_are_refused_as_alone():
+    simulator, t, w, p = case(Variant(), "slalom", np.random.default_rng(4))
+    found = Ensemble(simulator, NAMES).run(t, w, p, tolerance=1e-30)
+    with pytest.raises(SimulationError, match="too many would have been needed") as alone:
+        simulator.run(t, w, p[0], tolerance=1e-30)
+    assert found.errors[0] == str(alone.value) and None not in found.errors
+
+
 def test_a_compiler_without_vectors_simulates_one_by_one(monkeypatch, caplog):
     simulator, t, w, p = case(Variant(), "slalom", np.random.default_rng(5))
     t, w = t[:200], w[:200]

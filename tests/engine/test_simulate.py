@@ -156,6 +156,16 @@ def test_not_a_number_is_said_with_its_time():
         simulator.run(t, w)
 
 
+def test_what_would_take_hours_is_refused():
+    """A tolerance that asks for steps of some 1e-11 s: a thousand times as many as the next run takes in a tenth of a second."""
+    simulator = Simulator()
+    t = np.linspace(0, 0.2, 3)
+    w = simulator.inputs(len(t), {"push.F_rl": 10.0, "push.F_rr": -9.0})
+    assert simulator.run(t, w, tolerance=1e-18).steps > 1e4
+    with pytest.raises(SimulationError, match=r"stops at t = 0 s: .*too many would have been needed"):
+        simulator.run(t, w, tolerance=1e-30)
+
+
 @pytest.mark.parametrize(("name", "effects", "size"), [("plain", "none", 0), ("plain", "all", 1), ("bare", "all", 0)])
 def test_shorter_steps_are_the_step_on_a_level_floor_with_open_brakes(name, effects, size):
     """And the bare one, with all effects off besides."""

@@ -16,7 +16,7 @@ from . import cache
 
 WHY = {
     1: "the equations gave NaN or infinity",
-    2: "no step was short enough for the tolerance",
+    2: "no step was short enough for the tolerance, or too many would have been needed",
     3: "the algebraic equations have no solution nearby",
 }
 

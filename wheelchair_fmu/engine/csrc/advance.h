@@ -32,7 +32,7 @@ typedef struct {
 typedef enum {
     WC_OK = 0,
     WC_NOT_FINITE = 1,    /* the model's equations gave NaN or infinity */
-    WC_STEP_TOO_SMALL = 2, /* the error test failed at every step down to WC_SHORTEST */
+    WC_STEP_TOO_SMALL = 2, /* the error test failed at every step down to WC_SHORTEST, or wc_most_tries were not enough */
     WC_NOT_CONSISTENT = 3  /* Newton's method did not put the algebraic rows right */
 } wc_status;
 
@@ -41,6 +41,10 @@ typedef struct {
     double grid;      /* > 0: no step crosses a multiple of this, and none remembers the last; where a whole cell is no step
                          * within the tolerance, algebraic rows are put right at its end and not tested on the way */
 } wc_accuracy;
+
+/* Steps that may be tried in a stretch of this length (s). No chair needs as many; without a limit, parameters that ask for
+ * steps of a nanosecond would keep whoever called for hours. */
+static inline long wc_most_tries(double length) { return length < 1e6 ? 2000 + (long)(5e5 * length) : 500000000000; }
 
 /* States at the start for parameters p and inputs w, algebraic ones in place. */
 WC_LOCAL wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x);

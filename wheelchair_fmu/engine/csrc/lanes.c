@@ -28,6 +28,7 @@ typedef struct {
     long chair;         /* below zero: nobody */
     long from, to, row; /* rows between which the inputs now go straight, and the next one to fill */
     double done, length, h, now; /* of the time between them; the step to try next, and the one that is tried */
+    long tries;         /* steps that were tried there */
     double *rows;       /* states x padded */
 } rider;
 
@@ -69,6 +70,7 @@ static void turn(carriage *a, int e, long row) {
     r->to = c->ends[row];
     r->row = row + 1;
     r->done = 0;
+    r->tries = 0;
     r->length = c->t[r->to] - c->t[row];
     for (int m = 0; m < c->movings; m++) {
         int q = c->moving[m];
@@ -185,13 +187,14 @@ static int go_on(carriage *a, int e, int accepted, double factor, double error) 
     const course *c = a->c;
     rider *r = a->riders + e;
     long chair = r->chair;
-    if (!accepted) {
-        a->status[chair] = refuse(r, factor, error);
-        if (a->status[chair] == WC_OK) return 1;
+    if (accepted) accept(r, factor);
+    else a->status[chair] = refuse(r, factor, error);
+    if (a->status[chair] == WC_OK && r->done < r->length && ++r->tries >= wc_most_tries(r->length))
+        a->status[chair] = WC_STEP_TOO_SMALL;
+    if (a->status[chair] != WC_OK) {
         a->reached[chair] = r->from + 1;
         return board(a, e);
     }
-    accept(r, factor);
     if (r->done < r->length) return 1;
     keep(a, e, r->to);
     if (r->to + 1 < c->n) {

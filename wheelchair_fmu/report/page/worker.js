@@ -12,7 +12,7 @@
 
 const WHY = {
   1: "the equations gave NaN or infinity",
-  2: "no step was short enough for the tolerance",
+  2: "no step was short enough for the tolerance, or too many would have been needed",
   3: "the algebraic equations have no solution nearby",
 };
 const MOST = 64; // states, pushes and readings together, as in innovations.c
