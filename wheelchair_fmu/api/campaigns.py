@@ -33,7 +33,7 @@ def read(path: str | Path, *, own_effects: str | Path | None = None) -> Campaign
 
     >>> campaign = wc.read("my-campaign")
     >>> campaign.name, len(campaign.runs)
-    ('open-06-left-drag', 10)
+    ('sample-chair', 10)
     """
     return Campaign(measured.read(path, known_parameters(catalogue(None if own_effects is None else Path(own_effects)))))
 
@@ -42,7 +42,7 @@ class Campaign:
     """Runs with what is known of the chair and its sensors; `read` makes it.
 
     >>> campaign
-    Campaign('open-06-left-drag', 10 runs)
+    Campaign('sample-chair', 10 runs)
     """
 
     def __init__(self, record: measured.Campaign) -> None:
@@ -53,7 +53,7 @@ class Campaign:
         """What the campaign is called.
 
         >>> campaign.name
-        'open-06-left-drag'
+        'sample-chair'
         """
         return self._record.name
 

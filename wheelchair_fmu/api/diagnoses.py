@@ -76,7 +76,7 @@ class Diagnosis:
     """A verdict with its evidence; `diagnose` makes it.
 
     >>> found
-    Diagnosis('open-06-left-drag', verdict='missing', effects=['rolling_resistance_asymmetry'])
+    Diagnosis('sample-chair', verdict='missing', effects=['rolling_resistance_asymmetry'])
     """
 
     def __init__(
