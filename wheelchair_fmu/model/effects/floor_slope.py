@@ -3,6 +3,8 @@
 from typing import Any
 
 from ...quantities import RAD, Parameter
+from ..signs import Shows
+from ..sketch import Arrow, from_behind, from_the_side
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.001, lower=-0.3, upper=0.3, source="Richter2007")
@@ -16,4 +18,9 @@ EFFECT = Effect(
     "a slope of the floor, fixed in the room",
     parameters=(X, Y),
     contributions=(adds("fall_x", lambda tilt_x: tilt_x), adds("fall_y", lambda tilt_y: tilt_y)),
+    signs=(Shows("coast-down", "chair.u", more=True), Shows("coast-down", "chair.y", more=True)),
+    sketches=(
+        from_the_side(Arrow((0, 0.6), (0.3, 0.6), "x"), tilt=7, of="x"),
+        from_behind(Arrow((0, 0.6), (0.24, 0.6), "y"), tilt=7, of="y"),
+    ),
 )
