@@ -225,7 +225,7 @@ class Diagnosis:
         return float(self._told["seconds"])
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/verdicts.md has the keys.
+        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/diagnosis.md has the keys.
 
         >>> found.as_dict()["verdict"]
         'missing'
