@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 import math
 import re
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
