@@ -166,7 +166,7 @@ def chair_of(
     """The chair asked for with the effects that `values` name, which are checked on the way, and what `effects` chooses beside:
     a folder joins its effects to the catalogue, anything else chooses from it."""
     own, chosen = None, effects
-    if isinstance(effects, str) and Path(effects).is_dir():
+    if isinstance(effects, str) and (Path(effects).is_dir() or len(Path(effects).parts) > 1):
         own, chosen = effects, catalogue_of(effects)[1]
     start = plain(variant, own)
     if equations:

@@ -53,7 +53,7 @@ def catalogue(folder: Path | None) -> dict[str, Effect]:
 
 def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:
     """What `--effects WORD` means: a folder joins its effects to the catalogue, anything else chooses from it."""
-    if Path(word).is_dir():
+    if Path(word).is_dir() or len(Path(word).parts) > 1:
         return catalogue(Path(word)), "default"
     return bundled(), word
 
