@@ -1,5 +1,5 @@
-"""docs/effects.md: every effect of the catalogue with its drawing, its law, its parameters and their signs, and what it acts on,
-from their records.
+"""docs/effects.md: every effect of the catalogue with its drawing, its law, its parameters and their signs, what it acts on,
+from the records.
 
 `python -m wheelchair_fmu.model.catalogue_page docs/effects.md` writes it, and the drawings into docs/effects.
 """
@@ -29,8 +29,8 @@ is its smallest size of interest, against which a diagnosis calls it missing or 
 
 In the drawings grey is the chair, orange the part in question, and red what is added where the parameter is above zero; blue is
 how the chair moves, a dashed curve the model without the effect. The chair is seen from above, from behind, or from its right
-side. What a value above zero does is one thing that shows it plainly, as a test finds by simulation at the size δ; below zero it
-is the opposite, where the bounds let it be.
+side. What a value above zero does is one thing that shows it plainly, as a test finds by simulation at the size δ; below zero
+it is the opposite, where the bounds let it be.
 """
 DRAWINGS = "effects"  # the folder beside the page
 
