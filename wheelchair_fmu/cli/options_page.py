@@ -17,8 +17,8 @@ from .main import app
 
 HEAD = """# Every command and option
 
-What `wheelchair COMMAND --help` prints, as one page, which `make docs` writes. [What the commands do](commands.md) shows each of
-them at work. A word that is looked for in a list, such as an effect or a manoeuvre, may be misspelt: the nearest is named.
+What `wheelchair COMMAND --help` prints, as one page, which `make docs` writes. [What the commands do](commands.md) shows each
+of them at work. A word that is looked for in a list, such as an effect or a manoeuvre, may be misspelt: the nearest is named.
 """
 TABLE = "| option | default | what |\n|---|---|---|"
 
