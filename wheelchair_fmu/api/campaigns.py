@@ -160,9 +160,10 @@ class Campaign:
 
         Tables are after PEtab 2: parameters with bounds and priors (what is calibrated, those of the effects named in `fit`,
         and each run's start), conditions, experiments, measurements, observables and a mapping to FMI names; runs held out are
-        in holdout.tsv. The model is an FMU 2.0, and inputs/ has each run's pushes, both of which PEtab itself has not.
+        in holdout.tsv. Offsets of sensors that the campaign leaves open are parameters of the observables. The model is an FMU
+        2.0, and inputs/ has each run's pushes as they were recorded, both of which PEtab itself has not.
 
-        Raises UsageError for an unknown effect, and where the campaign leaves a sensor's offset open.
+        Raises UsageError for an unknown effect, and for one that is no part of an FMU.
 
         >>> campaign.export("problem", fit=["rolling_resistance_asymmetry"])[0].name
         'problem.yaml'
