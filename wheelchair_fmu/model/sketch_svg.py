@@ -25,7 +25,7 @@ from .sketch import (
 )
 
 SCALE, WIDE, HIGH = 200.0, 240, 220  # px per m, and of one drawing
-ORIGIN = {"above": (120.0, 112.0), "rear": (120.0, 176.0), "side": (112.0, 176.0), "graph": (40.0, 180.0)}  # px
+ORIGIN = {"above": (120.0, 100.0), "rear": (120.0, 176.0), "side": (112.0, 176.0), "graph": (40.0, 180.0)}  # px
 GRAPH = (180.0, 150.0)  # px of its axes
 GREY, BLUE, ORANGE, RED, INK = "#9aa3ab", "#1f5582", "#c8591a", "#b02020", "#222"
 CASTER, FORK = 0.07, 0.05  # radius and trail, as drawn
