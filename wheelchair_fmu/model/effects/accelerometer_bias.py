@@ -1,4 +1,4 @@
-"""An accelerometer with constant offsets."""
+"""An accelerometer with constant offsets: it reads a_x + x and a_y + y."""
 
 from typing import Any
 

@@ -1,4 +1,7 @@
-"""An accelerometer mounted away from the CM: it also feels the turn about it."""
+"""An accelerometer mounted away from the CM: it also feels the turn about it.
+
+It reads  a_x − x ψ'² − y ψ''  and  a_y + x ψ'' − y ψ'².
+"""
 
 from typing import Any
 

@@ -1,6 +1,7 @@
 """An accelerometer mounted askew: gravity leaks in, and its axes mix.
 
-Positive roll lowers the sensor's right side, positive pitch raises its front.
+At rest it reads  g cos(roll) sin(pitch)  forward and  −g sin(roll)  to the right: positive roll lowers its right side,
+positive pitch raises its front.
 """
 
 from typing import Any

@@ -1,4 +1,4 @@
-"""Rear wheels that lean, each by its camber angle φ, positive to the right.
+"""Rear wheels that lean, each by its camber angle φ, positive to the right:  C_φ φ  is added to the side force, (13) and (14).
 
 It is the sum φ_r + φ_l that pushes the chair aside. The difference cancels from left to right as long as both wheels roll the
 same way: only one that rolls backward while the other goes forward, as in a spin, shows it.

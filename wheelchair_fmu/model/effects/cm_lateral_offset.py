@@ -1,4 +1,4 @@
-"""The CM beside the symmetry plane: arms, loads and geometry shift by y."""
+"""The CM beside the symmetry plane: wheels lie y further to its left, and  ΔN = ± m_axle g y / t  at each axle."""
 
 import casadi as cs
 

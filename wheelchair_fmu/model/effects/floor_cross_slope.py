@@ -1,4 +1,4 @@
-"""A slope across the chair whatever its heading, as on a treadmill or along a corridor."""
+"""A slope across the chair whatever its heading, as on a treadmill or along a corridor:  F_y = m g sin θ."""
 
 import casadi as cs
 

@@ -1,4 +1,4 @@
-"""A slope fixed in the room: the floor falls towards +x and +y by the angles x and y."""
+"""A slope fixed in the room, of the angles x and y:  m g sin x  pulls along the room's x,  m g sin y  along its y."""
 
 from typing import Any
 

@@ -1,4 +1,7 @@
-"""Tyres at another pressure than stated: stiffness, trail and rolling resistance follow p + dp instead of p."""
+"""Tyres at another pressure than stated: stiffness, trail and rolling resistance follow p + dp instead of p.
+
+Each is multiplied by  (1 + dp/p)^n , with the exponents n of `tyre.pressure_F`, `tyre.pressure_M` and `tyre.pressure_D`.
+"""
 
 import casadi as cs
 

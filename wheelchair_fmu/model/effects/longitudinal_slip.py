@@ -1,4 +1,4 @@
-"""Traction needs slip: a driven wheel turns faster, by  compliance · F |v_x|, a braked one slower."""
+"""Traction needs slip: a driven wheel turns faster than it rolls, by  compliance · F |v_x|, a braked one slower."""
 
 from ...quantities import PER_N, Parameter
 from ..signs import Shows

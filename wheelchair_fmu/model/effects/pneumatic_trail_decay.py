@@ -1,4 +1,4 @@
-"""The pneumatic trail shrinks with slip, so the self-aligning torque saturates before the force."""
+"""The pneumatic trail shrinks with slip, so the self-aligning torque saturates before the force:  M / (1 + inv_slip |λ|)."""
 
 from ...quantities import PER_RAD, RAD, Parameter
 from ..signs import Shows

@@ -1,4 +1,7 @@
-"""The recorded pushes come late or early against the other instruments. It shifts the record, not the chair."""
+"""The recorded pushes come late or early against the other instruments. It shifts the record, not the chair.
+
+The push that acts at the time t is the one that was recorded at  t − τ.
+"""
 
 from math import pi, sin
 

@@ -1,4 +1,4 @@
-"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law."""
+"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law:  D = μ N  in (1)."""
 
 from math import atan, sin
 
