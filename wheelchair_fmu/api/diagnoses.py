@@ -142,10 +142,10 @@ class Diagnosis:
     def estimates(self) -> pd.DataFrame:
         """A row for each parameter of each effect of the catalogue, the likeliest effect first, by (effect, parameter): its
         `estimate`, standard error `se` and the ends `lower` and `upper` of a 95 % interval in `unit` (SI), the size that is
-        `smallest_interesting`, the effect's `p` that chance alone does as much, the `probability` that it exceeds that size, and
-        its `verdict`. Intervals of effects that were found are by the profile of the likelihood, others are ± 1.96 standard
-        errors. An effect that was not found is estimated alone, in the place of those that were: what looks like one of them has
-        a size and a small `p` there, too. It is "not needed" beside what was found, or these runs "cannot_see" it there.
+        `smallest_interesting`, the effect's `p` that chance alone does as much, the `probability` that it exceeds that size,
+        and its `verdict`. Intervals of effects that were found are by the profile of the likelihood, others are ± 1.96
+        standard errors. An effect that was not found is estimated alone, in the place of those that were: what looks like one
+        of them has a size and a small `p` there, too. It is "not needed" beside what was found, or these runs "cannot_see" it.
 
         >>> D = found.estimates.loc[("rolling_resistance_asymmetry", "D")]
         >>> print(f"{D.estimate:.2f} ± {D.se:.2f} {D.unit}")
