@@ -11,7 +11,7 @@ help:
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    the tests, but for those of make nightly"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
-	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md"
+	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md, docs/options.md"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
 	@echo "make release     in dist/release: wheel, sdist, FMUs for five platforms, list of components, documentation, checksums"
 	@echo "make lint    ruff, mypy, import-linter"
@@ -50,6 +50,7 @@ docs: setup
 	$(BIN)/python -m wheelchair_fmu.model.catalogue_page docs/effects.md
 	$(BIN)/python -m wheelchair_fmu.fmu.variables_page docs/variables.md
 	$(BIN)/wheelchair quantities --page docs/quantities.md
+	$(BIN)/python -m wheelchair_fmu.cli.options_page docs/options.md
 
 site: export WHEELCHAIR_CONFIG := /dev/null
 site: setup

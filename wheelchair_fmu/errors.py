@@ -86,4 +86,6 @@ def unknown(kind: str, name: object, known: Iterable[str]) -> UsageError:
     known, word = list(known), str(name)
     close = [k for k in known if word and word in k][:3] or get_close_matches(word, known, n=3, cutoff=0.5)
     hint = f"did you mean {' or '.join(repr(c) for c in close)}?" if close else f"known: {', '.join(known)}"
+    if kind == "effect":  # which may lie in a folder that was not given
+        hint += f"{'' if close else '.'} An effect of your own is found by --effects DIR, its folder"
     return UsageError(f"no {kind} {name!r}; {hint}")

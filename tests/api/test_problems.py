@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 
 import wheelchair_fmu as wc
+from wheelchair_fmu.api import problems
 from wheelchair_fmu.studies import Fmu
 
 FOUND = {  # what was hidden in the sample, and what its calibration gives
@@ -72,6 +73,19 @@ def test_its_fmu_comes_near_the_noise_with_the_values_that_were_found(problem, r
         return float(np.sqrt(np.concatenate(squares).mean()))
 
     assert misfit({**nominal, **FOUND}) < 2.0 < misfit(nominal) / 3
+
+
+def test_a_sensor_s_open_offset_is_a_parameter_of_what_it_reads(tmp_path, monkeypatch):
+    """With a prior where one is given, else anywhere that the sensor could read."""
+    toml = wc.sample(tmp_path / "open")[0]
+    toml.write_text(toml.read_text(encoding="utf-8") + "\n[nuisance]\nyaw_rate = 0.02\na_x = true\n", encoding="utf-8")
+    monkeypatch.setattr(problems, "build", lambda chair, path, effects: path)
+    folder = wc.read(toml.parent).export(tmp_path / "problem")[0].parent
+    observables = {r["observableId"]: r["observableFormula"] for r in rows(folder / "observables.tsv")}
+    assert observables["yaw_rate"] == "sensor_yaw_rate + offset_yaw_rate" and observables["a_y"] == "sensor_a_y"
+    own = {r["parameterId"]: r for r in rows(folder / "parameters.tsv") if r["parameterId"].startswith("offset_")}
+    assert own["offset_yaw_rate"]["priorParameters"] == "0;0.02" and own["offset_a_x"]["priorDistribution"] == "uniform"
+    assert all(np.isfinite(float(own["offset_a_x"][key])) for key in ("lowerBound", "upperBound"))
 
 
 def test_what_an_fmu_cannot_have_is_refused(campaign, tmp_path):

@@ -6,6 +6,7 @@ import json
 import math
 import re
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -52,6 +53,11 @@ def test_the_diagnosis_that_other_tests_read_is_of_todays_form(found):
     assert form(kept) == form(json.loads(json.dumps(told)))
     assert {r["effect"] for r in kept["ranking"]} == {r["effect"] for r in told["ranking"]}
     assert [s["step"] for s in kept["models"]] == [s["step"] for s in told["models"]]
+
+
+def test_the_page_on_what_a_diagnosis_holds_names_every_key():
+    page = (Path(__file__).parents[2] / "docs" / "diagnosis.md").read_text(encoding="utf-8")
+    assert [key for key in json.loads(SAMPLE_DIAGNOSIS.read_text(encoding="utf-8")) if f"`{key}`" not in page] == []
 
 
 def form(told, place=""):

@@ -286,6 +286,21 @@ def test_no_recording_and_no_file(tmp_path):
         find([tmp_path / "empty"], None)
 
 
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (["0,0.1", "0.01,0.2"], "2 rows are no recording, which has 20 or more; record for longer, or take the file away"),
+        (["0,0.1"], "one row is no recording"),
+        (["a,b"] * 30, "the file has no column of numbers; export it again"),
+    ],
+)
+def test_a_file_that_is_no_recording_is_told_what_it_lacks(tmp_path, rows, said):
+    (tmp_path / "a.csv").write_text("\n".join(["time [s],yaw_rate [rad/s]", *rows]))
+    with pytest.raises(Failure) as told:
+        find([tmp_path], None)
+    assert said in str(told.value)
+
+
 def test_a_thousand_columns_are_read(tmp_path):
     rng = np.random.default_rng(0)
     table = {"time [s]": np.arange(300) / 100} | {f"channel {i}": rng.normal(size=300) for i in range(1000)}

@@ -67,7 +67,7 @@ def test_a_diagnosis_becomes_the_supplement_of_a_paper(tmp_path):
     [
         ({"final": None}, (), "has no 'final', as earlier versions wrote it; diagnose the campaign again"),
         ({}, ("--set", "chair.m=80"), "was made with nothing set by --set; give the same values"),
-        ({"campaign": "another"}, (), "a diagnosis of 'another', not of 'open-06-left-drag'"),
+        ({"campaign": "another"}, (), "a diagnosis of 'another', not of 'sample-chair'"),
     ],
 )
 def test_a_diagnosis_that_is_not_of_this_case_becomes_no_supplement(tmp_path, change, words, sentence):

@@ -36,7 +36,7 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
     assert done.exit_code == 0, done.output
     assert done.stderr == "", "a bar that is done has nothing to say to a file or a notebook"
     table = pd.read_parquet(tmp_path / "out.parquet")
-    assert len(table) == 12 and set(table.manoeuvre) == {"spin time=2", "campaign open-06-left-drag"}
+    assert len(table) == 12 and set(table.manoeuvre) == {"spin time=2", "campaign sample-chair"}
     measured = table[table.rms.notna()]
     assert len(measured) == 6 and (measured.rms > 0.9).all() and measured.drift.isna().all()
     indices = pd.read_csv(tmp_path / "out-indices.csv")

@@ -15,6 +15,7 @@ from wheelchair_fmu.contracts.places import evaluate
 from wheelchair_fmu.errors import ModelError
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.expression import law
+from wheelchair_fmu.model.signs import Shows
 from wheelchair_fmu.model.smooth import magnitude
 from wheelchair_fmu.model.stage import Contribution, Effect, Row, adds, scales
 from wheelchair_fmu.model.wheelchair import assemble
@@ -45,6 +46,7 @@ def an(law, *, to="F_x", unit=N_S_M, kind=adds, mirror="", **more) -> Effect:
     return Effect("mine", "what I think", (q,), (law if isinstance(law, Contribution) else kind(to, law),))
 
 
+SLOWER = Shows("coast-down", "chair.u", more=False)
 LAGGED = State("lagged", N, "a push that lags", nominal=10.0)
 SLIDING = State("sliding", M_S, "how fast a load slides against the frame")
 
@@ -128,6 +130,8 @@ def test_inertia_that_is_shared_with_the_chair_keeps_every_contract():
         (an(lambda q, v_xr: -q * v_xr), "equations", "gives F_x a term of shape (2, 1)", "give one number"),
         (an("-q * u"), "record", "the law of its term in F_x is a str", "function"),
         (replace(an(lambda q: q), parameters=Parameter("q", N)), "record", "parameters is a Parameter", "with the comma"),
+        (replace(an(lambda q, u: -q * u), signs=("left",)), "record", "signs is a tuple of str", "signs=(Shows(...),)"),
+        (replace(an(lambda q, u: -q * u), signs=(SLOWER,) * 2), "record", "signs has 2 for 1 parameters", "one for each"),
         (replace(an(lambda q: q), title=3), "record", "its title is 3", "few words"),
         (replace(an(lambda q: q), needs={"caster": "square"}), "record", "needs is {'caster': 'square'}", "swivelling"),
         (replace(an(lambda q: q), through="caster_trail"), "record", "through is 'caster_trail'", "with the comma"),

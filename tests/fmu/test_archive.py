@@ -262,6 +262,7 @@ def test_a_variant_gives_start_values(tmp_path):
     ("words", "code", "says"),
     [
         (["--effects", "relaxation"], 2, "no effect 'relaxation'; did you mean 'relaxation_length'"),
+        (["--effects", "my/effects"], 1, "my/effects: no such folder; `wheelchair effects new ID` starts one"),
         (["--effects", "push_force_delay"], 2, "shifts recorded pushes in time and is no part of an FMU"),
         (["--platforms", "x86_64-window"], 2, "no platform 'x86_64-window'; did you mean 'x86_64-windows'?"),
         (["--fmi", "4"], 2, "no version of FMI '4'"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from wheelchair_fmu.model.catalogue_page import page
+from wheelchair_fmu.model.catalogue_page import DRAWINGS, drawings, page
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.wheelchair import Choice, assemble
 
@@ -14,6 +14,11 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 def test_the_page_is_as_the_records_are():
     assert (DOCS / "effects.md").read_text(encoding="utf-8") == page(), "write it again by `make docs`"
+
+
+def test_the_drawings_are_as_the_records_are():
+    there = {file.name: file.read_text(encoding="utf-8") for file in (DOCS / DRAWINGS).iterdir()}
+    assert there == drawings(), "write them again by `make docs`"
 
 
 def test_the_models_page_names_inputs_parameters_and_effects_that_there_are():

@@ -60,7 +60,7 @@ def test_recordings_alone_become_a_campaign(client):
 def test_a_campaign_folder_is_taken_as_it_is(client):
     toml = (SAMPLE / "campaign.toml").read_bytes()
     state = upload(client, ("campaign.toml", toml), *((f"runs/{n}", c) for n, c in recordings())).json()
-    assert state["campaign"]["campaign"]["name"] == "open-06-left-drag"
+    assert state["campaign"]["campaign"]["name"] == "sample-chair"
     assert len(state["campaign"]["run"]) == 10
     assert state["faults"] == []
 
@@ -126,7 +126,7 @@ def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(cl
 def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):
     state = client.post(f"{client.base}/sample").json()
     assert len(state["files"]) == 10 and state["faults"] == [] and state["outcome"] is None
-    assert state["campaign"]["campaign"]["name"] == "sample campaign"
+    assert state["campaign"]["campaign"]["name"] == "sample-chair"
     assert "recordings here already" in client.post(f"{client.base}/sample").json()["error"]
     assert len(state["signals"]["yaw_rate [rad/s]"]) > 100 and state["times"] == ["time [s]"]
     seen = client.get(f"{client.base}/preview")

@@ -33,7 +33,7 @@ def read(path: str | Path, *, own_effects: str | Path | None = None) -> Campaign
 
     >>> campaign = wc.read("my-campaign")
     >>> campaign.name, len(campaign.runs)
-    ('open-06-left-drag', 10)
+    ('sample-chair', 10)
     """
     return Campaign(measured.read(path, known_parameters(catalogue(None if own_effects is None else Path(own_effects)))))
 
@@ -42,7 +42,7 @@ class Campaign:
     """Runs with what is known of the chair and its sensors; `read` makes it.
 
     >>> campaign
-    Campaign('open-06-left-drag', 10 runs)
+    Campaign('sample-chair', 10 runs)
     """
 
     def __init__(self, record: measured.Campaign) -> None:
@@ -53,7 +53,7 @@ class Campaign:
         """What the campaign is called.
 
         >>> campaign.name
-        'open-06-left-drag'
+        'sample-chair'
         """
         return self._record.name
 
@@ -160,9 +160,10 @@ class Campaign:
 
         Tables are after PEtab 2: parameters with bounds and priors (what is calibrated, those of the effects named in `fit`,
         and each run's start), conditions, experiments, measurements, observables and a mapping to FMI names; runs held out are
-        in holdout.tsv. The model is an FMU 2.0, and inputs/ has each run's pushes, both of which PEtab itself has not.
+        in holdout.tsv. Offsets of sensors that the campaign leaves open are parameters of the observables. The model is an FMU
+        2.0, and inputs/ has each run's pushes as they were recorded, both of which PEtab itself has not.
 
-        Raises UsageError for an unknown effect, and where the campaign leaves a sensor's offset open.
+        Raises UsageError for an unknown effect, and for one that is no part of an FMU.
 
         >>> campaign.export("problem", fit=["rolling_resistance_asymmetry"])[0].name
         'problem.yaml'

@@ -76,7 +76,7 @@ class Diagnosis:
     """A verdict with its evidence; `diagnose` makes it.
 
     >>> found
-    Diagnosis('open-06-left-drag', verdict='missing', effects=['rolling_resistance_asymmetry'])
+    Diagnosis('sample-chair', verdict='missing', effects=['rolling_resistance_asymmetry'])
     """
 
     def __init__(
@@ -142,9 +142,10 @@ class Diagnosis:
     def estimates(self) -> pd.DataFrame:
         """A row for each parameter of each effect of the catalogue, the likeliest effect first, by (effect, parameter): its
         `estimate`, standard error `se` and the ends `lower` and `upper` of a 95 % interval in `unit` (SI), the size that is
-        `smallest_interesting`, the effect's `p` that chance alone does as much, and its `verdict`. Intervals of effects that
-        were found are by the profile of the likelihood, others are ± 1.96 standard errors. An effect that was not found is
-        estimated alone, in the place of those that were: what looks like one of them has a size there, too.
+        `smallest_interesting`, the effect's `p` that chance alone does as much, the `probability` that it exceeds that size,
+        and its `verdict`. Intervals of effects that were found are by the profile of the likelihood, others are ± 1.96
+        standard errors. An effect that was not found is estimated alone, in the place of those that were: what looks like one
+        of them has a size and a small `p` there, too. It is "not needed" beside what was found, or these runs "cannot_see" it.
 
         >>> D = found.estimates.loc[("rolling_resistance_asymmetry", "D")]
         >>> print(f"{D.estimate:.2f} ± {D.se:.2f} {D.unit}")
@@ -225,7 +226,7 @@ class Diagnosis:
         return float(self._told["seconds"])
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/verdicts.md has the keys.
+        """All of it as plain data, as `wheelchair diagnose --json` writes it; docs/diagnosis.md has the keys.
 
         >>> found.as_dict()["verdict"]
         'missing'
@@ -364,6 +365,7 @@ def _estimates(ranking: Iterable[Mapping[str, Any]]) -> Iterable[dict[str, Any]]
                 "unit": p["unit"],
                 "smallest_interesting": p["smallest_interesting"],
                 "p": row["p"],
+                "probability": nan if row["probability"] is None else row["probability"],
                 "verdict": row["verdict"],
             }
 

@@ -1,7 +1,7 @@
 """A campaign as a problem of parameter estimation for other programs, in tables after PEtab 2 (Schmiester et al. 2021).
 
 PEtab has no FMUs and no recorded inputs: the model is an FMU 2.0, and `inputs/` has each run's pushes. What its noise model
-cannot say is left out: noise of the recorded pushes, and noise that is coloured.
+cannot say is left out: noise of the recorded pushes, noise that is coloured, and what is uncertain of clocks and push rims.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import pandas as pd
 
 from .. import campaign as measured
 from ..campaign import BY_NAME
-from ..errors import UsageError
 from ..fmu.build import build, with_chosen_effects
 from ..loop.factory import CALIBRATED
 from ..loop.fit import Problem
@@ -32,12 +31,9 @@ TABLES = ("parameters", "conditions", "experiments", "measurements", "observable
 def export(campaign: measured.Campaign, chair: Variant, effects: Sequence[str], folder: Path) -> tuple[Path, ...]:
     """Write the problem of fitting `effects`, with what is calibrated, to the fitted runs; runs held out are in holdout.tsv.
 
-    Raises UsageError for an effect, or a sensor's open offset, that no FMU has.
+    Offsets of sensors that the campaign leaves open are parameters of what is observed. Raises UsageError for an effect that no
+    FMU has.
     """
-    if campaign.nuisance:
-        raise UsageError(
-            f"the offset of {campaign.nuisance[0]} is open, which no FMU has; leave [nuisance] out of campaign.toml"
-        )
     chair = with_chosen_effects(chair.with_effects(campaign.effects), effects)
     likelihood = Likelihood(campaign, chair, derives=False)
     tables = {
@@ -48,7 +44,7 @@ def export(campaign: measured.Campaign, chair: Variant, effects: Sequence[str], 
         ),
         "measurements": _measurements(campaign.fit),
         "holdout": _measurements([r for r in campaign.runs if r.role == "holdout"]),
-        "observables": _observables(campaign),
+        "observables": _observables(likelihood),
         "mapping": _mapping(likelihood),
     }
     files = [build(chair.with_values(_plain(likelihood)), folder / MODEL, effects="none")]
@@ -77,10 +73,10 @@ def _plain(likelihood: Likelihood) -> dict[str, float]:
 
 def _parameters(likelihood: Likelihood, effects: Iterable[str]) -> pd.DataFrame:
     catalogue = likelihood.variant.catalogue
-    names = [*CALIBRATED, *(p.name for e in effects for p in catalogue[e].owned if p.estimated)]
+    names = [*CALIBRATED, *likelihood.offsets, *(p.name for e in effects for p in catalogue[e].owned if p.estimated)]
     problem = Problem(likelihood, names)
     rows = [
-        (_id(n), low, high, mean, mean, sd)
+        (_id(n), *_bounded(likelihood, n, low, high), mean, mean, sd)
         for n, low, high, mean, sd in zip(
             names, problem.lower, problem.upper, problem.prior.mean, problem.prior.sd, strict=True
         )
@@ -90,6 +86,15 @@ def _parameters(likelihood: Likelihood, effects: Iterable[str]) -> pd.DataFrame:
         records = likelihood.records
         rows += [(_own(n, run), records[n].lower, records[n].upper, mean[n], mean[n], sd[n]) for n in START if sd[n]]
     return pd.DataFrame([_parameter(*row) for row in rows])
+
+
+def _bounded(likelihood: Likelihood, name: str, low: float, high: float) -> tuple[float, float]:
+    """A parameter's bounds; of an offset that has none, what the sensor could at most read."""
+    if name not in likelihood.offsets:
+        return low, high
+    channel = BY_NAME[likelihood.offsets[name]]
+    most = max(abs(channel.low), abs(channel.high))
+    return max(low, -most), min(high, most)
 
 
 def _parameter(name: str, low: float, high: float, nominal: float, mean: float, sd: float) -> dict[str, Any]:
@@ -125,15 +130,20 @@ def _measurements(runs: Sequence[measured.Run]) -> pd.DataFrame:
     return pd.concat(list(rows()) or [pd.DataFrame(columns=["observableId", "experimentId", "time", "measurement"])])
 
 
-def _observables(campaign: measured.Campaign) -> pd.DataFrame:
+def _observables(likelihood: Likelihood) -> pd.DataFrame:
+    campaign, offset = likelihood.campaign, {channel: name for name, channel in likelihood.offsets.items()}
     names = list(dict.fromkeys(c for run in campaign.runs for c in run.channels))
-    rows = [(c, _id(BY_NAME[c].fmu), campaign.noise[c], "normal") for c in names]
+    formulas = [" + ".join([_id(BY_NAME[c].fmu), *([_id(offset[c])] if c in offset else [])]) for c in names]
+    rows = [(c, formula, campaign.noise[c], "normal") for c, formula in zip(names, formulas, strict=True)]
     return pd.DataFrame(rows, columns=["observableId", "observableFormula", "noiseFormula", "noiseDistribution"])
 
 
 def _mapping(likelihood: Likelihood) -> pd.DataFrame:
     """Identifiers of PEtab and the names of the FMU."""
-    names = [*likelihood.records, *(o.name for o in likelihood.variant.model().outputs)]
+    names = [
+        *(n for n in likelihood.records if n not in likelihood.offsets),
+        *(o.name for o in likelihood.variant.model().outputs),
+    ]
     return pd.DataFrame([(_id(n), n) for n in names], columns=["petabEntityId", "modelEntityId"])
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..contracts.own import catalogue, catalogue_of, text_of, variant_in
+from ..contracts.own import catalogue, catalogue_of, names_folder, text_of, variant_in
 from ..fmu.build import with_chosen_effects
 from ..model import variant as records
 from ..model.variant import LAWS, effects_in
@@ -166,7 +166,7 @@ def chair_of(
     """The chair asked for with the effects that `values` name, which are checked on the way, and what `effects` chooses beside:
     a folder joins its effects to the catalogue, anything else chooses from it."""
     own, chosen = None, effects
-    if isinstance(effects, str) and Path(effects).is_dir():
+    if isinstance(effects, str) and names_folder(effects):
         own, chosen = effects, catalogue_of(effects)[1]
     start = plain(variant, own)
     if equations:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -105,9 +105,15 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     if d.next_experiment:
         n = d.next_experiment
         times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
-        about = f", for {' and '.join(n['separates'])}" if n["separates"] else ""
-        out.print(f"Measure next, {times}: {n['manoeuvre']}{about}: {n['why']}.")
+        out.print(f"Measure {n['manoeuvre']} next, {times}{_aim(d, n['separates'])}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
+
+
+def _aim(d: Diagnosis, separates: Sequence[str]) -> str:
+    """What a run would be for."""
+    if d.verdict == "tie":
+        return f", to tell {' and '.join(separates)} apart"
+    return f", to show {', '.join(separates)}" if separates else ""
 
 
 def _verdict(d: Diagnosis, content: Mapping[str, Any], ids: Mapping[str, str]) -> str:

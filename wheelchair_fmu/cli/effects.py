@@ -16,6 +16,7 @@ from ..errors import UsageError, unknown
 from ..loop.subject import chair
 from ..model.alike import look_alikes
 from ..model.effects import NAME, bundled
+from ..model.signs import Shows
 from ..model.stage import Effect
 from ..quantities import Parameter
 from ..writing import written
@@ -89,6 +90,8 @@ def show(
     for p in told["parameters"]:
         out.print(f"\n{p['name']} [{p['unit']}]: {p['meaning']}")
         out.print(f"    off at {p['default']:g}" if p["estimated"] else f"    a constant, {p['default']:g} unless set")
+        if p["above_zero"]:
+            out.print(f"    above zero: {p['above_zero']}")
         if p["smallest_interesting"] is not None:
             out.print(f"    smallest interesting size: {p['smallest_interesting']:g} {p['unit']}")
         low, high = ("−∞" if p["lower"] is None else f"{p['lower']:g}", "∞" if p["upper"] is None else f"{p['upper']:g}")
@@ -133,12 +136,11 @@ def template(kind: str, effect: str) -> str:
 
 def record(effect: Effect, catalogue: Mapping[str, Effect]) -> dict[str, Any]:
     """An effect as plain data, beside the others of the catalogue."""
+    signs = {p.name: sign for p, sign in zip(effect.owned, effect.signs, strict=False)}
     return {
         "id": effect.id,
         "meaning": effect.title,
-        "acts_on": list(
-            dict.fromkeys([*(c.to for c in effect.contributions), *(s for row in effect.rows for s in row.coupled)])
-        ),
+        "acts_on": _acted_on(effect),
         "states": [f"effect.{effect.id}.{name}" for row in effect.rows for name in row.state.names],
         "needs": dict(effect.needs),
         "own": effect.program is not None,
@@ -146,7 +148,7 @@ def record(effect: Effect, catalogue: Mapping[str, Effect]) -> dict[str, Any]:
         "alike": [
             {"what": a.what, "with": list(look_alikes(effect, a, catalogue)), "told_by": a.told_by} for a in effect.alike
         ],
-        "parameters": [_parameter(p) for p in effect.owned],
+        "parameters": [_parameter(p, signs.get(p.name)) for p in effect.owned],
     }
 
 
@@ -157,12 +159,13 @@ def _acted_on(effect: Effect) -> list[str]:
     )
 
 
-def _parameter(p: Parameter) -> dict[str, Any]:
+def _parameter(p: Parameter, sign: Shows | None) -> dict[str, Any]:
     bounds = {key: None if abs(value) == float("inf") else value for key, value in (("lower", p.lower), ("upper", p.upper))}
     return {
         "name": p.name,
         "unit": p.unit.name,
         "meaning": p.meaning,
+        "above_zero": sign.words if sign else None,
         "default": p.default,
         **bounds,
         "smallest_interesting": p.smallest_interesting,

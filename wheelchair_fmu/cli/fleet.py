@@ -25,6 +25,7 @@ from .terminal import announce
 from .trust import variant_option
 
 ENDINGS = (".parquet", ".csv")
+LEAST = 1e-6  # probability that is told by its size
 
 
 def register(app: typer.Typer) -> None:
@@ -95,6 +96,11 @@ def _verdicts(table: pd.DataFrame) -> Table:
     return shown
 
 
+def _chance(p: float) -> str:
+    """A probability that chance does as much; so far out in the tails nobody knows it to a digit."""
+    return f"{p:.2g}" if p >= LEAST else f"< {LEAST:g}"
+
+
 def _shares(together: pd.DataFrame, chairs: int) -> Table:
     """How many chairs lack each effect."""
     shown = Table(box=box.SIMPLE, title=f"what {chairs} chairs lack", title_justify="left")
@@ -116,6 +122,6 @@ def _sizes(together: pd.DataFrame) -> Table:
     for title in ("parameter", "chairs", "mean", "chair to chair", "Q", "p", "I²"):
         shown.add_column(title, justify="left" if title == "parameter" else "right")
     for row in together[together.n > 0].itertuples():
-        sameness = (f"{row.spread:.2g}", f"{row.Q:.3g}", f"{row.p:.2g}", f"{row.I2:.0%}") if row.n > 1 else ("",) * 4
+        sameness = (f"{row.spread:.2g}", f"{row.Q:.3g}", _chance(row.p), f"{row.I2:.0%}") if row.n > 1 else ("",) * 4
         shown.add_row(f"{row.effect}.{row.parameter}", str(row.n), f"{row.mean:.3g} ± {row.se:.2g} {row.unit}", *sameness)
     return shown

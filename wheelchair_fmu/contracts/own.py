@@ -53,9 +53,12 @@ def catalogue(folder: Path | None) -> dict[str, Effect]:
 
 def catalogue_of(word: str) -> tuple[dict[str, Effect], str]:
     """What `--effects WORD` means: a folder joins its effects to the catalogue, anything else chooses from it."""
-    if Path(word).is_dir():
-        return catalogue(Path(word)), "default"
-    return bundled(), word
+    return (catalogue(Path(word)), "default") if names_folder(word) else (bundled(), word)
+
+
+def names_folder(word: str) -> bool:
+    """Is it a folder, or a path to one that may not be there? No effect is called so."""
+    return Path(word).is_dir() or len(Path(word).parts) > 1
 
 
 def variant_in(path: Path, known: Mapping[str, Effect] | None = None, *, trust: bool = False) -> Variant:

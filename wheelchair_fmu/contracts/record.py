@@ -8,13 +8,18 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..model.coupling import SPEEDS
+from ..model.signs import Shows
+from ..model.sketch import Sketch
 from ..model.stage import Alike, Contribution, Effect, Row
 from ..model.variant import LAWS
 from ..quantities import Parameter, State, Unit
 from .subject import Breach
 
 MIRROR = re.compile(r"[+-]\w*")
-ROLES = {"parameters": Parameter, "constants": Parameter, "contributions": Contribution, "rows": Row, "alike": Alike}
+ROLES = {
+    **{"parameters": Parameter, "constants": Parameter, "contributions": Contribution, "rows": Row, "alike": Alike},
+    **{"signs": Shows, "sketches": Sketch},
+}
 NUMBERS = ("default", "lower", "upper", "off", "nominal", "smallest_interesting", "uncertainty")
 
 
@@ -88,6 +93,8 @@ def _values(effect: Effect) -> list[tuple[str, str]]:
         found.append(("it has no parameters", "give it one that is 0 when the effect is off"))
     if not effect.contributions and not effect.delays_record and not any(row.coupled for row in effect.rows):
         found.append(("it contributes to nothing", 'add for example adds("F_x", law)'))
+    if effect.signs and len(effect.signs) != len(effect.parameters):
+        found.append((f"signs has {len(effect.signs)} for {len(effect.parameters)} parameters", "give one for each, in order"))
     twice = _twice(q.symbol for q in (*effect.parameters, *effect.constants, *(row.state for row in effect.rows)))
     if twice:
         found.append((f"the symbol {twice} is used twice", "give each parameter, constant and state its own"))

@@ -19,7 +19,7 @@ from ..children import side_by_side
 from ..configuration import OF_MODELS, digest
 from ..errors import BuildError
 from ..model.expression import ExpressionLaw
-from ..model.stage import Effect
+from ..model.stage import Effect, Law
 from ..model.wheelchair import Choice, assemble
 from . import compiler, shipped
 from .kernel import at_rest, kernel, seldom_among
@@ -223,15 +223,32 @@ def equations() -> str:
 
 
 def effect_key(effect: Effect) -> str:
-    """An effect by its files' content and its laws' code or expressions, so that an edited file is a new effect."""
+    """An effect by its files' content, its laws' code or expressions and what its records say of numbers' places, so that an
+    edited file, or another effect of that name, is a new one."""
     of_rows = (law for r in effect.rows for law in r.laws)
     laws = [*(c.law for c in effect.contributions), *of_rows]
     said = [(law.expression, law.arguments) for law in laws if isinstance(law, ExpressionLaw)]
-    codes = [law.__code__ for law in laws if not isinstance(law, ExpressionLaw)]
+    functions = [law for law in laws if not isinstance(law, ExpressionLaw)]
+    codes = [law.__code__ for law in functions]
     files = {c.co_filename: "".join(linecache.getlines(c.co_filename)) for c in codes}
     if effect.program and codes:  # as it ran; another file of that name may have been read since
         files[effect.program.file] = effect.program.text
     words = repr([(c.co_code, c.co_names, c.co_consts) for c in codes if not files[c.co_filename]] + said)
     targets = repr([(c.to, c.factor) for c in effect.contributions] + [(*r.coupled,) for r in effect.rows if r.coupled])
     texts = "".join(files[name] for name in sorted(files))
-    return f"{effect.id} {targets} {words} {hashlib.sha256(texts.encode()).hexdigest()}"
+    return (
+        f"{effect.id} {targets} {_records(effect)} {words} {_enclosed(functions)} {hashlib.sha256(texts.encode()).hexdigest()}"
+    )
+
+
+def _records(effect: Effect) -> str:
+    """Which place in the vectors of parameters and states belongs to which symbol, and what a step's error is measured by."""
+    parameters = [(p.symbol, p.off is None) for p in (*effect.parameters, *effect.constants)]
+    states = [(s.symbol, s.components, s.nominal) for s in (r.state for r in effect.rows)]
+    return repr((parameters, states))
+
+
+def _enclosed(functions: Sequence[Law]) -> str:
+    """What functions hold that stands in no text of theirs: numbers of the function that made them, and defaults."""
+    cells = [[repr(c.cell_contents) for c in f.__closure__ or ()] for f in functions]
+    return repr((cells, [repr(f.__defaults__) for f in functions]))

@@ -47,7 +47,9 @@ class SearchPolicy:
         0.8, 0.7, 0.9, "chance with which an effect of δ must be seen, for its absence to say anything (Cohen 1988)"
     )
     library: float = _number(0.75, 0.65, 0.85, "share of the catalogue's causes that must be seen so, in an adequate model")
-    most_effects: int = 4  # that are put in: whoever lacks more needs another model
+    inexact: float = _number(
+        0.02, 0.01, 0.04, "share of what an effect does that its law gets wrong: laws of other simulators differ by as much"
+    )
     unexplained: float = _number(
         1.3, 1.2, 1.4, "whitened RMS error, fitted and held out, that no adequate model leaves, whatever was found"
     )

@@ -31,7 +31,8 @@ class Round:
     """One round of search: the model it started from, all scores, and the refitted candidates, best first; `groups` are those
     of several effects together. `again`: it is for what an earlier round found, beside all that was found later. `contested`:
     it judges one effect of a group that others came near to, and nobody asked whether they do so in the place of this one.
-    `odds` are those of each of its candidates, before anything was measured, beside an effect's of the catalogue."""
+    `odds` are those of each of its candidates, before anything was measured, beside an effect's of the catalogue; `explained` is
+    by how much −2 log likelihood fell to its model from one without any effect."""
 
     effects: tuple[str, ...]
     fit: Fit
@@ -42,6 +43,7 @@ class Round:
     groups: tuple[Candidate, ...] = ()
     contested: bool = False
     odds: float = 1.0
+    explained: float = 0.0
     policy: SearchPolicy = DEFAULT
 
     @cached_property
@@ -83,7 +85,13 @@ class Round:
 
     @property
     def log_prior(self) -> float:
-        return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds))
+        return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds)) - self._of_laws
+
+    @property
+    def _of_laws(self) -> float:
+        """Log likelihood that may be gained for no other reason than that the laws of what was found before are not exact."""
+        scale = self.every[0].scale if self.every else 1.0
+        return 0.5 * self.policy.inexact**2 * max(self.explained, 0.0) / scale
 
 
 def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:

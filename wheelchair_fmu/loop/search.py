@@ -211,10 +211,12 @@ class Search(Screen):
         rival: float = math.inf,
         least: float = PROMISING,
         odds: float = 1.0,
+        explained: float = 0.0,
     ) -> Round:
         """Screen, refit the shortlist, and rank. What lowers −2 log likelihood by less than `least`, as far as slopes tell, is
         not refitted; what looks like the leader, by a cosine above `twin`, is, however many there are; and groups of effects,
-        where the whole catalogue is asked. `rival` is the misfit of another model to be compared with."""
+        where the whole catalogue is asked. `rival` is the misfit of another model to be compared with; for `odds` and
+        `explained` see `Round`."""
         screened, joined = self.screen_groups(base, effects) if among is None else (self.screen(base, effects, among), [])
         candidates: list[Candidate] = []
         leader, hope, tests = math.inf, least, len(screened) + len(joined)
@@ -230,7 +232,7 @@ class Search(Screen):
         best = ranked(candidates)
         alone, groups = (tuple(c for c in best if (len(c.members) > 1) == several) for several in (False, True))
         scores = tuple(s.score for s in screened)
-        return Round(effects, base, base_held, scores, alone, groups=groups, odds=odds, policy=self.policy)
+        return Round(effects, base, base_held, scores, alone, groups=groups, odds=odds, explained=explained, policy=self.policy)
 
 
 def _hope(fall: float, promised: float) -> float:

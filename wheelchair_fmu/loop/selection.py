@@ -16,6 +16,7 @@ from .search import Search
 from .staircase import Step
 from .ties import beside, overtaker
 
+MOST_EFFECTS = 4  # that are put in: whoever lacks more needs another model
 MOST_STEPS = 8  # that put one in, or one in the place of another
 RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
@@ -40,6 +41,7 @@ class StepwiseSelection:
         self._tried_together = False
         self._noise_known_since = 0  # rounds that were searched with other noise than is known now
         self.base, self.held, self.ladder = begin(search, search.say)
+        self._calibrated = self.base.misfit
         self._tell()
         for effect in search.factory.variant.effects:
             if search.factory.parameters(effect):
@@ -52,7 +54,7 @@ class StepwiseSelection:
         """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
         overtake, as long as anything is found."""
         for _ in range(MOST_STEPS):
-            best = self._found() if len(self.effects) - len(self.already) < self.search.policy.most_effects else None
+            best = self._found() if len(self.effects) - len(self.already) < MOST_EFFECTS else None
             if not (best and self._put_in(best)) and not self._overtaken():
                 return  # which has looked beside all
         self.beside = {effect: self._beside(effect) for effect in self.effects[len(self.already) :]}
@@ -111,13 +113,13 @@ class StepwiseSelection:
             return before
         self.search.say(f"searching for {effect} again, beside all others")
         known = before if latest >= self._noise_known_since and not before.contested else None
-        return beside(self.search, effect, self.effects, self.base, self.held, known)
+        return beside(self.search, effect, self.effects, self.base, self.held, known, self._calibrated)
 
     def _found(self) -> Candidate | None:
         """What a round of search finds: one effect, or a group; failing that, several of one law; failing that, one that only
         helps."""
         self.search.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
-        now = self.search.round(self.effects, self.base, self.held)
+        now = self.search.round(self.effects, self.base, self.held, explained=self._explained)
         self.rounds.append(now)
         best = now.winner
         if best is not None and len(best.members) > 1:
@@ -171,6 +173,7 @@ class StepwiseSelection:
     def _anew(self, found: Fit) -> None:
         """The model with these effects, fitted about so, and its staircase, from the first step."""
         base, _, self.ladder = first_steps(self.search)
+        self._calibrated = base.misfit
         for i in range(1, len(self.effects)):
             base, held = self.search.with_given(self.effects[:i], replace(found, values={**found.values, **base.values}))
             self.ladder.append(Step.of(f"+{self.effects[i - 1]}", base.evidence, held))
@@ -180,6 +183,11 @@ class StepwiseSelection:
 
     def _top(self) -> Step:
         return Step.of(f"+{self.effects[-1]}", self.base.evidence, self.held)
+
+    @property
+    def _explained(self) -> float:
+        """By how much −2 log likelihood fell to the model at hand from the calibrated one, by the same noise."""
+        return self._calibrated - self.base.misfit
 
     def _tell(self) -> None:
         self._stepped(tuple(self.ladder))

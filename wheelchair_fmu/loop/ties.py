@@ -43,10 +43,17 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
 
 
 def beside(
-    search: Search, effect: str, effects: Sequence[str], final: Fit, held: Evidence, before: Round | None
+    search: Search,
+    effect: str,
+    effects: Sequence[str],
+    final: Fit,
+    held: Evidence,
+    before: Round | None,
+    calibrated: float = 0.0,
 ) -> Round | None:
-    """One of the `effects` of a `final` model searched for again, beside all the others; `before` is the round that found it,
-    if that knew the same noise. None where it stands without that, or where the model cannot run without it."""
+    """One of the `effects` of a `final` model searched for again, beside all the others. `before` is the round that found it, if
+    that knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or
+    where the model cannot run without it."""
     w, others = search.factory, tuple(e for e in effects if e != effect)
     try:
         base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
@@ -66,7 +73,8 @@ def beside(
     candidates = ranked([own, *(c for c in tried if c)])
     base = replace(base, evidence=base.evidence.summary())
     scores = tuple(s.score for s in screened)
-    return Round(others, base, base_held.summary(), scores, tuple(candidates), again=True, policy=search.policy)
+    r = Round(others, base, base_held.summary(), scores, tuple(candidates), again=True, policy=search.policy)
+    return replace(r, explained=calibrated - base.misfit)
 
 
 def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:

@@ -1,21 +1,22 @@
-"""docs/effects.md: every effect of the catalogue with its law, its parameters and what it acts on, from their records.
+"""docs/effects.md: every effect of the catalogue with its drawing, its law, its parameters and their signs, what it acts on,
+from the records.
 
-`python -m wheelchair_fmu.model.catalogue_page docs/effects.md` writes it.
+`python -m wheelchair_fmu.model.catalogue_page docs/effects.md` writes it, and the drawings into docs/effects.
 """
 
 from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from ..quantities import Parameter, Quantity
+from ..quantities import Quantity
 from ..writing import written
 from . import effects as package
 from .alike import look_alikes
 from .effects import bundled
+from .sketch_svg import svg
 from .stage import Alike, Effect
 from .wheelchair import Choice, assemble
 
@@ -25,7 +26,13 @@ Each adds one thing to [the model](physics.md) that the paper leaves out. A para
 is its smallest size of interest, against which a diagnosis calls it missing or small. In the FMU a parameter is
 `effect.<id>.<name>`. The page is written by `make docs` from the files in `wheelchair_fmu/model/effects`;
 [your own](your-own-effect.md) is one more such file.
+
+In the drawings grey is the chair, orange the part in question, and red what is added where the parameter is above zero; blue is
+how the chair moves, a dashed curve the model without the effect. The chair is seen from above, from behind, or from its right
+side. What a value above zero does is one thing that shows it plainly, as a test finds by simulation at the size δ; below zero
+it is the opposite, where the bounds let it be.
 """
+DRAWINGS = "effects"  # the folder beside the page
 
 
 def page() -> str:
@@ -38,12 +45,22 @@ def page() -> str:
 def section(effect: Effect) -> str:
     """One effect: what its file says of it, its parameters, what it acts on and what it needs."""
     said = inspect.getdoc(import_module(f"{package.__name__}.{effect.id}")) or ""
-    parts = [f"## {effect.id}", said, _table(effect.parameters), f"Acts on {_targets(effect)}.{_needs(effect)}"]
+    parts = [f"## {effect.id}", f"![{_drawn(effect)}]({DRAWINGS}/{effect.id}.svg)", said, _table(effect)]
+    parts += [f"Acts on {_targets(effect)}.{_needs(effect)}"]
     parts += [_alike(effect, a) for a in effect.alike]
     if effect.constants:
         constants = "; ".join(f"`{c.name}` = {c.default:g} {c.unit.name}, {c.meaning} ({c.source})" for c in effect.constants)
         parts.append(f"Not estimated: {constants}.")
     return "\n\n".join(parts)
+
+
+def drawings() -> dict[str, str]:
+    """The drawing of every effect, by the name of its file."""
+    return {f"{id}.svg": svg(effect.sketches, _drawn(effect)) for id, effect in bundled().items()}
+
+
+def _drawn(effect: Effect) -> str:
+    return f"Drawing: {effect.title}"
 
 
 def _alike(effect: Effect, a: Alike) -> str:
@@ -52,11 +69,11 @@ def _alike(effect: Effect, a: Alike) -> str:
     )
 
 
-def _table(parameters: Sequence[Parameter]) -> str:
-    head = "| parameter | unit | meaning | δ | bounds | source |\n|---|---|---|---|---|---|"
+def _table(effect: Effect) -> str:
+    head = "| parameter | unit | meaning | above zero | δ | bounds | source |\n|---|---|---|---|---|---|---|"
     rows = (
-        f"| `{p.name}` | {p.unit.name} | {p.meaning} | {p.smallest_interesting:g} | {p.lower:g} to {p.upper:g} | {p.source} |"
-        for p in parameters
+        f"| `{p.name}` | {p.unit.name} | {p.meaning} | {sign.words} | {p.delta:g} | {p.lower:g} to {p.upper:g} | {p.source} |"
+        for p, sign in zip(effect.parameters, effect.signs, strict=True)
     )
     return "\n".join([head, *rows])
 
@@ -83,6 +100,13 @@ def _needs(effect: Effect) -> str:
     )
 
 
+def write(page_file: Path) -> None:
+    """The page, and its drawings in a folder beside it."""
+    texts = {page_file: page(), **{page_file.parent / DRAWINGS / name: text for name, text in drawings().items()}}
+    for file, text in texts.items():
+        with written(file) as beside:
+            beside.write_text(text, encoding="utf-8")
+
+
 if __name__ == "__main__":
-    with written(Path(sys.argv[1])) as beside:
-        beside.write_text(page(), encoding="utf-8")
+    write(Path(sys.argv[1]))

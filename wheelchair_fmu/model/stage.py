@@ -20,6 +20,8 @@ from inspect import signature
 from typing import Any
 
 from ..quantities import Parameter, Quantity, State, Unit
+from .signs import Shows
+from .sketch import Sketch
 
 Law = Callable[..., Any]
 
@@ -151,6 +153,9 @@ class Effect:
     absorbs: Law | None = None  # the power [W] that goes into its states, below zero where they give some; for the energy's sum
     alike: tuple[Alike, ...] = ()  # what it does that others do as well
     through: tuple[str, ...] = ()  # ids of effects by which it reaches the chair: it may show only together with these
+    # For each of its parameters, in order, what a value above zero does; and what is drawn of it, from left to right.
+    signs: tuple[Shows, ...] = field(default=(), compare=False, repr=False)
+    sketches: tuple[Sketch, ...] = field(default=(), compare=False, repr=False)
     program: Program | None = field(default=None, compare=False, repr=False)  # of a user's own, once it was read
 
     @cached_property

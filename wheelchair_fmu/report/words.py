@@ -74,7 +74,7 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
     following = diagnosis.get("next_experiment")
     if following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
-        said.append(f"Measure next{times}: {following['manoeuvre']}.")
+        said.append(f"Measure {following['manoeuvre']} next{times}.")
     return [*said, *(f"Note: {note}." for note in diagnosis.get("notes", ()))]
 
 

@@ -83,16 +83,10 @@ class Session:
                     self.put(file.relative_to(campaign).as_posix(), content)
 
     def try_sample(self) -> None:
-        """Take in the sample campaign, under a name that does not give its answer away.
-
-        Raises UsageError where there are recordings already.
-        """
+        """Take in the sample campaign. Raises UsageError where there are recordings already."""
         if self.files():
             raise UsageError("there are recordings here already; begin new work, and try the sample there")
         self._copy(EXAMPLES / SAMPLE)
-        content = self.content() or {}
-        content["campaign"]["name"] = SAMPLE.replace("-", " ")
-        self.write_content(content)
 
     @classmethod
     def latest(cls, root: Path, most: int) -> list[Session]:

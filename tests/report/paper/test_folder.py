@@ -148,7 +148,7 @@ def test_what_was_left_out_is_told_with_its_reason():
     ("change", "words"),
     [
         (lambda d: d.pop("final"), "has no 'final', as earlier versions wrote it; diagnose the campaign again"),
-        (lambda d: d.update(fingerprint="0" * 64), "its data are not those of 'open-06-left-drag' as they are now"),
+        (lambda d: d.update(fingerprint="0" * 64), "its data are not those of 'sample-chair' as they are now"),
         (lambda d: d["final"].update(fixed={"chair.m": 80}), "was made with chair.m set by --set; give the same values"),
         (
             lambda d: d["final"]["parameters"][-1].update(name="effect.my_own.k"),

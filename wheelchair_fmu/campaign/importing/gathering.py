@@ -109,11 +109,8 @@ def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]
             continue
         table, met = open_recording(path, file, {})
         prose = path.name.lower().startswith("readme") or path.suffix.lower() in PROSE
-        if table is not None and not _numbers(table):
-            table, met = (
-                None,
-                [] if prose else [Fault(file, None, None, "the file has no column of numbers", "export it again")],
-            )
+        if table is not None and (lacks := _lacking(table, file)):
+            table, met = None, [] if prose else [lacks]
         if table is None:
             why = (
                 met[0]
@@ -127,12 +124,20 @@ def opened(paths: Sequence[tuple[Path, str]]) -> tuple[list[Opened], list[Fault]
     return found, faults
 
 
-def _numbers(table: Table) -> bool:
-    """Has a table at least two columns, and rows enough, of numbers?"""
+def _lacking(table: Table, file: str) -> Fault | None:
+    """What a table lacks of a recording: at least two columns, and rows enough, of numbers. None where it has them."""
     if len(table.headers) < 2:
-        return False
-    values = table.rows([0, len(table.headers) - 1]).values
-    return all(len(v) >= FEWEST for v in values.values()) and any(np.isfinite(v).sum() >= FEWEST for v in values.values())
+        return Fault(file, None, None, "the file has one column, and a recording has a time and readings", "export it again")
+    values = table.rows([0, len(table.headers) - 1]).values.values()
+    rows = min(len(v) for v in values)
+    if 0 < rows < FEWEST:
+        many = f"{rows} rows are" if rows > 1 else "one row is"
+        return Fault(
+            file, None, None, f"{many} no recording, which has {FEWEST} or more", "record for longer, or take the file away"
+        )
+    if not any(np.isfinite(v).sum() >= FEWEST for v in values):
+        return Fault(file, None, None, "the file has no column of numbers", "export it again")
+    return None
 
 
 def kinds(files: Sequence[Opened]) -> dict[str, int]:

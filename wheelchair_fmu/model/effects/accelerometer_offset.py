@@ -1,8 +1,13 @@
-"""An accelerometer mounted away from the CM: it also feels the turn about it."""
+"""An accelerometer mounted away from the CM: it also feels the turn about it.
+
+It reads  a_x − x ψ'² − y ψ''  and  a_y + x ψ'' − y ψ'².
+"""
 
 from typing import Any
 
 from ...quantities import M, Parameter
+from ..signs import Shows
+from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.03, lower=-2.0, upper=2.0, source="rigid-body kinematics")
@@ -23,4 +28,6 @@ EFFECT = Effect(
     "accelerometer mounted away from the CM",
     parameters=(X, Y),
     contributions=(adds("read_a_x", forward), adds("read_a_y", right)),
+    signs=(Shows("steady-turn", "sensor.a_x", more=False), Shows("steady-turn", "sensor.a_y", more=False)),
+    sketches=(from_above(Spot((0.19, 0.18), box=True), Length((0, 0), (0, 0.18), "x"), Length((0, 0.18), (0.19, 0.18), "y")),),
 )

@@ -1,6 +1,7 @@
 """An accelerometer mounted askew: gravity leaks in, and its axes mix.
 
-Positive roll lowers the sensor's right side, positive pitch raises its front.
+At rest it reads  g cos(roll) sin(pitch)  forward and  −g sin(roll)  to the right: positive roll lowers its right side,
+positive pitch raises its front.
 """
 
 from typing import Any
@@ -9,6 +10,8 @@ import casadi as cs
 
 from ...quantities import RAD, Parameter
 from ..alike import READING_OFFSET
+from ..signs import Shows
+from ..sketch import Spot, Turn, from_behind, from_the_side
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.5, upper=0.5, source="rigid-body kinematics")
@@ -31,4 +34,9 @@ EFFECT = Effect(
     parameters=(ROLL, PITCH),
     contributions=(adds("read_a_x", forward), adds("read_a_y", right)),
     alike=(READING_OFFSET,),
+    signs=(Shows("coast-down", "sensor.a_y", more=False), Shows("coast-down", "sensor.a_x", more=True)),
+    sketches=(
+        from_behind(Spot((0, 0.7), box=True, turned=15), Turn((0, 0.7), "roll"), of="roll"),
+        from_the_side(Spot((0, 0.7), box=True, turned=-15), Turn((0, 0.7), "pitch", clockwise=False), of="pitch"),
+    ),
 )

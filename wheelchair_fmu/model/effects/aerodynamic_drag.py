@@ -2,6 +2,8 @@
 
 from ...quantities import N_S2_M2, Parameter
 from ..alike import DRAG_SLOPE
+from ..signs import Shows
+from ..sketch import Arrow, from_the_side
 from ..smooth import magnitude
 from ..stage import Effect, adds
 
@@ -13,4 +15,6 @@ EFFECT = Effect(
     parameters=(K,),
     contributions=(adds("F_x", lambda u, k, v_eps: -k * u * magnitude(u, v_eps), opposes="u"),),
     alike=(DRAG_SLOPE,),
+    signs=(Shows("coast-down", "chair.u", more=False),),
+    sketches=(from_the_side(Arrow((0, 0.6), (-0.3, 0.6), "k u²"), Arrow((0.3, 0.75), (0.52, 0.75), "u", moves=True)),),
 )

@@ -4,6 +4,8 @@ The bearing holds back a caster that its trail swings, and a lateral force at th
 """
 
 from ...quantities import N_M, Parameter
+from ..signs import Shows
+from ..sketch import PIVOT_LEFT, PIVOT_RIGHT, Turn, Wheel, from_above
 from ..smooth import grip
 from ..stage import Effect, adds
 
@@ -31,4 +33,14 @@ EFFECT = Effect(
     contributions=(adds("M_w", friction, opposes="swivel_rate"),),
     needs={"caster": "swivelling"},
     through=("caster_trail",),
+    signs=(Shows("steady-turn", "chair.curvature", more=False),),
+    sketches=(
+        from_above(
+            Wheel("fl", 25),
+            Wheel("fr", 25),
+            Turn(PIVOT_LEFT, "", clockwise=False),
+            Turn(PIVOT_RIGHT, "M", clockwise=False),
+            Turn((0, -0.05), "δ'", radius=0.07, moves=True),
+        ),
+    ),
 )

@@ -7,6 +7,8 @@ rate through a short filter, Ω' = (δ' + ψ' − Ω)/τ, because the rate itsel
 import casadi as cs
 
 from ...quantities import FRONT, KG_M2, RAD_S, Parameter, S, State
+from ..signs import Shows
+from ..sketch import PIVOT_LEFT, PIVOT_RIGHT, Turn, Wheel, from_above
 from ..stage import Effect, Row, adds
 
 INERTIA = Parameter(
@@ -63,4 +65,14 @@ EFFECT = Effect(
     needs={"caster": "swivelling"},
     through=("caster_trail",),
     absorbs=spun,
+    signs=(Shows("spin", "chair.psi_dot", more=False),),
+    sketches=(
+        from_above(
+            Wheel("fl", 25),
+            Wheel("fr", 25),
+            Turn(PIVOT_LEFT, "", clockwise=False),
+            Turn(PIVOT_RIGHT, "I δ''", clockwise=False),
+            Turn((0, -0.05), "δ''", radius=0.07, moves=True),
+        ),
+    ),
 )

@@ -1,6 +1,8 @@
 """The contact patch, not the pivot, sets the caster's angle:  c δ' = v_y cos δ − v_x sin δ − c ψ'."""
 
 from ...quantities import M, Parameter
+from ..signs import Shows
+from ..sketch import Length, Spot, Wheel, from_the_side
 from ..stage import Effect, adds
 
 TRAIL = Parameter(
@@ -21,4 +23,6 @@ EFFECT = Effect(
     parameters=(TRAIL,),
     contributions=(adds("c", lambda more_trail: more_trail),),
     needs={"caster": "swivelling"},
+    signs=(Shows("steady-turn", "chair.curvature", more=True),),
+    sketches=(from_the_side(Wheel("front"), Spot((0.25, 0.3), "pivot"), Length((0.25, -0.08), (0.2, -0.08), "c")),),
 )

@@ -1,8 +1,10 @@
-"""The CM beside the symmetry plane: arms, loads and geometry shift by y."""
+"""The CM beside the symmetry plane: wheels lie y further to its left, and  ΔN = ± m_axle g y / t  at each axle."""
 
 import casadi as cs
 
 from ...quantities import M, Parameter
+from ..signs import Shows
+from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
 
 Y = Parameter(
@@ -34,4 +36,6 @@ EFFECT = Effect(
     "centre of mass beside the symmetry plane",
     parameters=(Y,),
     contributions=(adds("y_r", lambda y_cm: -y_cm), adds("y_f", lambda y_cm: -y_cm), adds("N_r", rear), adds("N_f", front)),
+    signs=(Shows("start-stop", "chair.psi", more=True),),
+    sketches=(from_above(Spot((0.13, 0), "CM"), Length((0, 0.06), (0.13, 0.06), "y")),),
 )

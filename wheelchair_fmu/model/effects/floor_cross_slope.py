@@ -1,9 +1,11 @@
-"""A slope across the chair whatever its heading, as on a treadmill or along a corridor."""
+"""A slope across the chair whatever its heading, as on a treadmill or along a corridor:  F_y = m g sin θ."""
 
 import casadi as cs
 
 from ...quantities import RAD, Parameter
 from ..alike import SIDE_PULL
+from ..signs import Shows
+from ..sketch import Arrow, from_behind
 from ..stage import Effect, adds, scales
 
 THETA = Parameter(
@@ -24,4 +26,6 @@ EFFECT = Effect(
     parameters=(THETA,),
     contributions=(adds("g_y", lambda theta, g: g * cs.sin(theta)), scales("g_z", lambda theta: cs.cos(theta))),
     alike=(SIDE_PULL,),
+    signs=(Shows("coast-down", "chair.y", more=True),),
+    sketches=(from_behind(Arrow((0, 0.6), (0.24, 0.6), "m g θ"), tilt=7),),
 )

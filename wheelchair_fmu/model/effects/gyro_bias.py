@@ -1,6 +1,8 @@
 """A yaw rate sensor with an offset: it reads ψ' + b."""
 
 from ...quantities import RAD_S, Parameter
+from ..signs import Shows
+from ..sketch import Spot, Turn, from_above
 from ..stage import Effect, adds
 
 B = Parameter(
@@ -21,4 +23,6 @@ EFFECT = Effect(
     "yaw rate sensor with an offset",
     parameters=(B,),
     contributions=(adds("read_yaw_rate", lambda gyro_b: gyro_b),),
+    signs=(Shows("coast-down", "sensor.yaw_rate", more=True),),
+    sketches=(from_above(Spot((0, 0), box=True), Turn((0, 0), "reads b more", radius=0.13)),),
 )

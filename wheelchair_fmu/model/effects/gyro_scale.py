@@ -1,6 +1,8 @@
 """A yaw rate sensor with a wrong scale: it reads (1 + k) ψ'."""
 
 from ...quantities import ONE, Parameter
+from ..signs import Shows
+from ..sketch import Curve, graph
 from ..stage import Effect, scales
 
 K = Parameter(
@@ -20,4 +22,8 @@ EFFECT = Effect(
     "yaw rate sensor with a wrong scale",
     parameters=(K,),
     contributions=(scales("read_yaw_rate", lambda scale: 1 + scale),),
+    signs=(Shows("steady-turn", "sensor.yaw_rate", more=True),),
+    sketches=(
+        graph("yaw rate", "reading", Curve(lambda x: 0.7 * x, "ψ'", before=True), Curve(lambda x: 0.95 * x, "(1 + k) ψ'")),
+    ),
 )

@@ -1,9 +1,14 @@
-"""Tyres at another pressure than stated: stiffness, trail and rolling resistance follow p + dp instead of p."""
+"""Tyres at another pressure than stated: stiffness, trail and rolling resistance follow p + dp instead of p.
+
+Each is multiplied by  (1 + dp/p)^n , with the exponents n of `tyre.pressure_F`, `tyre.pressure_M` and `tyre.pressure_D`.
+"""
 
 import casadi as cs
 
 from ...quantities import BAR, Parameter
 from ..alike import YAW_RESISTANCE
+from ..signs import Shows
+from ..sketch import Arrow, Wheel, from_the_side
 from ..stage import Effect, scales
 
 DP = Parameter(
@@ -37,4 +42,13 @@ EFFECT = Effect(
         scales("q_D", lambda dp, pressure, pressure_D: power(pressure_D, dp, pressure)),
     ),
     alike=(YAW_RESISTANCE,),
+    signs=(Shows("coast-down", "chair.u", more=True),),
+    sketches=(
+        from_the_side(
+            Wheel("rear"),
+            Arrow((-0.2, 0.31), (-0.2, 0.56), "p + dp"),
+            Arrow((-0.2, 0.31), (-0.38, 0.14)),
+            Arrow((-0.2, 0.31), (-0.02, 0.14)),
+        ),
+    ),
 )

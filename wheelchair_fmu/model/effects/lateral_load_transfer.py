@@ -4,6 +4,8 @@ import casadi as cs
 
 from ...quantities import M, Parameter
 from ..alike import YAW_RESISTANCE
+from ..signs import Shows
+from ..sketch import Arrow, Length, from_behind
 from ..stage import Effect, adds
 
 H = Parameter(
@@ -34,4 +36,13 @@ EFFECT = Effect(
     parameters=(H,),
     contributions=(adds("N_r", rear), adds("N_f", front)),
     alike=(YAW_RESISTANCE,),
+    signs=(Shows("steady-turn", "chair.curvature", more=False),),
+    sketches=(
+        from_behind(
+            Length((0.12, 0), (0.12, 0.6), "h"),
+            Arrow((-0.275, -0.16), (-0.275, 0), "more"),
+            Arrow((0.275, -0.08), (0.275, 0), "less"),
+            Arrow((0, 0.6), (0.2, 0.6), "a_y", moves=True),
+        ),
+    ),
 )

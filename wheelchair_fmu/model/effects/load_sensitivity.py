@@ -3,6 +3,8 @@
 import casadi as cs
 
 from ...quantities import ONE, N, Parameter
+from ..signs import Shows
+from ..sketch import Curve, graph
 from ..stage import Effect, scales
 
 EXPONENT = Parameter(
@@ -40,4 +42,13 @@ EFFECT = Effect(
     parameters=(EXPONENT,),
     constants=(EXPONENT_M, REFERENCE),
     contributions=(scales("q_F", power), scales("q_M", lambda exponent_M, N_r, N_ref: power(exponent_M, N_r, N_ref))),
+    signs=(Shows("steady-turn", "slip.rr", more=True),),
+    sketches=(
+        graph(
+            "load N",
+            "stiffness C_λ",
+            Curve(lambda x: 0.7, "", before=True),
+            Curve(lambda x: 0.7 * (x / 0.75) ** 0.5, "exponent above 0"),
+        ),
+    ),
 )

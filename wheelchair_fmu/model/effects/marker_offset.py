@@ -8,6 +8,8 @@ from typing import Any
 
 from ...quantities import M, Parameter
 from ..frames import to_room, velocity_at
+from ..signs import Shows
+from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.01, lower=-2.0, upper=2.0, source="rigid-body kinematics")
@@ -24,4 +26,6 @@ EFFECT = Effect(
         adds("read_u", lambda point_x, point_y, psi_dot: velocity_at(point_x, point_y, 0, 0, psi_dot)[0]),
         adds("read_v", lambda point_x, point_y, psi_dot: velocity_at(point_x, point_y, 0, 0, psi_dot)[1]),
     ),
+    signs=(Shows("coast-down", "sensor.x", more=True), Shows("coast-down", "sensor.y", more=True)),
+    sketches=(from_above(Spot((0.19, 0.18)), Length((0, 0), (0, 0.18), "x"), Length((0, 0.18), (0.19, 0.18), "y")),),
 )

@@ -7,6 +7,8 @@ that goes round it is not.
 
 from ...quantities import N_M, M, Parameter
 from ..alike import TURNED_PATCHES
+from ..signs import Shows
+from ..sketch import REAR_RIGHT, Arrow, Turn, Wheel, from_above
 from ..stage import Effect, adds
 from .turn_slip import RATE, resistance
 
@@ -44,4 +46,13 @@ EFFECT = Effect(
     constants=(LENGTH, RATE),
     contributions=(adds("M_t", pivot, opposes="psi_dot"),),
     alike=(TURNED_PATCHES,),
+    signs=(Shows("spin", "chair.psi_dot", more=False),),
+    sketches=(
+        from_above(
+            Wheel("rr"),
+            Turn(REAR_RIGHT, "M", clockwise=False),
+            Turn((0, 0.05), "ψ'", radius=0.07, moves=True),
+            Arrow((-0.4, -0.2), (-0.4, 0.1), "rolls", moves=True),
+        ),
+    ),
 )

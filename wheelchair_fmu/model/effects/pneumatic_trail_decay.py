@@ -1,6 +1,8 @@
-"""The pneumatic trail shrinks with slip, so the self-aligning torque saturates before the force."""
+"""The pneumatic trail shrinks with slip, so the self-aligning torque saturates before the force:  M / (1 + inv_slip |λ|)."""
 
 from ...quantities import PER_RAD, RAD, Parameter
+from ..signs import Shows
+from ..sketch import Curve, graph
 from ..smooth import magnitude
 from ..stage import Effect, scales
 
@@ -29,4 +31,13 @@ EFFECT = Effect(
     parameters=(INV_SLIP,),
     constants=(ROUNDING,),
     contributions=(scales("M_lam", decay),),
+    signs=(Shows("steady-turn", "chair.curvature", more=True),),
+    sketches=(
+        graph(
+            "slip angle λ",
+            "self-aligning torque",
+            Curve(lambda x: 0.95 * x, "", before=True),
+            Curve(lambda x: 0.95 * x / (1 + 1.6 * x), "inv_slip above 0"),
+        ),
+    ),
 )

@@ -8,6 +8,8 @@ from typing import Any
 from ...quantities import ONE, Parameter
 from ..alike import WHOLE_SCALE
 from ..sides import difference_of, mean_of, of_mean
+from ..signs import Shows
+from ..sketch import REAR_LEFT, REAR_RIGHT, Arrow, Curve, Wheel, from_above, graph
 from ..stage import Effect, scales
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.02, source="instrument")
@@ -41,4 +43,21 @@ EFFECT = Effect(
     parameters=(MEAN, DIFFERENCE),
     contributions=(scales("F_t", lambda gain_mean, gain_difference: 1 / (1 + of_mean(gain_mean, gain_difference))),),
     alike=(WHOLE_SCALE,),
+    signs=(Shows("start-stop", "chair.u", more=False), Shows("start-stop", "chair.psi", more=True)),
+    sketches=(
+        graph(
+            "push that acts",
+            "recorded push",
+            Curve(lambda x: 0.7 * x, "", before=True),
+            Curve(lambda x: 0.95 * x, "mean above 0"),
+            of="mean",
+        ),
+        from_above(
+            Wheel("rl"),
+            Wheel("rr"),
+            Arrow(REAR_LEFT, (-0.275, 0.02), "record"),
+            Arrow(REAR_RIGHT, (0.275, 0.14), "record"),
+            of="difference",
+        ),
+    ),
 )

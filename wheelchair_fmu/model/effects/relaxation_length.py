@@ -6,10 +6,14 @@ moves as fast as the hub slides, so the tyre is a spring that gives back no more
 with W' = C λ_F σ z' the power C λ_F v_y + W' is −|v_x| C λ_F z, never above zero.
 """
 
+from math import exp
+
 import casadi as cs
 
 from ...quantities import RAD, REAR, M, Parameter, State
 from ..chassis import per_wheel
+from ..signs import Shows
+from ..sketch import Curve, graph
 from ..smooth import magnitude
 from ..stage import Effect, Row, adds
 
@@ -67,4 +71,13 @@ EFFECT = Effect(
     contributions=(adds("lam_F", deflected),),
     rows=(Row(LAGGED, mass=lambda sigma: per_wheel(sigma), rate=rolling, start=rolled_slip),),
     absorbs=wound,
+    signs=(Shows("steady-turn", "slip.rr", more=True, seconds=0.5),),
+    sketches=(
+        graph(
+            "way rolled",
+            "side force",
+            Curve(lambda x: 0.85, "", before=True),
+            Curve(lambda x: 0.85 * (1 - exp(-x / 0.3)), "σ = 0.3 of the way"),
+        ),
+    ),
 )

@@ -8,6 +8,8 @@ import casadi as cs
 
 from ...quantities import N, Parameter
 from ..alike import SIDE_PULL
+from ..signs import Shows
+from ..sketch import REAR_LEFT, Arrow, Turn, Wheel, from_above
 from ..stage import Effect, adds
 
 D = Parameter(
@@ -41,4 +43,13 @@ EFFECT = Effect(
     parameters=(D,),
     contributions=(adds("D_w", uneven),),
     alike=(SIDE_PULL,),
+    signs=(Shows("coast-down", "chair.psi", more=False),),
+    sketches=(
+        from_above(
+            Wheel("rl"),
+            Arrow(REAR_LEFT, (-0.275, -0.42), "D/2 more"),
+            Arrow((0.275, -0.42), (0.275, -0.26), "D/2 less"),
+            Turn((0, 0.05), "veers", clockwise=False, radius=0.07, moves=True),
+        ),
+    ),
 )

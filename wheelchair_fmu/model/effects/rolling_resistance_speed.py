@@ -7,6 +7,8 @@ import casadi as cs
 
 from ...quantities import N_S_M, Parameter
 from ..alike import DRAG_SLOPE
+from ..signs import Shows
+from ..sketch import PIVOT_LEFT, PIVOT_RIGHT, REAR_LEFT, REAR_RIGHT, Arrow, from_above
 from ..stage import Effect, adds
 
 K = Parameter(
@@ -45,4 +47,14 @@ EFFECT = Effect(
     parameters=(K,),
     contributions=(adds("d_r", rear), adds("d_f", front)),
     alike=(DRAG_SLOPE,),
+    signs=(Shows("coast-down", "chair.u", more=False),),
+    sketches=(
+        from_above(
+            Arrow(REAR_LEFT, (-0.275, -0.45)),
+            Arrow(REAR_RIGHT, (0.275, -0.45), "k v N/ΣN"),
+            Arrow(PIVOT_LEFT, (-0.225, 0.08)),
+            Arrow(PIVOT_RIGHT, (0.225, 0.08)),
+            Arrow((0, 0), (0, 0.22), "u", moves=True),
+        ),
+    ),
 )

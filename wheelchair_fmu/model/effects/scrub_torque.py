@@ -2,6 +2,8 @@
 
 from ...quantities import N_M, RAD_S, Parameter
 from ..alike import TURNED_PATCHES
+from ..signs import Shows
+from ..sketch import Turn, from_above
 from ..smooth import grip
 from ..stage import Effect, adds
 
@@ -32,4 +34,6 @@ EFFECT = Effect(
     constants=(RATE,),
     contributions=(adds("M_z", scrub, opposes="psi_dot"),),
     alike=(TURNED_PATCHES,),
+    signs=(Shows("spin", "chair.psi_dot", more=False),),
+    sketches=(from_above(Turn((0, 0), "M", clockwise=False, radius=0.17), Turn((0, 0), "ψ'", radius=0.08, moves=True)),),
 )

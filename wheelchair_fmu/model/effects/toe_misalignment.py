@@ -11,6 +11,8 @@ import casadi as cs
 from ...quantities import RAD, Parameter
 from ..alike import SIDE_PULL
 from ..sides import difference_of, of_sum, sum_of
+from ..signs import Shows
+from ..sketch import Arrow, Length, Wheel, from_above
 from ..stage import Effect, adds
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.005, lower=-0.4, upper=0.4, source="VanderWiel2016")
@@ -63,4 +65,9 @@ EFFECT = Effect(
     ),
     even=True,
     alike=(SIDE_PULL,),
+    signs=(Shows("coast-down", "chair.v", more=True), Shows("coast-down", "chair.u", more=False, either=True)),
+    sketches=(
+        from_above(Wheel("rl", 12), Wheel("rr", 12), Arrow((-0.12, 0.08), (0.12, 0.08)), of="sum"),
+        from_above(Wheel("rl", -12), Wheel("rr", 12), Length((-0.34, 0.15), (0.34, 0.15)), of="difference"),
+    ),
 )

@@ -18,6 +18,8 @@ acceleration it has
 import casadi as cs
 
 from ...quantities import HZ, M_S, ONE, M, N, Parameter, S, State
+from ..signs import Shows
+from ..sketch import Arrow, Length, Spot, from_the_side
 from ..stage import Effect, Row, adds
 
 AMPLITUDE = Parameter(
@@ -156,4 +158,15 @@ EFFECT = Effect(
         Row(State("sway", M_S, "how fast it swings", nominal=0.1), lambda: 1.0, sway_rate),
     ),
     absorbs=muscles,
+    signs=(
+        Shows("start-stop", "sensor.wheel_speed_r", more=False, seconds=0.3),
+        Shows("start-stop", "sensor.wheel_speed_r", more=False, seconds=0.3),
+    ),
+    sketches=(
+        from_the_side(
+            Spot((0.16, 0.6), "CM"),
+            Length((0, 0.66), (0.16, 0.66), "s"),
+            Arrow((-0.2, -0.07), (0.05, -0.07), "push", moves=True),
+        ),
+    ),
 )

@@ -10,6 +10,8 @@ import casadi as cs
 
 from ...quantities import N_M, RAD_S, M, Parameter
 from ..alike import TURNED_PATCHES, YAW_RESISTANCE
+from ..signs import Shows
+from ..sketch import REAR_LEFT, REAR_RIGHT, Turn, Wheel, from_above
 from ..stage import Effect, adds
 
 TORQUE = Parameter(
@@ -86,4 +88,18 @@ EFFECT = Effect(
     constants=(LENGTH, CASTER_LENGTH, RATE),
     contributions=(adds("M_t", rear, opposes="psi_dot"), adds("M_p", front, opposes="turning")),
     alike=(TURNED_PATCHES, YAW_RESISTANCE),
+    signs=(Shows("spin", "chair.psi_dot", more=False), Shows("steady-turn", "chair.curvature", more=False)),
+    sketches=(
+        from_above(
+            Wheel("rl"),
+            Wheel("rr"),
+            Wheel("fl"),
+            Wheel("fr"),
+            Turn(REAR_LEFT, "", clockwise=False),
+            Turn(REAR_RIGHT, "M", clockwise=False),
+            Turn((-0.225, 0.2), "", clockwise=False, radius=0.07),
+            Turn((0.225, 0.2), "M_f", clockwise=False, radius=0.07),
+            Turn((0, 0), "ψ'", radius=0.07, moves=True),
+        ),
+    ),
 )

@@ -1,6 +1,10 @@
-"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law."""
+"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law:  D = μ N  in (1)."""
+
+from math import atan, sin
 
 from ...quantities import ONE, Parameter
+from ..signs import Shows
+from ..sketch import Curve, graph
 from ..stage import Effect, adds
 
 INV_MU = Parameter(
@@ -21,4 +25,13 @@ EFFECT = Effect(
     parameters=(INV_MU,),
     contributions=(adds("inv_mu", lambda more_inv_mu: more_inv_mu),),
     even=True,
+    signs=(Shows("steady-turn", "slip.rr", more=True),),
+    sketches=(
+        graph(
+            "slip angle λ",
+            "side force",
+            Curve(lambda x: 0.95 * x, "", before=True),
+            Curve(lambda x: 0.62 * sin(1.3 * atan(1.18 * x)), "at most μN"),
+        ),
+    ),
 )

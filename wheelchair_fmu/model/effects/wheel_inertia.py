@@ -2,6 +2,8 @@
 
 from ...quantities import KG, Parameter
 from ..alike import EFFECTIVE_MASS
+from ..signs import Shows
+from ..sketch import Turn, Wheel, from_the_side
 from ..stage import Effect, adds
 
 MASS = Parameter(
@@ -22,4 +24,6 @@ EFFECT = Effect(
     parameters=(MASS,),
     contributions=(adds("mass_u", lambda m_w: m_w), adds("inertia", lambda m_w, t_r: m_w * t_r * t_r / 4)),
     alike=(EFFECTIVE_MASS,),
+    signs=(Shows("start-stop", "chair.u", more=False),),
+    sketches=(from_the_side(Wheel("rear"), Turn((-0.2, 0.31), "I = m R²/2", radius=0.13)),),
 )

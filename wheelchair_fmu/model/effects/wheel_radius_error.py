@@ -7,6 +7,8 @@ from typing import Any
 
 from ...quantities import ONE, Parameter
 from ..sides import difference_of, mean_of, of_mean
+from ..signs import Shows
+from ..sketch import REAR_LEFT, REAR_RIGHT, Arrow, Length, Turn, Wheel, from_above, from_the_side
 from ..stage import Effect, scales
 
 COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.01, source="instrument")
@@ -39,4 +41,17 @@ EFFECT = Effect(
     "wheel speed sensors with a wrong radius",
     parameters=(MEAN, DIFFERENCE),
     contributions=(scales("read_wheel_speed", lambda scale_mean, scale_difference: 1 + of_mean(scale_mean, scale_difference)),),
+    signs=(Shows("coast-down", "sensor.wheel_speed_r", more=True), Shows("coast-down", "sensor.wheel_speed_r", more=True)),
+    sketches=(
+        from_the_side(
+            Wheel("rear"), Length((-0.2, 0.31), (-0.2, 0), "R"), Turn((-0.2, 0.31), "reads more", radius=0.13), of="mean"
+        ),
+        from_above(
+            Wheel("rl"),
+            Wheel("rr"),
+            Arrow(REAR_LEFT, (-0.275, 0.02), "reads"),
+            Arrow(REAR_RIGHT, (0.275, 0.14), "reads"),
+            of="difference",
+        ),
+    ),
 )

@@ -73,7 +73,7 @@ function ties(section, campaign) {
   const next = diagnosis.next_experiment;
   if (next) {
     const times = next.repeats === 1 ? "" : `, ${next.repeats} times`;
-    section.append(h("p", { class: "next" }, h("b", {}, `Measure next${times}: `), `${next.manoeuvre}. It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
+    section.append(h("p", { class: "next" }, h("b", {}, `Measure ${next.manoeuvre} next${times}.`), ` It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
   }
   const left = diagnosis.leftover;
   if (left?.where) {
