@@ -179,11 +179,18 @@ def torques(swivel_rate, swivel_eps, M_bearing, d_bearing):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(swivel, rolling, D_f, d_f, M_w, M_p, F_caster, c, drag_eps):
+def casters(swivel, rolling, D_f, d_f, M_w, M_p, F_caster, c, drag_eps, v_onset):
     """(6), (7), (8) without the casters' mass: rolling resistance along the heading, the tyre's force across it."""
     forward, right = cs.cos(swivel), cs.sin(swivel)
-    drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
+    drag = -(D_f / speed(rolling * rolling, drag_eps + v_onset) + d_f) * rolling
     return M_w + M_p - c * F_caster, drag * forward - F_caster * right, drag * right + F_caster * forward, -M_w
+
+
+def turned_and_wound(turning_rate, turning_torque, C_caster, deflection, mu_caster, N_f, deflecting):
+    """Power that turns the casters, and that winds their tyres without what the carcass damps."""
+    wound = C_caster * deflection
+    spring = wound / cs.sqrt(1 + (wound / (mu_caster * cs.fmax(N_f, LIGHTEST))) ** 2)
+    return cs.sum1(turning_rate * turning_torque + spring * deflecting)
 
 
 LAW = Alternative(
@@ -202,4 +209,5 @@ LAW = Alternative(
     ),
     loads=loads,
     serves=(swivelling.LAW.name,),
+    absorbs=turned_and_wound,
 )
