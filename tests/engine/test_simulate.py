@@ -157,7 +157,7 @@ def test_not_a_number_is_said_with_its_time():
 
 
 def test_what_would_take_hours_is_refused():
-    """A tolerance that asks for steps of some 1e-11 s: a thousand times as many as the next run takes in a tenth of a second."""
+    """A tolerance that asks for steps of some 1e-11 s: a thousand times as many as another that is small."""
     simulator = Simulator()
     t = np.linspace(0, 0.2, 3)
     w = simulator.inputs(len(t), {"push.F_rl": 10.0, "push.F_rr": -9.0})

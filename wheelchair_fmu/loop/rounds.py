@@ -28,11 +28,13 @@ class Belief:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of search: the model it started from, all scores, and the refitted candidates, best first; `groups` are those
-    of several effects together. `again`: it is for what an earlier round found, beside all that was found later. `contested`:
-    it judges one effect of a group that others came near to, and nobody asked whether they do so in the place of this one.
-    `odds` are those of each of its candidates, before anything was measured, beside an effect's of the catalogue; `explained` is
-    by how much −2 log likelihood fell to its model from one without any effect."""
+    """The model that a round started from, all scores, and what was refitted, best first; `groups` are of several effects.
+
+    `again`: it is for what an earlier round found, beside all that was found later. `contested`: it judges one effect of a
+    group that others came near to, and nobody asked whether they do so in the place of this one. `odds` are those of each of
+    its candidates, before anything was measured, beside an effect's of the catalogue; `explained` is by how much −2 log
+    likelihood fell to its model from one without any effect.
+    """
 
     effects: tuple[str, ...]
     fit: Fit

@@ -51,8 +51,8 @@ def beside(
     before: Round | None,
     calibrated: float = 0.0,
 ) -> Round | None:
-    """One of the `effects` of a `final` model searched for again, beside all the others. `before` is the round that found it, if
-    that knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or
+    """One of the `effects` of a `final` model searched for again, beside all the others. `before` is the round that found it,
+    if that knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or
     where the model cannot run without it."""
     w, others = search.factory, tuple(e for e in effects if e != effect)
     try:

@@ -5,20 +5,44 @@ from __future__ import annotations
 from typing import Any
 
 from ..loop.ties import grouped
-from .told import Told, actions, capital, exceeds, fall_words, number, odds_words, rival_words, size_lines, sized
-from .words import listed, probability_words, value_text
+from .told import (
+    Told,
+    actions,
+    capital,
+    exceeds,
+    fall_words,
+    number,
+    odds_words,
+    rival_words,
+    size_lines,
+    sized,
+    together_words,
+)
+from .words import listed, probability_words, spoken, strained
 
 
 def cards(t: Told) -> list[dict[str, Any]]:
-    """What, how sure, what to do: [{"head", "lead", "lines"}]."""
+    """What, how sure, what to do: [{"head", "lead", "lines"}], some with a "gauge" of bars:
+    {"bars": [(label, length)], "mark": a length, "words": what it is}."""
     lead, lines = _what(t)
     sure, reasons = _how_sure(t)
     first, *more = [f"{part}." for line in actions(t)[:1] for part in line.rstrip(".").split(". ")] + actions(t)[1:]
     return [
-        {"head": "What", "lead": lead, "lines": lines},
-        {"head": "How sure", "lead": sure, "lines": reasons},
+        {"head": "What", "lead": lead, "lines": lines, **_size_gauge(t)},
+        {"head": "How sure", "lead": sure, "lines": reasons, **_fall_gauge(t)},
         {"head": "What to do", "lead": first, "lines": more},
     ]
+
+
+def _size_gauge(t: Told) -> dict[str, Any]:
+    if len(t.found) != 1 or t.verdict not in ("missing", "small"):
+        return {}
+    return {"gauge": {"bars": [("size", t.multiple(t.found[0]))], "mark": 1.0, "words": "would matter"}}
+
+
+def _fall_gauge(t: Told) -> dict[str, Any]:
+    before, after = t.fall
+    return {"gauge": {"bars": [("before", before), ("after", after)], "mark": 1.0, "words": "noise alone"}} if t.falls else {}
 
 
 def _what(t: Told) -> tuple[str, list[str]]:
@@ -32,7 +56,7 @@ def _what(t: Told) -> tuple[str, list[str]]:
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
             return capital(t.title(t.found[0])), size_lines(t, t.found[0])
-        return f"{number(len(t.found))} effects", [sized(t, e) for e in t.found]
+        return f"{number(len(t.found))} effects", [*(sized(t, e) for e in t.found), *together_words(t)]
     if t.verdict == "outside":
         return _outside(t)
     if t.verdict == "adequate":
@@ -44,20 +68,25 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     found = t.proposal
     if found:
         record = t.records[f"effect.{found['term']}.q"]
-        size = value_text(found["estimate"], found["se"], record.unit)
-        return "A force that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
-    bent = [n for n, v in (t.diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+        size = spoken(found["estimate"], found["se"], record.unit)
+        return "A force or torque that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
+    bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
-    return "Something that no effect in the catalogue describes", (
-        helped or ([f"It comes down only with an unbelievable {listed(bent, 'and')}."] if bent else [])
-    )
+    come = "come" if len(bent) > 1 else "comes"
+    only = [f"The error comes down only where {listed(bent, 'and')} {come} out as nobody would measure it."] if bent else []
+    return "Something that no effect in the catalogue describes", helped or only
 
 
 def _how_sure(t: Told) -> tuple[str, list[str]]:
     fall, rivals = fall_words(t), rival_words(t)
     if t.verdict == "tie":
         left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
-        together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
+        errors = {f"{error:.2f}" for error in left.values()}
+        if len(left) == len(t.found) > 1 and len(errors) == 1:
+            each = "either" if len(left) == 2 else "any of them"
+            together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
+        else:
+            together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
         return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
     if t.verdict in ("missing", "small") and t.found:
         sure = min(exceeds(t.rows[e]) for e in t.found)

@@ -7,9 +7,10 @@ import { forest, panels } from "page/forest";
 import { Heat, heat } from "page/heat";
 import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
+import { against, drawn as drawnAgainst } from "page/regimes";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, listed, runOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
@@ -42,10 +43,9 @@ export class Figures {
     this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
-    this.add("regimes", "When the error is", this.moments(), true);
+    this.add("regimes", "The error against what was going on", this.moments());
     this.add("physical", "The same in the sensors' own units", this.units());
     this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
-    this.heatRegimes = new Heat(this.all.regimes.drawing, "Error by quarters of all samples, noise = 1", ["least", "", "", "greatest"]);
   }
 
   stairs() {
@@ -53,7 +53,7 @@ export class Figures {
     return {
       draw: (width, look) => staircase(width, look, this.ladder, this.apart() ? this.app.now : null),
       columns: () => ({ step: steps().map((s) => s.name), "held-out runs": steps().map((s) => s.heldout), "fitted runs": steps().map((s) => s.fit) }),
-      caption: () => `Root mean square error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
+      caption: () => `Error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
     };
   }
 
@@ -69,24 +69,25 @@ export class Figures {
       const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
       if (!own || !p.delta) return null;
       const [low, high] = own.interval ?? [own.estimate - 1.96 * (own.se ?? 0), own.estimate + 1.96 * (own.se ?? 0)];
-      return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${p.name.split(".").at(-1).replaceAll("_", " ")}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
+      return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
         note: withError(own.estimate, own.se, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
-      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, in the smallest that would matter", "shaded: too small to matter"),
+      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as refitted, or as its slope foretells, in the smallest that would matter. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
   }
 
   calibrated() {
     const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
+      const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
       const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
-      const bounds = v.at_bound ? [v.lower, v.upper].filter(Number.isFinite).map((b) => (b - v.prior) / v.prior_sd) : [];
-      const words = record.meaning ?? name;
-      return { name: capital(words), words, value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
+      const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
+      const words = record.meaning ?? name, [low, high] = [Math.max(off - by, at(v.lower, -Infinity)), Math.min(off + by, at(v.upper, Infinity))];
+      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
         parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
@@ -110,7 +111,7 @@ export class Figures {
 
   sizeOf(name) {
     const effect = this.campaign.effects.find((e) => e.parameters.some((p) => p.name === name)), record = effect.parameters.find((p) => p.name === name);
-    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${name.split(".").at(-1).replaceAll("_", " ")}` : "") };
+    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${shortOf(name)}` : "") };
   }
 
   profiled(curves) {
@@ -118,12 +119,13 @@ export class Figures {
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
       columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "fall of twice the log likelihood": all.flatMap((p) => p.ys) }),
-      caption: () => "How much worse the model fits (twice the fall of the log likelihood, allowing for residuals that last) where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
+      caption: () => "How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
     };
   }
 
   joined(joint) {
-    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta) };
+    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
+      bounds: sizes.map(({ record: { lower, upper, delta } }) => [(lower ?? -Infinity) / delta, (upper ?? Infinity) / delta]) };
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),
@@ -162,7 +164,7 @@ export class Figures {
       draw: (width, look) => {
         const { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
         const most = Math.max(4, ...Array.from(timeline.errors).filter(Number.isFinite).map(Math.abs));
-        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error [σ]", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
+        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error ÷ noise", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
       },
       columns: () => {
         const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);
@@ -170,7 +172,7 @@ export class Figures {
       },
       caption: () => {
         const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within ±2 σ. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
       },
     };
   }
@@ -192,11 +194,19 @@ export class Figures {
   }
 
   moments() {
+    const { app, campaign } = this, panels = () => this.against ?? [];
     return {
-      draw: (width, look) => heat(width, look, ["least", "", "", "greatest"], this.times ?? []),
-      columns: () => { const cells = this.rows ?? []; return { regime: cells.map((r) => r.name), from: cells.map((r) => r.from), to: cells.map((r) => r.to), "error, noise = 1": cells.map((r) => r.rms), "share of the excess": cells.map((r) => r.share) }; },
-      caption: () => "Error in each quarter of all samples, sorted by what was going on: a row whose colour grows to one side shows when the model fails.",
+      subject: () => `${campaign.name}, all runs`, file: () => `${campaign.name}-regimes-${app.shown.channel}`,
+      draw: (width, look) => drawnAgainst(width, look, panels()),
+      columns: () => ({ regime: panels().flatMap((p) => p.xs.map(() => p.label)), at: panels().flatMap((p) => p.xs), "mean error, noise = 1": panels().flatMap((p) => p.means), "2.5 % lie below": panels().flatMap((p) => p.lows), "2.5 % lie above": panels().flatMap((p) => p.highs) }),
+      caption: () => `Error of the ${channelOf(app.shown.channel)} in all runs, measured less model, in units of the noise: its mean, and about it where 95 of 100 readings lie; a perfect model keeps within the shading. A line that leaves zero shows when the model fails.${this.worst()}`,
     };
+  }
+
+  /** When the error over all channels is greatest. */
+  worst() {
+    const most = (this.rows ?? []).reduce((a, b) => (a && a.rms >= b.rms ? a : b), null);
+    return most ? ` Over all channels the error is greatest, ${rms(most.rms)} times the noise, where the ${most.name} is ${between(most.from, most.to, this.campaign.regimes.find((r) => r.name === most.name))}.` : "";
   }
 
   units() {
@@ -218,12 +228,11 @@ export class Figures {
 
   /** The rest, once values rest. */
   rested() {
-    const { campaign, app } = this, records = new Map(campaign.regimes.map((r) => [r.name, r]));
+    const { campaign, app } = this;
     this.rows = excessBy(campaign.regimes, campaign.runs, app.results);
-    this.times = [...new Set(this.rows.map((r) => r.name))].map((name) => ({ name, cells: this.rows.filter((r) => r.name === name).map((r) => ({ value: r.rms, note: between(r.from, r.to, records.get(name)), at: null })) }));
-    this.heatRegimes.show(this.times);
-    for (const id of ["path", "overlay", "where", "regimes"]) this.all[id].said();
-    for (const id of ["staircase", "physical"]) this.all[id].redraw();
+    this.against = against(campaign.regimes, campaign.runs, app.results, app.shown.channel);
+    for (const id of ["path", "overlay", "where"]) this.all[id].said();
+    for (const id of ["staircase", "physical", "regimes"]) this.all[id].redraw();
   }
 
   redraw() {

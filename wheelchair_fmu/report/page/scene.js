@@ -1,7 +1,7 @@
 // The chair from above on a canvas: the whole path, and close by the model's chair with the measured one as a ghost, its wheels
 // and casters turning, and arrows of what pushes it.
 
-import { h } from "page/dom";
+import { h, sized } from "page/dom";
 import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
@@ -14,6 +14,7 @@ export class Scene {
     this.canvas = h("canvas", { class: "scene", role: "img" });
     this.paths = h("canvas"); // the overview, which only changes with the run and the model
     place.append(this.canvas);
+    this.room = sized(place);
   }
 
   /** `motion` is {time, model, measured, before, results, inputs, rolled, lacking}; see app.js. */
@@ -26,7 +27,7 @@ export class Scene {
   }
 
   fit() {
-    const width = Math.max(260, this.canvas.parentNode.clientWidth), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.room()[0]), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
     this.lying = xs[1] - xs[0] > ys[1] - ys[0];
@@ -88,7 +89,8 @@ export class Scene {
     if (!(near.w > 0)) return;
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    c.drawImage(this.paths, 0, 0);
+    const [wide, high] = [this.over.w, this.over.h].map((v) => Math.round(v * this.scale));
+    c.drawImage(this.paths, 0, 0, wide, high, 0, 0, wide, high);
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
     for (const [p, colour] of [[measured, look.measured], [model, look.model]]) {
       if (!p || !Number.isFinite(p.x[i] + p.y[i])) continue;
@@ -141,8 +143,28 @@ export class Scene {
       this.wheel(c, (way * rear) / 2, b, 2 * R, 0.045, 0, ghost ? null : rolled[side][i], colour);
       this.wheel(c, (way * front) / 2, -a, 0.14, 0.03, results[`caster.f${side}`]?.[i] ?? 0, null, colour, 0.05);
     }
-    if (!ghost) { c.fillStyle = colour; c.beginPath(); c.arc(0, 0, 0.022, 0, 7); c.fill(); }
+    if (!ghost) {
+      this.rider(c, a, b, rear, colour);
+      c.fillStyle = colour; c.beginPath(); c.arc(0, 0, 0.022, 0, 7); c.fill();
+    }
     c.restore();
+  }
+
+  /** Who sits in it, as wide as the chair lets him: backrest, legs with footrests, shoulders and head. */
+  rider(c, a, b, rear, colour) {
+    const half = Math.min(0.23, 0.42 * rear), back = b - 0.02, hips = back - 0.1;
+    c.fillStyle = c.strokeStyle = colour;
+    c.globalAlpha = 0.3;
+    for (const side of [-1, 1]) {
+      c.beginPath(); c.roundRect(side * 0.42 * half - 0.3 * half, -a - 0.06, 0.6 * half, hips + a + 0.06, 0.05); c.fill();
+      c.beginPath(); c.roundRect(side * 0.42 * half - 0.22 * half, -a - 0.26, 0.44 * half, 0.22, 0.04); c.fill();
+    }
+    c.beginPath(); c.ellipse(0, hips, half, 0.42 * half, 0, 0, 7); c.fill();
+    c.globalAlpha = 0.75;
+    c.beginPath(); c.arc(0, hips - 0.02, 0.085, 0, 7); c.fill();
+    c.lineWidth = 0.03; c.lineCap = "round";
+    c.beginPath(); c.moveTo(-half, back); c.lineTo(half, back); c.stroke();
+    c.globalAlpha = 1; c.lineCap = "butt";
   }
 
   /** A wheel from above; treads pass over it as it rolls. */
