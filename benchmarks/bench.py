@@ -19,7 +19,7 @@ from wheelchair_fmu.writing import written
 from .rows import table
 
 TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
-# Imported where they run: the processes of a sweep begin with this file, and need none of what the others do.
+# Imported where they run: the processes of fmpy's loop begin with this file, and need none of what the others do.
 GROUPS = ("step_cost", "run_cost", "sensitivity_cost", "lanes_cost", "file_cost", "sweep_cost", "loop_cost", "page_cost")
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 

@@ -37,6 +37,10 @@ class Fleet:
     recipe: Recipe = Recipe()
     what: ClassVar[str] = "campaigns, question or version"
 
+    @property
+    def by_threads(self) -> bool:
+        return False  # a search is Python for the most part
+
     @cached_property
     def keys(self) -> tuple[str, ...]:
         """For each campaign what decides its row: the files' content, the question, and this program."""
