@@ -15,7 +15,7 @@ help:
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
 	@echo "make release     in dist/release: wheel, sdist, FMUs for five platforms, list of components, documentation, checksums"
 	@echo "make lint    ruff, mypy, import-linter"
-	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
+	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy, SciPy and the last release, and growth; writes out/bench.json, out/growth.png"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"

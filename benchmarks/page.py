@@ -16,8 +16,9 @@ RECORDS, KEPT, PAGE = Path("out/bench.json"), Path("docs/performance.json"), Pat
 BEGINNING = """# How fast it is, and how fast it could be
 
 `make bench` measures all of this; `python -m benchmarks.page` then writes this page. Times are medians, with the least and the
-greatest of the repeats. What is said to be so many times faster is beside a peer of the same run on the same machine. A limit
-is what the arithmetic alone would take a core that is never kept waiting: operations are counted in the functions that are run,
+greatest of the repeats. What is said to be so many times faster is beside a peer of the same run on the same machine. The last
+release is of the same run as well: its source is unpacked and runs its own benchmark (`benchmarks/released.py`). A limit is
+what the arithmetic alone would take a core that is never kept waiting: operations are counted in the functions that are run,
 and a core's rates are measured (`python -m benchmarks.limits`).
 """
 
@@ -30,17 +31,21 @@ def page(records: dict[str, Any]) -> str:
 
 
 def _machine(machine: dict[str, str]) -> str:
-    said = {"core": "A core", "load": "Load average at the end"}
+    said = {"core": "A core", "load": "Load average at the end", "release": "Last release"}
     return "".join(f"- {said.get(key, key.capitalize())}: {value}\n" for key, value in machine.items())
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
-    lines = ["| what | median | least to greatest | times faster | target | note |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| what | median | least to greatest | last release | times faster | target | note |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for row in rows:
+        before = "" if row.get("released") is None else _with_unit(row["released"], row)
         faster = "" if row["ratio"] is None else f"{row['ratio']:.1f}×"
         lines.append(
-            f"| {row['what']} | {_with_unit(row['median'], row)} | {row['least']:.3g} to {row['greatest']:.3g} | {faster} | "
-            f"{_target(row)} | {row['note']} |"
+            f"| {row['what']} | {_with_unit(row['median'], row)} | {row['least']:.3g} to {row['greatest']:.3g} | {before} | "
+            f"{faster} | {_target(row)} | {row['note']} |"
         )
     return "\n".join(lines) + "\n"
 
