@@ -22,12 +22,14 @@ from . import released
 from .released import Released
 from .rows import Row, table
 
-TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
+FIGURE = Path("out/growth.png")
 # Imported where they run: the processes of fmpy's loop begin with this file, and need none of what the others do.
 GROUPS = (
     *("step_cost", "run_cost", "sensitivity_cost", "lanes_cost", "file_cost", "sweep_cost", "loop_cost", "command_cost"),
     "page_cost",
 )
+LARGE = ("large", "fleet_cost")  # half an hour and more; kept apart, and a section of their own on the page
+TARGETS = {False: Path("out/bench.json"), True: Path("out/bench-large.json")}
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 
@@ -75,9 +77,10 @@ def main(groups: Sequence[str] = ()) -> int:
     on["load"] = " ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "not known"
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))
-    with written(TARGET) as beside:
+    target = TARGETS[bool(groups) and set(groups) <= set(LARGE)]
+    with written(target) as beside:
         beside.write_text(json.dumps({"machine": on, "rows": [row.as_json() for row in rows]}, indent=2) + "\n")
-    console.print(TARGET)
+    console.print(target)
     if lines:
         with written(FIGURE) as beside:
             growth.figure(lines).savefig(beside, dpi=150)

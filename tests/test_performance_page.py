@@ -41,9 +41,23 @@ def elsewhere(tmp_path, monkeypatch):
 def test_the_command_keeps_the_records_beside_the_page(elsewhere, capsys):
     text = json.dumps({"machine": {"cores": "1"}, "rows": [Row("a run", "ms", [2.0]).as_json()]})
     page.RECORDS.write_text(text)
-    assert page.main() == 0 and page.KEPT.read_text() == text
+    assert page.main() == 0 and json.loads(page.KEPT.read_text()) == json.loads(text)
     assert page.PAGE.read_text(encoding="utf-8") == page.page(json.loads(text))
     assert "docs/performance.md" in capsys.readouterr().out.replace("\\", "/")
+
+
+def test_large_ones_have_a_section_and_either_stays_where_the_other_is_run(elsewhere):
+    def records(what, cores):
+        return json.dumps({"machine": {"cores": cores}, "rows": [Row(what, "ms", [2.0]).as_json()]})
+
+    page.RECORDS.write_text(records("a run", "1"))
+    assert page.main() == 0
+    page.RECORDS.unlink()
+    page.OF_LARGE.write_text(records("a fleet", "8"))
+    assert page.main() == 0
+    usual, _, large = page.PAGE.read_text(encoding="utf-8").partition("## Large")
+    assert "| a run |" in usual and "- Cores: 1\n" in usual and "a fleet" not in usual
+    assert "| a fleet |" in large and "- Cores: 8\n" in large and "a run |" not in large
 
 
 def test_without_records_it_says_what_writes_them(elsewhere, capsys):
