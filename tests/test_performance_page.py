@@ -23,7 +23,9 @@ def test_a_row_and_its_limit_on_the_page():
         Row("a run", "ms", [2.0, 4.0, 3.0], 10.0, 45.0, "beside another", limit=1.5, why="12 operations", released=3.5),
         Row("a file", "s", [5.0], 4.0),
     ]
-    made = page.page({"machine": {"cores": "2", "release": "v0.1.0", "core": "1 GFLOP/s"}, "rows": [row.as_json() for row in rows]})
+    made = page.page(
+        {"machine": {"cores": "2", "release": "v0.1.0", "core": "1 GFLOP/s"}, "rows": [row.as_json() for row in rows]}
+    )
     assert "- Cores: 2\n- Last release: v0.1.0\n- A core: 1 GFLOP/s\n" in made
     assert "| a run | 3 ms | 2 to 4 | 3.5 ms | 15.0× | ≥ 10×: met | beside another |" in made
     assert "| a file | 5 s | 5 to 5 |  |  | ≤ 4 s: **missed** |  |" in made
