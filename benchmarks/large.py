@@ -59,9 +59,10 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Cost:
-    """What a command took, and the most memory it held at once."""
+    """What a command took, by the clock and of processors, and the most memory it held at once."""
 
     seconds: float
+    processor: float
     gigabytes: float
     output: str
 
@@ -71,11 +72,17 @@ def rows() -> Iterator[Row]:
         hours, many = (make(Path(place) / f"{runs}", runs, minutes) for runs, minutes in (HOURS, MANY))
         for what, minutes in (("compare", COMPARED), ("diagnose", DIAGNOSED)):
             found = cost([what, hours])
-            yield Row(f"{what}, {HOURS[0]} runs of an hour", "min", [found.seconds / 60], minutes, note="7.2 million samples")
+            yield Row(
+                f"{what}, {HOURS[0]} runs of an hour",
+                "min",
+                [found.seconds / 60],
+                minutes,
+                note=f"{found.processor:.0f} s of processor time",
+            )
             yield Row(f"{what}, {HOURS[0]} runs of an hour: memory", "GB", [found.gigabytes], GIGABYTES)
         for what in ("check", "compare", "diagnose"):
             found = cost([what, many])
-            note = f"{found.gigabytes:.2f} GB"
+            note = f"{found.gigabytes:.2f} GB, {found.processor:.0f} s of processor time"
             yield Row(f"{what}, {MANY[0]} runs of {60 * MANY[1]:g} s", "s", [found.seconds], note=note)
 
 
@@ -137,7 +144,7 @@ def cost(words: Sequence[str | Path]) -> Cost:
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, process.args, output)
     unit = 1 if sys.platform == "darwin" else 1024  # bytes of ru_maxrss
-    return Cost(perf_counter() - start, used.ru_maxrss * unit / 1e9, output)
+    return Cost(perf_counter() - start, used.ru_utime + used.ru_stime, used.ru_maxrss * unit / 1e9, output)
 
 
 def main() -> int:
@@ -156,7 +163,10 @@ def main() -> int:
     load = os.getloadavg()[0]
     found = cost([chosen.what, chosen.folder])
     print(found.output)
-    print(f"{chosen.what}: {found.seconds:.0f} s, {found.gigabytes:.2f} GB, at a load of {load:.1f} on {os.cpu_count()} cores")
+    print(
+        f"{chosen.what}: {found.seconds:.0f} s, {found.processor:.0f} s of processor time, {found.gigabytes:.2f} GB, "
+        f"at a load of {load:.1f} on {os.cpu_count()} cores"
+    )
     return 0
 
 

@@ -42,10 +42,7 @@ def schema(chair: Variant, metadata: Mapping[str, str]) -> pa.Schema:
     return pa.schema(
         [
             *(pa.field(name, pa.string(), metadata={"meaning": meaning}) for name, meaning in WORDS.items()),
-            *(
-                pa.field(name, pa.float64(), metadata={"unit": "1", "meaning": meaning})
-                for name, meaning in NUMBERS.items()
-            ),
+            *(pa.field(name, pa.float64(), metadata={"unit": "1", "meaning": meaning}) for name, meaning in NUMBERS.items()),
             pa.field(ERROR, pa.string(), metadata={"meaning": "why this campaign was not diagnosed; empty where it was"}),
             *(pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units),
         ],
