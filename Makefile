@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs site release test test-browser lint bench bench-diagnosis mutants importers matrix nightly clean
+.PHONY: help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -13,9 +13,10 @@ help:
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md, docs/options.md"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
-	@echo "make release     in dist/release: wheel, sdist, FMUs for five platforms, list of components, documentation, checksums"
+	@echo "make release     in dist/release, of the commit at hand: wheel, sdist, FMUs for five platforms, list of components, licences, documentation, checksums; a tag v1.2.3 is its version"
 	@echo "make lint    ruff, mypy, import-linter"
-	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy and SciPy, and growth; writes out/bench.json, out/growth.png"
+	@echo "make bench   speed and accuracy beside CVODES, LSODA, fmpy, SciPy and the last release, and growth; writes out/bench.json, out/growth.png"
+	@echo "make bench-large   twenty hours of recordings, 500 runs, a fleet of 1000 chairs on a cluster (an hour or more); writes out/bench-large.json"
 	@echo "make bench-diagnosis   the loop on hidden truths of another simulator (hours; TRIALS='--every 10' for fewer)"
 	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
@@ -57,7 +58,7 @@ site: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[site]"
 	.ci/site out/site
 
-# The wheel is tried in an empty environment, in another folder, before anything else is made.
+# The wheel is tried and tested in an empty environment, in another folder. RELEASE_TESTS narrows or widens what is tested.
 release: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[release]"
 	.ci/release dist/release
@@ -83,6 +84,9 @@ mutants: setup
 
 bench: setup
 	$(BIN)/python -m benchmarks.bench
+
+bench-large: setup
+	$(BIN)/python -m benchmarks.bench large fleet_cost
 
 importers: setup $(VENV)-importers/.ready
 	IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python $(BIN)/python -m benchmarks.importers $(ARGS)

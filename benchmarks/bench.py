@@ -7,20 +7,29 @@ import os
 import platform
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from subprocess import CalledProcessError
 
 from rich.console import Console
 
 from wheelchair_fmu.engine import compiler
 from wheelchair_fmu.writing import written
 
-from .rows import table
+from . import released
+from .released import Released
+from .rows import Row, table
 
-TARGET, FIGURE = Path("out/bench.json"), Path("out/growth.png")
-# Imported where they run: the processes of a sweep begin with this file, and need none of what the others do.
-GROUPS = ("step_cost", "run_cost", "sensitivity_cost", "lanes_cost", "file_cost", "sweep_cost", "loop_cost", "page_cost")
+FIGURE = Path("out/growth.png")
+# Imported where they run: the processes of fmpy's loop begin with this file, and need none of what the others do.
+GROUPS = (
+    *("step_cost", "run_cost", "sensitivity_cost", "lanes_cost", "file_cost", "sweep_cost", "loop_cost", "command_cost"),
+    "page_cost",
+)
+LARGE = ("large", "fleet_cost")  # half an hour and more; kept apart, and a section of their own on the page
+TARGETS = {False: Path("out/bench.json"), True: Path("out/bench-large.json")}
 PACKAGES = ("casadi", "numpy", "scipy", "fmpy", "pyarrow")
 
 
@@ -44,29 +53,34 @@ def _processor() -> str:
 
 
 def main(groups: Sequence[str] = ()) -> int:
-    """Measure these groups, or all and how cost grows."""
+    """Measure these groups, or all and how cost grows, and some of the last release beside them."""
     from . import growth, limits
 
     console = Console(highlight=False, width=200)
     on = machine()
-    rows = []
+    rows: list[Row] = []
+    before = released.last()
     with Console(stderr=True).status("measuring") as status:
         for name in groups or GROUPS:
             group = import_module(f".{name}", __package__)
             status.update(f"measuring: {(group.__doc__ or '').partition('.')[0].partition(':')[0]}")
-            rows += list(group.rows())
+            found = list(group.rows())
+            figures = _of_release(before, name, console)
+            rows += [replace(row, released=figures.get(row.what)) for row in found]
         lines = []
         if not groups:
             status.update("measuring how cost grows")
             lines = growth.lines()
             rows += list(growth.rows(lines))
+    on["release"] = before.name if before else "not at hand"
     on["core"] = f"{limits.core(1)}; {limits.widest()}"
     on["load"] = " ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "not known"
     console.print(", ".join(f"{key} {value}" for key, value in on.items()))
     console.print(table(rows))
-    with written(TARGET) as beside:
+    target = TARGETS[bool(groups) and set(groups) <= set(LARGE)]
+    with written(target) as beside:
         beside.write_text(json.dumps({"machine": on, "rows": [row.as_json() for row in rows]}, indent=2) + "\n")
-    console.print(TARGET)
+    console.print(target)
     if lines:
         with written(FIGURE) as beside:
             growth.figure(lines).savefig(beside, dpi=150)
@@ -76,6 +90,15 @@ def main(groups: Sequence[str] = ()) -> int:
     for row in missed:
         console.print(f"MISSED  {row.what}: {row.against_target()}")
     return 0
+
+
+def _of_release(before: Released | None, group: str, console: Console) -> dict[str, float]:
+    """Medians by what was measured."""
+    try:
+        return before.figures(group) if before else {}
+    except CalledProcessError as error:
+        console.print(f"{group}: the last release ({before.name}) cannot be measured: {error.stderr.strip()}")
+        return {}
 
 
 if __name__ == "__main__":

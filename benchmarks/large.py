@@ -2,7 +2,8 @@
 
 `make` writes a campaign of N runs of M minutes at 100 Hz with eight channels, three quarters of the runs to be fitted, driven
 on the project's own kernel with more drag on the left wheel hidden in it; the other words are the commands, run
-in a process of their own, with the seconds they take and the most memory they hold.
+in a process of their own, with the seconds they take and the most memory they hold. As a group of `benchmarks.bench` it is
+twenty runs of an hour, and 500 of a quarter of a minute.
 """
 
 from __future__ import annotations
@@ -11,9 +12,10 @@ import argparse
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numpy as np
@@ -23,9 +25,12 @@ from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.model.variant import Variant
 
 from .independent.campaigns import NOISE
+from .rows import Row
 
 RATE, HOLD = 100.0, 0.8  # Hz; s between levels of the pushes
 HIDDEN = {"effect.rolling_resistance_asymmetry.D": 1.6}  # N
+HOURS, MANY = (20, 60.0), (500, 0.25)  # runs, and minutes of each
+COMPARED, DIAGNOSED, GIGABYTES = 5.0, 2.0, 2.0  # min, min
 SPEED, LOOKS = 1.0, 8.0  # m/s that the person keeps, by a look at the speed every so many seconds
 SENSORS = {
     "wheel_speed_l": "sensor.wheel_speed_l",
@@ -54,16 +59,38 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Cost:
-    """What a command took, and the most memory it held at once."""
+    """What a command took, by the clock and of processors, and the most memory it held at once."""
 
     seconds: float
+    processor: float
     gigabytes: float
     output: str
 
 
-def make(folder: Path, runs: int, minutes: float, ending: str = ".parquet", seed: int = 0) -> Path:
+def rows() -> Iterator[Row]:
+    with TemporaryDirectory() as place:
+        hours, many = (make(Path(place) / f"{runs}", runs, minutes) for runs, minutes in (HOURS, MANY))
+        for what, minutes in (("compare", COMPARED), ("diagnose", DIAGNOSED)):
+            found = cost([what, hours])
+            yield Row(
+                f"{what}, {HOURS[0]} runs of an hour",
+                "min",
+                [found.seconds / 60],
+                minutes,
+                note=f"{found.processor:.0f} s of processor time",
+            )
+            yield Row(f"{what}, {HOURS[0]} runs of an hour: memory", "GB", [found.gigabytes], GIGABYTES)
+        for what in ("check", "compare", "diagnose"):
+            found = cost([what, many])
+            note = f"{found.gigabytes:.2f} GB, {found.processor:.0f} s of processor time"
+            yield Row(f"{what}, {MANY[0]} runs of {60 * MANY[1]:g} s", "s", [found.seconds], note=note)
+
+
+def make(
+    folder: Path, runs: int, minutes: float, ending: str = ".parquet", seed: int = 0, hidden: Mapping[str, float] = HIDDEN
+) -> Path:
     """Write the campaign; recordings are Parquet or CSV by their `ending`."""
-    simulator = Simulator(Variant().with_values(HIDDEN))
+    simulator = Simulator(Variant().with_values(hidden))
     (folder / "runs").mkdir(parents=True, exist_ok=True)
     lines = ["[campaign]", 'axes = "SAE-J670"', "[noise]", *(f"{name} = {NOISE[name]}" for name in ("F_rl", "F_rr", *SENSORS))]
     for n in range(runs):
@@ -117,7 +144,7 @@ def cost(words: Sequence[str | Path]) -> Cost:
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, process.args, output)
     unit = 1 if sys.platform == "darwin" else 1024  # bytes of ru_maxrss
-    return Cost(perf_counter() - start, used.ru_maxrss * unit / 1e9, output)
+    return Cost(perf_counter() - start, used.ru_utime + used.ru_stime, used.ru_maxrss * unit / 1e9, output)
 
 
 def main() -> int:
@@ -136,7 +163,10 @@ def main() -> int:
     load = os.getloadavg()[0]
     found = cost([chosen.what, chosen.folder])
     print(found.output)
-    print(f"{chosen.what}: {found.seconds:.0f} s, {found.gigabytes:.2f} GB, at a load of {load:.1f} on {os.cpu_count()} cores")
+    print(
+        f"{chosen.what}: {found.seconds:.0f} s, {found.processor:.0f} s of processor time, {found.gigabytes:.2f} GB, "
+        f"at a load of {load:.1f} on {os.cpu_count()} cores"
+    )
     return 0
 
 

@@ -46,7 +46,7 @@ TESTS = (
     "tests/studies/sweep/test_design.py",
     "tests/studies/sweep/test_sweep.py::test_columns_say_their_units",
     # A few chairs diagnosed on a cluster, and their sizes together: SciPy, threadpoolctl, distributed, statsmodels.
-    "tests/fleet/test_fleet.py::test_a_dask_cluster_gives_the_same_rows",
+    "tests/fleet/test_fleet.py::test_a_dask_cluster_gives_the_same_bytes",
     "tests/fleet/test_summary.py",
     "tests/handling/test_linearize.py::test_python_control_takes_it",
     # Frames of the Python interface, and what is written of them: pandas, pyarrow, Pint.

@@ -17,7 +17,7 @@ class Row:
 
     A row with a `peer` (a median in the same unit) has a target for how many times faster it is; any other for its
     median itself. `limit`, in the same unit, is what the arithmetic alone would take (`limits`), and `why` says what it
-    is made of and what is between.
+    is made of and what is between. `released` is the last release's median in the same run.
     """
 
     what: str
@@ -28,6 +28,7 @@ class Row:
     note: str = ""
     limit: float | None = None
     why: str = ""
+    released: float | None = None
 
     @property
     def median(self) -> float:
@@ -62,6 +63,7 @@ class Row:
             "note": self.note,
             "limit": self.limit,
             "why": self.why,
+            "released": self.released,
         }
 
 
@@ -79,7 +81,7 @@ def timed(call: Callable[[], object], repeats: int) -> list[float]:
 def table(rows: Sequence[Row]) -> Table:
     shown = Table(box=box.SIMPLE)
     shown.add_column("what")
-    for title in ("median", "least to greatest", "limit", "times faster", "target"):
+    for title in ("median", "least to greatest", "last release", "limit", "times faster", "target"):
         shown.add_column(title, justify="right")
     shown.add_column("verdict")
     shown.add_column("note")
@@ -89,6 +91,7 @@ def table(rows: Sequence[Row]) -> Table:
             row.what,
             f"{row.median:.3g} {row.unit}",
             f"{min(row.samples):.3g} to {max(row.samples):.3g}",
+            "" if row.released is None else f"{row.released:.3g} {row.unit}",
             "" if row.limit is None else f"{row.limit:.3g} ({row.median / row.limit:.1f}×)",
             "" if row.ratio is None else f"{row.ratio:.1f}×",
             bound,

@@ -1,7 +1,7 @@
 """What a chair of a sweep costs, beside fmpy's own loop on the same cores.
 
 A steady turn of 10 s at 100 Hz, a random design over three parameters: 10 000 chairs by `wheelchair sweep` with all that it
-does (processes started, results written, parts put together), fewer by `fmpy.simulate_fmu`, for its time grows with their
+does (results written, parts put together), fewer by `fmpy.simulate_fmu`, for its time grows with their
 number alone. fmpy gets what makes it fastest: the FMU unpacked once in each process, one instance that is reset, only the
 outputs that the quantities need, and as many processes. Its time counts from when the processes are ready.
 """
@@ -156,6 +156,6 @@ def rows() -> Iterator[Row]:
         f"beside fmpy's loop on {workers} cores; curvatures agree to {off:.0e}",
         1e3 * work.seconds(core) / workers,
         f"{steps} steps and 1001 sets of results on one of {workers} cores, {work.operations / 1e6:.2f} million operations, "
-        f"{core.lanes} at once; most of the rest is that processes start, which 10 000 chairs share",
+        f"{core.lanes} at once; the rest is waiting for operands, parts that are written, and Python",
     )
     yield Row(f"a chair by fmpy's loop, of {FEWER}", "ms", per_chair)

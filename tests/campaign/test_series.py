@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.campaign import check, read
-from wheelchair_fmu.campaign.series import RARE, began, estimate, spikes
+from wheelchair_fmu.campaign.series import RARE, began, estimate, scatter, spikes, third_differences
 
 from .small import SI, csv_text, motion, rows
 
@@ -31,6 +31,18 @@ def test_estimate_within_ten_percent_on_a_smooth_signal(sd):
 def test_estimate_of_a_coarse_converter():
     t = np.arange(3000) * 0.01
     assert estimate([np.round(np.sin(0.2 * t), 1)]) == pytest.approx(0.1 / np.sqrt(12), rel=0.5)
+
+
+@pytest.mark.parametrize("step", [0.0, 1e-4, 0.05])
+def test_a_long_series_is_glanced_at_with_the_same_result(step):
+    """However coarse the converter is beside noise of 0.01."""
+    rng = np.random.default_rng(1)
+    long = np.sin(0.001 * np.arange(50_000)) + 0.01 * rng.standard_normal(50_000)
+    long = np.round(long / step) * step if step else long
+    long[100:200] = np.nan
+    levels = np.unique(long[np.isfinite(long)])
+    expected = max(scatter(third_differences(long)), np.diff(levels).min() / np.sqrt(12))
+    assert estimate([long]) == expected and estimate([long[:20_000], long[20_000:]]) == pytest.approx(expected, rel=1e-3)
 
 
 def test_nothing_to_estimate_from():

@@ -10,7 +10,7 @@ import pytest
 
 from wheelchair_fmu.engine import cache, compiler
 from wheelchair_fmu.engine.inverses import dividing_once
-from wheelchair_fmu.engine.lanes import OPERATIONS, lanes_source
+from wheelchair_fmu.engine.lanes import OPERATIONS, in_two, lanes_source
 from wheelchair_fmu.engine.source import CSRC
 from wheelchair_fmu.errors import BuildError
 
@@ -129,21 +129,41 @@ def test_every_operation_of_a_model_has_its_form(tmp_path):
     once = dividing_once(f, "f")
     used = {once.instruction_id(k) for k in range(once.n_instructions())} - {cs.OP_INPUT, cs.OP_OUTPUT, cs.OP_CONST}
     assert used <= set(OPERATIONS) and len(used) > 30
+    given = np.random.default_rng(6).uniform(0.1, 3, (2, cache.width()))
+    found = called(lanes_source({"f": f}), "lanes_f(arg, res);", given, f.numel_out(0), tmp_path)
+    for e in range(cache.width()):
+        np.testing.assert_allclose(found[:, e], f(given[:, e]).full().ravel(), rtol=4e-15, atol=1e-300)
+
+
+def called(text, call, given, results, folder):
+    """What `call` of the C `text` makes of two numbers in each lane, given as two arguments of one, or one of two."""
     width = cache.width()
     door = (
-        "void door(long n, const double *given, double *found) {\n"
-        f"    lanes a[2], y[{f.numel_out(0)}];\n"
-        "    const lanes *arg[] = {a};\n    lanes *res[] = {y};\n"
-        "    memcpy(a, given, sizeof a);\n    lanes_f(arg, res);\n    memcpy(found, y, sizeof y);\n}\n"
+        "void door(const double *given, double *found) {\n"
+        f"    lanes a[2], y[{results}];\n"
+        "    const lanes *arg[] = {a, a + 1};\n    lanes *res[] = {y};\n"
+        f"    memcpy(a, given, sizeof a);\n    {call}\n    memcpy(found, y, sizeof y);\n}}\n"
     )
-    (tmp_path / "f.c").write_text(lanes_source({"f": f}) + "#include <string.h>\n" + door)
+    (folder / "f.c").write_text(text + "#include <string.h>\n" + door)
     flags = [f"-I{CSRC}", "-fvisibility=default", f"-DWC_LANES={width}", *cache.VECTORS[width]]
-    library = ctypes.CDLL(str(compiler.compile_shared([tmp_path / "f.c"], tmp_path / f"f{compiler.SUFFIX}", flags)))
-    rng = np.random.default_rng(6)
-    given, found = rng.uniform(0.1, 3, (2, width)), np.empty((f.numel_out(0), width))
-    library.door(ctypes.c_long(0), ctypes.c_void_p(given.ctypes.data), ctypes.c_void_p(found.ctypes.data))
-    for e in range(width):
-        np.testing.assert_allclose(found[:, e], f(given[:, e]).full().ravel(), rtol=4e-15, atol=1e-300)
+    library = ctypes.CDLL(str(compiler.compile_shared([folder / "f.c"], folder / f"f{compiler.SUFFIX}", flags)))
+    found = np.empty((results, width))
+    library.door(ctypes.c_void_p(given.ctypes.data), ctypes.c_void_p(found.ctypes.data))
+    return found
+
+
+@pytest.mark.parametrize("resting", [(), (0,), (1,), (0, 1)])
+def test_what_rests_is_worked_out_once_and_gives_the_same(resting, tmp_path):
+    a, b = cs.SX.sym("a"), cs.SX.sym("b")
+    f = cs.Function("f", [a, b], [cs.vertcat(*of_each_operation(a, b), 2.5)])
+    given = np.random.default_rng(6).uniform(0.1, 3, (2, cache.width()))
+    whole, place = called(lanes_source({"f": f}), "lanes_f(arg, res);", given, f.numel_out(0), tmp_path), tmp_path / "in-two"
+    place.mkdir()
+    text, call = in_two(f, "g", resting), "lanes kept[1 + lanes_g_kept]; lanes_g_once(arg, kept); lanes_g(arg, res, kept);"
+    assert np.array_equal(called(text, call, given, f.numel_out(0), place), whole)
+    assert ("lanes_g_kept = 0;" in text) == (not resting)
+    again = text.rpartition("void lanes_g(")[2]
+    assert ("lanes_sin(" in again) == (0 not in resting)
 
 
 def test_an_operation_without_a_form_is_told():

@@ -92,13 +92,12 @@ def test_only_what_has_changed_is_diagnosed_again(garage, diagnosed, tmp_path):
 
 
 @pytest.mark.nightly
-def test_a_dask_cluster_gives_the_same_rows(garage, diagnosed, tmp_path):
+def test_a_dask_cluster_gives_the_same_bytes(garage, diagnosed, tmp_path):
     LocalCluster = pytest.importorskip("distributed").LocalCluster
     job, out = Fleet(folders([garage])), tmp_path / "out.parquet"
     with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None) as cluster:
         complete(job, out, dask(cluster.scheduler_address))
-    one, other = (pd.read_parquet(path).drop(columns="seconds") for path in (out, diagnosed[1].with_suffix(".parquet")))
-    pd.testing.assert_frame_equal(one, other)
+    assert out.read_bytes() == diagnosed[1].with_suffix(".parquet").read_bytes()
 
 
 def test_ones_own_effects_and_variant_go_with_the_work(tmp_path):

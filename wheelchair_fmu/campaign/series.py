@@ -16,6 +16,7 @@ ALONE = 3.0  # and times what the four neighbours differ from one to the next
 RARE = 0.01  # of all samples, and
 FEW = 3  # of a run; what is more frequent is how this sensor reads
 FIRST, LINE = 0.2, 8  # s from which a series' first value is taken, by a line if that is so many samples; of fewer
+GLANCED = 10_000  # readings, which a converter that is finer than the noise shows itself in
 MEDIAN = 10  # samples the median says it better
 
 
@@ -28,7 +29,11 @@ def estimate(series: Iterable[np.ndarray]) -> float | None:
     """
     series = list(series)
     sd = scatter(np.concatenate([third_differences(s) for s in series]) if series else np.empty(0))
-    return None if sd is None else max(sd, _quantum(series) / np.sqrt(12.0)) or None
+    if sd is None:
+        return None
+    values = np.concatenate(series)
+    few = values[:: max(1, len(values) // GLANCED)]  # steps between some of the values are no smaller than between all
+    return sd if 0 < _quantum(few) / np.sqrt(12.0) <= sd else max(sd, _quantum(values) / np.sqrt(12.0)) or None
 
 
 def third_differences(series: np.ndarray) -> np.ndarray:
@@ -58,9 +63,9 @@ def scatter(third: np.ndarray) -> float | None:
     return sd or float(np.sqrt(np.mean(third**2)))  # a coarse converter: most neighbours are equal
 
 
-def _quantum(series: list[np.ndarray]) -> float:
+def _quantum(values: np.ndarray) -> float:
     """The smallest step between two different values: what the converter resolves."""
-    values = np.unique(np.concatenate(series))
+    values = np.unique(values)
     steps = np.diff(values[np.isfinite(values)])
     return float(steps.min()) if steps.size else 0.0
 

@@ -19,6 +19,11 @@ class Job(Protocol):
     what: ClassVar[str]
 
     @property
+    def by_threads(self) -> bool:
+        """Whether threads of one process do it side by side: nearly all of its time is outside of Python."""
+        ...
+
+    @property
     def fingerprint(self) -> str: ...
 
     @property

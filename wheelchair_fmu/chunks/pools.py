@@ -1,4 +1,4 @@
-"""Who does the chunks: processes on this machine, or a Dask cluster."""
+"""Who does the chunks: threads or processes on this machine, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
 from multiprocessing import get_context, parent_process
@@ -22,16 +22,16 @@ AHEAD = 2  # chunks given out for each worker: one at work, one waiting
 
 
 def here(workers: int) -> Pool:
-    """All chunks in `workers` processes of this machine."""
+    """All chunks on this machine, `workers` at once: in threads where the job is for these, which need no time to start, else
+    in processes."""
 
     def chunks(job: Job, numbers: Iterable[int]) -> Iterator[tuple[int, pa.Table]]:
-        # spawned, not forked: this process has threads
-        pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin, (job,))
+        pool, do = _threads(job, workers) if job.by_threads else _processes(job, workers)
         waiting: dict[Future[pa.Table], int] = {}
         rest = iter(numbers)
         try:
             while True:
-                waiting |= {pool.submit(_chunk, n): n for n in islice(rest, AHEAD * workers - len(waiting))}
+                waiting |= {pool.submit(do, n): n for n in islice(rest, AHEAD * workers - len(waiting))}
                 if not waiting:
                     return
                 for done in wait(waiting, return_when=FIRST_COMPLETED).done:
@@ -45,6 +45,15 @@ def here(workers: int) -> Pool:
             pool.shutdown(cancel_futures=True)
 
     return chunks
+
+
+def _threads(job: Job, workers: int) -> tuple[Executor, Callable[[int], pa.Table]]:
+    return ThreadPoolExecutor(workers), job.table
+
+
+def _processes(job: Job, workers: int) -> tuple[Executor, Callable[[int], pa.Table]]:
+    """Spawned, not forked: this process has threads."""
+    return ProcessPoolExecutor(workers, get_context("spawn"), _begin, (job,)), _chunk
 
 
 _job: Job | None = None

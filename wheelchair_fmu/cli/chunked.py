@@ -16,7 +16,8 @@ from ..errors import UsageError
 from .group import console
 
 Workers = Annotated[
-    int | None, typer.Option("--workers", "--processes", min=1, help="Processes on this machine; all cores unless given.")
+    int | None,
+    typer.Option("--workers", "--processes", min=1, help="How many work at once on this machine; all cores unless given."),
 ]
 Address = Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="The scheduler of a Dask cluster.")]
 

@@ -23,7 +23,7 @@ from ..model.stage import Effect, Law
 from ..model.wheelchair import Choice, assemble
 from . import compiler, shipped
 from .kernel import at_rest, kernel, seldom_among
-from .lanes import lanes_source, of_stages
+from .lanes import in_two, lanes_source, of_stages
 from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
@@ -37,6 +37,7 @@ LEVELS = {
     **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
 }
 VECTORS = {8: ("-mavx512f", "-mavx512dq", "-mavx512vl"), 4: ("-mavx2",), 2: ()}  # flags by how many numbers a vector holds
+RESTING = {"output": (2,), "still": (1, 2)}  # results of a chair's rows: its parameters are the same in all; its inputs, too
 ANYWHERE = 2  # numbers in a vector: what every processor of a system has
 
 
@@ -164,14 +165,9 @@ def _compile_lanes(wanted: Wanted, step: str, results: Sequence[str], wide: int,
     places = {o.name: i for i, o in enumerate(model.outputs)}
     some = cs.densify(model.y[[places[name] for name in results]])
     output = cs.Function("output", [model.x, model.w, model.p], cs.cse([some]))
-    _link(
-        {"model_lanes": lanes_source({"step": kernel(model).functions[step], "output": output})},
-        ["lanes"],
-        0,
-        target,
-        wide,
-        None,
-    )
+    texts = [lanes_source({"step": kernel(model).functions[step]})]
+    texts += [in_two(output, name, resting) for name, resting in RESTING.items()]
+    _link({"model_lanes": "".join(texts)}, ["lanes"], 0, target, wide, None)
 
 
 def _by_hand(name: str, pushes: int, wide: int, cross: tuple[str, ...] | None) -> Path:

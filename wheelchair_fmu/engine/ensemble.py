@@ -7,6 +7,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
+from threading import RLock
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from .kernel import seldom
 from .simulate import Simulator, stopped
 
 log = logging.getLogger(__name__)
+deriving = RLock()  # CasADi's objects are not for several threads
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,8 @@ class Ensemble:
     """A variant, ready to run with many parameters; `results` are those wanted of it, by name.
 
     What a chair gives does not depend on which chairs are beside it, nor on how many numbers a vector holds, and is
-    `Simulator.run`'s but for rounding: sines and arctangents are not the C library's.
+    `Simulator.run`'s but for rounding: sines and arctangents are not the C library's. Instances are made one at a time
+    (`deriving`), and may run in parallel threads.
     """
 
     def __init__(self, simulator: Simulator, results: Sequence[str]):
@@ -71,16 +74,20 @@ class Ensemble:
         return runs
 
     def _library(self, step: str) -> ctypes.CDLL | None:
-        if step not in self._libraries:
-            variant = self.simulator.variant
-            try:
-                library = cache.lanes(variant.choice, variant.active(), step, self.results)
-                library.wc_lanes_work.restype = ctypes.c_long
-                self._libraries[step] = library
-            except BuildError as error:
-                log.info("chairs are simulated one by one: %s", error)
-                self._libraries[step] = None
-        return self._libraries[step]
+        with deriving:
+            if step not in self._libraries:
+                self._libraries[step] = self._compiled(step)
+            return self._libraries[step]
+
+    def _compiled(self, step: str) -> ctypes.CDLL | None:
+        variant = self.simulator.variant
+        try:
+            library = cache.lanes(variant.choice, variant.active(), step, self.results)
+        except BuildError as error:
+            log.info("chairs are simulated one by one: %s", error)
+            return None
+        library.wc_lanes_work.restype = ctypes.c_long
+        return library
 
     def _one_by_one(self, t: np.ndarray, w: np.ndarray, p: np.ndarray, tolerance: float, runs: Runs) -> None:
         for i, own in enumerate(p):

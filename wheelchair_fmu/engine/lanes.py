@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import casadi as cs
@@ -11,6 +12,7 @@ from ..errors import BuildError
 from .inverses import dividing_once
 from .tangent import Tangent
 
+HEADER = '#include "lanes.h"\n'
 OPERATIONS = {
     cs.OP_ASSIGN: "{0}",
     cs.OP_ADD: "{0} + {1}",
@@ -48,7 +50,27 @@ def lanes_source(functions: Mapping[str, cs.Function], same: Mapping[str, Contai
     `same`: by the function's name, arguments that are single numbers, the same in each lane.
     """
     written = (_written(dividing_once(f, name), name, same.get(name, ())) for name, f in functions.items())
-    return '#include "lanes.h"\n' + "".join(written)
+    return f"{HEADER}{''.join(written)}"
+
+
+def in_two(function: cs.Function, name: str, resting: Container[int]) -> str:
+    """C text of a function that is called again and again while its `resting` arguments are the same: what follows from these
+    alone is `void lanes_<name>_once(const lanes **arg, lanes *kept)`, of `lanes_<name>_kept` numbers, and the rest `void
+    lanes_<name>(const lanes **arg, lanes **res, const lanes *kept)`. Results are to the bit those of `lanes_source`."""
+    steps = list(_steps(dividing_once(function, name), name, ()))
+    moves: dict[int, bool] = {}
+    for s in steps:
+        moves[s.place] = s.result or (any(moves[i] for i in s.of) if s.argument is None else s.argument not in resting)
+    constants = {s.place for s in steps if s.constant}
+    kept = sorted({i for s in steps if moves[s.place] for i in s.of if not moves[i]} - constants)
+    once, again = ([s.text for s in steps if moves[s.place] is moving or s.constant] for moving in (False, True))
+    once += [f"kept[{n}] = a{i};" for n, i in enumerate(kept)]
+    again = [f"lanes a{i} = kept[{n}];" for n, i in enumerate(kept)] + again
+    return (
+        f"{HEADER}const int lanes_{name}_kept = {len(kept)};\n"
+        + _function(f"lanes_{name}_once(const lanes **arg, lanes *kept)", once)
+        + _function(f"lanes_{name}(const lanes **arg, lanes **res, const lanes *kept)", again)
+    )
 
 
 def of_stages(tangent: Tangent, prefix: str) -> tuple[str, dict[str, str]]:
@@ -64,24 +86,48 @@ def of_stages(tangent: Tangent, prefix: str) -> tuple[str, dict[str, str]]:
     return lanes_source(functions, STAGEWISE) + doors, names
 
 
+@dataclass(frozen=True)
+class _Step:
+    """One line of C: the number of its instruction, the numbers of those it is made of, or which argument it reads."""
+
+    text: str
+    place: int
+    of: tuple[int, ...] = ()
+    argument: int | None = None
+    result: bool = False
+
+    @property
+    def constant(self) -> bool:
+        return not self.of and self.argument is None
+
+
 def _written(function: cs.Function, name: str, same: Container[int]) -> str:
-    lines: list[str] = []
-    at: dict[int, str] = {}
+    return _function(f"lanes_{name}(const lanes **arg, lanes **res)", [s.text for s in _steps(function, name, same)])
+
+
+def _function(head: str, lines: Iterable[str]) -> str:
+    body = "".join(f"    {line}\n" for line in lines)
+    return f"void {head} {{\n{body}}}\n"
+
+
+def _steps(function: cs.Function, name: str, same: Container[int]) -> Iterator[_Step]:
+    at: dict[int, int] = {}
     for k in range(function.n_instructions()):
         op, given, to = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
+        argument: int | None = None
+        of: tuple[int, ...] = ()
         if op == cs.OP_OUTPUT:
-            lines.append(f"res[{to[0]}][{to[1]}] = {at[given[0]]};")
+            yield _Step(f"res[{to[0]}][{to[1]}] = a{at[given[0]]};", k, (at[given[0]],), result=True)
             continue
         if op == cs.OP_INPUT:
-            place = f"[{given[0]}]"
+            argument, place = given[0], f"[{given[0]}]"
             value = f"WC_EVEN(((const double *)arg{place})[{given[1]}])" if given[0] in same else f"arg{place}[{given[1]}]"
         elif op == cs.OP_CONST:
             value = f"WC_EVEN({float(function.instruction_constant(k))!r})"
         elif op in OPERATIONS:
-            value = OPERATIONS[op].format(*(at[i] for i in given))
+            of = tuple(at[i] for i in given)
+            value = OPERATIONS[op].format(*(f"a{i}" for i in of))
         else:
             raise BuildError(f"{name}: operation {op} of CasADi has no form over lanes; simulate this model chair by chair")
-        at[to[0]] = f"a{k}"
-        lines.append(f"lanes a{k} = {value};")
-    body = "\n".join(f"    {line}" for line in lines)
-    return f"void lanes_{name}(const lanes **arg, lanes **res) {{\n{body}\n}}\n"
+        at[to[0]] = k
+        yield _Step(f"lanes a{k} = {value};", k, of, argument)

@@ -37,6 +37,10 @@ class Fleet:
     recipe: Recipe = Recipe()
     what: ClassVar[str] = "campaigns, question or version"
 
+    @property
+    def by_threads(self) -> bool:
+        return False  # a search is Python for the most part
+
     @cached_property
     def keys(self) -> tuple[str, ...]:
         """For each campaign what decides its row: the files' content, the question, and this program."""
@@ -50,7 +54,7 @@ class Fleet:
 
     def known(self, out: Path) -> dict[int, pa.Table]:
         """Chunks that `out`, the result of a fleet with other campaigns, has already."""
-        if not out.is_file() or KEY not in pq.read_schema(out).names:
+        if not out.is_file() or pq.read_schema(out).names != self.schema().names:
             return {}
         table = pq.read_table(out)
         there = {key: i for i, key in enumerate(table.column(KEY).to_pylist())}

@@ -31,7 +31,6 @@ NUMBERS = {
     "rms_holdout_calibrated": "over runs held out, calibrated",
     "rms_fit": "over fitted runs, with what was found",
     "rms_holdout": "over runs held out, with what was found",
-    "seconds": "what the diagnosis took",
 }
 SE, KEY = ".se", "key"
 
@@ -43,10 +42,7 @@ def schema(chair: Variant, metadata: Mapping[str, str]) -> pa.Schema:
     return pa.schema(
         [
             *(pa.field(name, pa.string(), metadata={"meaning": meaning}) for name, meaning in WORDS.items()),
-            *(
-                pa.field(name, pa.float64(), metadata={"unit": "s" if name == "seconds" else "1", "meaning": meaning})
-                for name, meaning in NUMBERS.items()
-            ),
+            *(pa.field(name, pa.float64(), metadata={"unit": "1", "meaning": meaning}) for name, meaning in NUMBERS.items()),
             pa.field(ERROR, pa.string(), metadata={"meaning": "why this campaign was not diagnosed; empty where it was"}),
             *(pa.field(name, pa.float64(), metadata={"unit": unit}) for name, unit in units),
         ],
@@ -69,7 +65,6 @@ def of_diagnosis(d: Diagnosis) -> dict[str, Any]:
         "rms_holdout_calibrated": finite(calibrated.heldout),
         "rms_fit": last.fit,
         "rms_holdout": finite(last.heldout),
-        "seconds": d.seconds,
         **_estimates(d),
     }
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -99,8 +100,10 @@ def test_chairs_are_the_same_however_many_run_side_by_side(tmp_path, monkeypatch
     pd.testing.assert_frame_equal(apart, together, check_exact=True)
 
 
-def test_processes_do_what_one_does(tmp_path):
-    job = job_of(tmp_path, SMALL, chunk=4)
+@pytest.mark.parametrize("engine", ["kernel", "fmu"])  # in threads, and in processes
+def test_two_at_once_do_what_one_does(tmp_path, engine):
+    job = job_of(tmp_path, SMALL, chunk=4, engine=engine)
+    assert job.by_threads == (engine == "kernel")
     complete(job, tmp_path / "one.parquet", in_order)
     prepare(job)
     seen: list[int] = []
@@ -108,6 +111,14 @@ def test_processes_do_what_one_does(tmp_path):
     one, two = (pd.read_parquet(tmp_path / f"{name}.parquet") for name in ("one", "two"))
     pd.testing.assert_frame_equal(one, two)
     assert sum(seen) == len(two) == 16 and list(two.chair) == sorted(two.chair)
+
+
+def test_an_fmu_serves_several_threads(tmp_path):
+    job = job_of(tmp_path, SMALL, chunk=4, engine="fmu")
+    with ThreadPoolExecutor(2) as pool:
+        together = list(pool.map(job.table, range(job.chunks)))
+    for n, table in enumerate(together):
+        pd.testing.assert_frame_equal(table.to_pandas(), job.table(n).to_pandas(), check_exact=True)
 
 
 def test_stopped_and_run_again_nothing_is_lost_or_done_twice(tmp_path):
@@ -178,6 +189,7 @@ def test_columns_say_their_units(tmp_path):
 
 
 LONG = SMALL.replace("samples = 8", "samples = 4096").replace("time = 2", "time = 10")
+LONG_ENOUGH = {"kernel": LONG.replace("4096", "16384"), "fmu": SMALL.replace("samples = 8", "samples = 1024")}
 
 
 def command(folder, out, *words):
@@ -192,16 +204,18 @@ def wait_for_parts(out, n, process):
 
 @pytest.mark.nightly
 @pytest.mark.skipif(os.name == "nt", reason="SIGKILL is POSIX")
-def test_killed_outright_and_run_again(tmp_path):
-    job, out = job_of(tmp_path, LONG), tmp_path / "out.parquet"
-    first = subprocess.Popen(command(tmp_path, out, "--workers", "2"))
+@pytest.mark.parametrize("engine", list(LONG_ENOUGH))
+def test_killed_outright_and_run_again(tmp_path, engine):
+    job, out = job_of(tmp_path, LONG_ENOUGH[engine], engine=engine), tmp_path / "out.parquet"
+    words = command(tmp_path, out, "--workers", "2", "--engine", engine)
+    first = subprocess.Popen(words)
     wait_for_parts(out, 3, first)
     workers = descendants(first.pid)
     first.send_signal(signal.SIGKILL)
     first.wait()
-    assert gone(workers, 30) and (workers or not Path("/proc/self/stat").exists())
+    assert gone(workers, 30) and (workers or job.by_threads or not Path("/proc/self/stat").exists())
     kept = {file.name: file.stat().st_mtime_ns for file in folder(out).glob("[0-9]*.parquet")}
-    again = subprocess.Popen(command(tmp_path, out, "--workers", "2"))
+    again = subprocess.Popen(words)
     wait_for_parts(out, len(kept) + 1, again)
     assert all((folder(out) / name).stat().st_mtime_ns == at for name, at in kept.items())
     assert again.wait(120) == 0

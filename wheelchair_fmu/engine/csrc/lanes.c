@@ -6,9 +6,14 @@
 #include "advance.c"
 #include "lanes.h"
 
-/* Generated: one step, for (x, w0, w1, h, p) → x1, error, d2, d3; and the results that are wanted, for (x, w, p). */
+/* Generated: one step, for (x, w0, w1, h, p) → x1, error, d2, d3; and the results that are wanted, for (x, w, p), in two parts:
+ * what follows from parameters alone, or where no input moves from these as well, and the rest. */
 void lanes_step(const lanes **arg, lanes **res);
-void lanes_output(const lanes **arg, lanes **res);
+extern const int lanes_output_kept, lanes_still_kept;
+void lanes_output_once(const lanes **arg, lanes *kept);
+void lanes_output(const lanes **arg, lanes **res, const lanes *kept);
+void lanes_still_once(const lanes **arg, lanes *kept);
+void lanes_still(const lanes **arg, lanes **res, const lanes *kept);
 
 /* What all chairs go through. */
 typedef struct {
@@ -106,12 +111,14 @@ static void read_out(const course *c, const double *p, const double *rows, doubl
     for (int i = 0; i < np; i++) each[i] = WC_EVEN(p[i]);
     for (int q = 0; q < nw; q++) w[q] = WC_EVEN(c->w[q]);
     const lanes *arg[] = {x, w, each};
-    lanes *res[] = {result};
+    lanes *res[] = {result}, kept[1 + (c->movings ? lanes_output_kept : lanes_still_kept)];
+    (c->movings ? lanes_output_once : lanes_still_once)(arg, kept);
+    void (*output)(const lanes **, lanes **, const lanes *) = c->movings ? lanes_output : lanes_still;
     for (long row = 0; row < c->n; row += WC_LANES) {
         long left = c->n - row;
         for (int i = 0; i < nx; i++) memcpy(x + i, rows + i * c->padded + row, sizeof(lanes));
         for (int m = 0; m < c->movings; m++) memcpy(w + c->moving[m], c->inputs + m * c->padded + row, sizeof(lanes));
-        lanes_output(arg, res);
+        output(arg, res, kept);
         for (int i = 0; i < c->results; i++) {
             double *to = y + i * c->n + row;
             if (left >= WC_LANES) memcpy(to, result + i, sizeof(lanes));

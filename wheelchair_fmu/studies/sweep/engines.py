@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Protocol
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
-from ...engine.ensemble import Ensemble, Runs
+from ...engine.ensemble import Ensemble, Runs, deriving
 from ...engine.simulate import Simulator
 from ...errors import WheelchairError
 from ...model.choice import names
 from ...model.variant import Variant, number
+
+if TYPE_CHECKING:
+    from .. import Fmu
 
 Values = Mapping[str, float]
 TOLERANCE = 1e-6  # of the kernel's steps, which are free of the FMU's grid
 
 
 class Engine(Protocol):
-    """One variant, ready to run with any values (numbers, SI units; choices by their number)."""
+    """One variant, ready to run with any values (numbers, SI units; choices by their number), from several threads at once."""
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
         """Chairs, by their values, through the same inputs; the results that are wanted, by FMI name."""
@@ -36,7 +41,7 @@ class KernelEngine:
             n: Simulator(variant.with_values({"tyre.law": names(variant.choice)["tyre"][n - 1]})) for n in {own, *laws}
         }
         self._ensembles: dict[tuple[int, tuple[str, ...]], Ensemble] = {}
-        self._memory = np.empty(0)  # of the results, kept from run to run
+        self._own_of = threading.local()  # of each thread the memory of its results, kept from run to run
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
         p = np.tile(self._own, (len(chairs), 1))
@@ -55,13 +60,19 @@ class KernelEngine:
     def _of_law(
         self, law: int, time: np.ndarray, inputs: Mapping[str, np.ndarray], p: np.ndarray, wanted: tuple[str, ...]
     ) -> Runs:
-        if (law, wanted) not in self._ensembles:
-            self._ensembles[law, wanted] = Ensemble(self._simulators[law], wanted)
-        ensemble = self._ensembles[law, wanted]
-        rows, numbers = ensemble.simulator.inputs(len(time), inputs), len(p) * len(wanted) * len(time)
-        if len(self._memory) < numbers:
-            self._memory = np.empty(numbers)
-        return ensemble.run(time, rows, p, tolerance=TOLERANCE, memory=self._memory)
+        with deriving:
+            if (law, wanted) not in self._ensembles:
+                self._ensembles[law, wanted] = Ensemble(self._simulators[law], wanted)
+            ensemble = self._ensembles[law, wanted]
+        rows = ensemble.simulator.inputs(len(time), inputs)
+        return ensemble.run(time, rows, p, tolerance=TOLERANCE, memory=self._memory(len(p) * len(wanted) * len(time)))
+
+    def _memory(self, numbers: int) -> np.ndarray:
+        """At least so many, of this thread."""
+        kept: np.ndarray | None = getattr(self._own_of, "results", None)
+        if kept is None or len(kept) < numbers:
+            kept = self._own_of.results = np.empty(numbers)
+        return kept
 
 
 class FmuEngine:
@@ -70,21 +81,29 @@ class FmuEngine:
     def __init__(self, variant: Variant, laws: Iterable[int] = ()):
         from .. import Fmu, fmu_of  # brings fmpy along, which the kernel does without
 
-        self._fmu = Fmu(fmu_of(variant))
-        self._own = {name: value for name, value in variant.values.items() if name in self._fmu.parameters}
+        self._fmus = threading.local()  # one serves one thread
+        self._make: Callable[[], Fmu] = partial(Fmu, fmu_of(variant))
+        self._own = {name: value for name, value in variant.values.items() if name in self._fmu().parameters}
         self._own["tyre.law"] = 1 + names(variant.choice)["tyre"].index(variant.choice.tyre)
 
     def run(self, time: np.ndarray, inputs: Mapping[str, np.ndarray], chairs: Sequence[Values], wanted: Sequence[str]) -> Runs:
         runs = Runs(np.full((len(chairs), len(wanted), len(time)), np.nan), [None] * len(chairs))
+        fmu = self._fmu()
         for i, chair in enumerate(chairs):
-            values = {name: value for name, value in chair.items() if name in self._fmu.parameters}  # a record's delay is not
+            values = {name: value for name, value in chair.items() if name in fmu.parameters}  # a record's delay is not
             try:
-                columns = self._fmu.run(time, inputs, {**self._own, **values}).columns
+                columns = fmu.run(time, inputs, {**self._own, **values}).columns
             except WheelchairError as error:
                 runs.errors[i] = str(error)
             else:
                 runs.results[i] = [columns[name] for name in wanted]
         return runs
+
+    def _fmu(self) -> Fmu:
+        """This thread's."""
+        if not hasattr(self._fmus, "own"):
+            self._fmus.own = self._make()
+        return cast("Fmu", self._fmus.own)
 
 
 ENGINES: dict[str, type[KernelEngine] | type[FmuEngine]] = {"kernel": KernelEngine, "fmu": FmuEngine}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,6 +15,7 @@ from ... import __version__
 from ...chunks import ERROR
 from ...configuration import MANOEUVRES, digest
 from ...engine.cache import sources
+from ...engine.ensemble import deriving
 from ...handling.manoeuvres import Manoeuvre
 from .columns import column, woven
 from .engines import ENGINES, Engine, encoded
@@ -47,6 +47,10 @@ class Job:
         """Two jobs with the same one have the same result."""
         words = (__version__, sources(), digest(MANOEUVRES), str(self.chunk), repr(self.plan), self.engine, self.measured)
         return hashlib.sha256("\n".join(words).encode()).hexdigest()
+
+    @property
+    def by_threads(self) -> bool:
+        return self.engine == "kernel" and not self.yardsticks
 
     @property
     def stride(self) -> int:
@@ -166,14 +170,15 @@ class _Bench:
         return {**none(len(chairs)), **found, ERROR: np.array(why, object)}
 
 
-_benches = threading.local()  # an FMU serves one thread
+_benches: dict[tuple[str, str], _Bench] = {}
 
 
 def _bench(job: Job, chair: Chair) -> _Bench:
-    known: dict[tuple[str, str], _Bench] = _benches.__dict__.setdefault("known", {})
+    """The same for all threads."""
     key = (job.fingerprint, chair.label)
-    if key not in known:
-        if any(other != job.fingerprint for other, _ in known):
-            known.clear()  # a worker that lives on serves one sweep at a time
-        known[key] = _Bench(job, chair)
-    return known[key]
+    with deriving:
+        if key not in _benches:
+            if any(other != job.fingerprint for other, _ in _benches):
+                _benches.clear()  # a worker that lives on serves one sweep at a time
+            _benches[key] = _Bench(job, chair)
+        return _benches[key]

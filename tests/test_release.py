@@ -1,0 +1,128 @@
+"""What `make release` is made of: its version, its licences, and the same bytes from the same commit."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def script(name):
+    """A module of `.ci`, which is no package."""
+    spec = importlib.util.spec_from_file_location(f"ci_{name}", ROOT / ".ci" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def git(place, *words):
+    return subprocess.run(["git", *map(str, words)], cwd=place, check=True, capture_output=True, text=True).stdout.strip()
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """Two commits of what has a version."""
+    place = tmp_path / "checkout"
+    (place / "wheelchair_fmu").mkdir(parents=True)
+    (place / "wheelchair_fmu" / "__init__.py").write_text('"""It."""\n\n__version__ = "0.1.0"\n')
+    (place / "CITATION.cff").write_text("cff-version: 1.2.0\nversion: 0.1.0\nlicense: MIT\n")
+    (place / "CHANGELOG.md").write_text("# Changelog\n\n## [Unreleased]\n\n## [0.2.0] - 2026-11-25\n")
+    git(tmp_path, "init", "-q", place)
+    for message in ("one", "two"):
+        git(place, "add", ".")
+        git(place, "-c", "user.name=n", "-c", "user.email=n@n", "commit", "-q", "--allow-empty", "-m", message)
+    return place
+
+
+def test_a_tag_is_the_version_everywhere(checkout):
+    git(checkout, "tag", "v0.2.0")
+    git(checkout, "tag", "vetted")  # which is no version
+    assert script("version").main(checkout, checkout) == "0.2.0"
+    assert '\n__version__ = "0.2.0"\n' in (checkout / "wheelchair_fmu" / "__init__.py").read_text()
+    assert (checkout / "CITATION.cff").read_text() == "cff-version: 1.2.0\nversion: 0.2.0\nlicense: MIT\n"
+
+
+def test_a_commit_without_a_tag_has_a_number_of_its_own(checkout):
+    git(checkout, "tag", "v0.2.0", "HEAD~1")
+    assert script("version").main(checkout, checkout) == "0.1.0.dev2"
+
+
+def test_a_tag_without_its_section_is_refused(checkout):
+    git(checkout, "tag", "v0.3.0")
+    with pytest.raises(SystemExit, match=r"no section of 0\.3\.0; rename Unreleased to"):
+        script("version").main(checkout, checkout)
+
+
+def test_two_tags_are_refused(checkout):
+    git(checkout, "tag", "v0.2.0")
+    git(checkout, "tag", "v0.2.1")
+    with pytest.raises(SystemExit, match=r"v0\.2\.0, v0\.2\.1; a release has one"):
+        script("version").main(checkout, checkout)
+
+
+def test_every_script_that_comes_along_is_in_the_list_of_components_with_its_licence(tmp_path):
+    licences, sbom = script("licences"), tmp_path / "sbom.json"
+    needed = {"name": "numpy", "version": "2", "bom-ref": "numpy"}
+    sbom.write_text(json.dumps({"metadata": {"component": {"name": "wheelchair-fmu"}}, "components": [needed]}))
+    licences.add(sbom, "0.2.0")
+    once = sbom.read_text()
+    licences.add(sbom, "0.2.0")
+    assert sbom.read_text() == once
+    content = json.loads(once)
+    assert content["metadata"]["component"] == {"name": "wheelchair-fmu", "version": "0.2.0"}
+    files = {f.name for f in licences.VENDOR.glob("*.js")}
+    added = content["components"][1:]
+    assert content["components"][0] == needed and len(added) == len(files)
+    for one in added:
+        short = one["bom-ref"].removeprefix("vendored-")
+        assert any(file.startswith(f"{short}-{one['version']}.") for file in files)
+        assert one["licenses"] == [{"license": {"id": "MIT"}}]
+        assert "free of charge" in (licences.VENDOR / f"{short}-LICENSE.txt").read_text()  # which is that licence's
+
+
+def test_licences_are_told_in_their_own_words():
+    text = script("licences").page()
+    for words in ("uPlot 1.", "Leon Sorokin", "yWorks GmbH", "\nnumpy 2", "NumPy Developers", "\npyarrow ", "\nCasADi "):
+        assert words.lower() in text.lower(), words
+
+
+PARTS = (
+    "wheelchair_fmu",
+    "fmu_src",
+    "ssp",
+    "examples",
+    "references.bib",
+    "pyproject.toml",
+    ".gitignore",
+    "README.md",
+    "LICENSE",
+)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("kind", ["wheel", "sdist"])
+def test_two_builds_are_the_same_bytes(kind, tmp_path):
+    """From two folders whose files have another age, and another order on the disk."""
+    pytest.importorskip("build")
+    made = []
+    for name, parts, copy in (("a", PARTS, shutil.copyfile), ("elsewhere", PARTS[::-1], shutil.copy2)):
+        source, out = tmp_path / name / "source", tmp_path / name / "out"
+        source.mkdir(parents=True)
+        for part in parts:
+            if (ROOT / part).is_dir():
+                leave = shutil.ignore_patterns("__pycache__", "kernels")
+                shutil.copytree(ROOT / part, source / part, copy_function=copy, ignore=leave)
+            else:
+                copy(ROOT / part, source / part)
+        words = [sys.executable, "-m", "build", f"--{kind}", "--outdir", str(out), str(source)]
+        subprocess.run(words, check=True, capture_output=True, cwd=tmp_path)
+        (file,) = out.iterdir()
+        made.append(file)
+    assert made[0].name == made[1].name and made[0].read_bytes() == made[1].read_bytes()
