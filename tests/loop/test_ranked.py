@@ -147,3 +147,18 @@ def test_what_is_found_is_there_as_often_as_it_says():
     assert len(said) > 500 and false < 0.05 * 1500
     error = np.sqrt(np.mean(right) * (1 - np.mean(right)) / len(said))
     assert np.mean(right) == pytest.approx(np.mean(said), abs=3 * error)
+
+
+def test_what_is_as_little_as_a_laws_error_is_nobodys_effect():
+    """Beside an effect that explained so much that a fiftieth of what it does leaves 60 of squares."""
+    known = candidate("a", 50.0, np.array([3.0]), np.array([[0.4**2]]))
+    r = Round((), NONE, Evidence((), ()), (None,) * 30, (known,))
+    assert r.winner is known and replace(r, explained=1e4).winner is known
+    assert replace(r, explained=1.5e5).winner is None and not replace(r, explained=1.5e5).slight
+
+
+def test_what_is_perhaps_nothing_is_not_found():
+    """Six deltas, at two and a half standard errors, of one of thirty."""
+    known = candidate("a", 6.25, np.array([6.0]), np.array([[2.4**2]]))
+    r = Round((), NONE, Evidence((), ()), (None,) * 30, (known,))
+    assert r.present["a"] < DEFAULT.sure and r.winner is None and not r.slight
