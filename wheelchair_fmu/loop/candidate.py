@@ -11,7 +11,7 @@ import numpy as np
 from .factory import TOGETHER
 from .fit import Fit
 from .likelihood import Evidence
-from .marginal import Support, support_of
+from .marginal import Support, squared, support_of
 from .policy import DEFAULT, SearchPolicy
 
 
@@ -54,6 +54,13 @@ class Candidate:
         fall, ahead = max(self.drop, 0.0) * self.dispersion / self.scale, self.gain[0] / self.scale if self.gain else 0.0
         covariances = self.covariance, self.between
         return support_of(self.effect, self.estimate, covariances, self.delta, self.one_sided, fall, ahead, self.policy)
+
+    @property
+    def excess(self) -> float:
+        """Log likelihood that is gained, and that the estimate by its standard errors would not: of a model that is not exact a
+        parameter may take up what it did not do."""
+        away = squared(self.estimate / self.delta, self.covariance / np.outer(self.delta, self.delta))
+        return 0.5 * max(0.0, max(self.drop, 0.0) * self.dispersion / self.scale - away)
 
     @property
     def se(self) -> np.ndarray:

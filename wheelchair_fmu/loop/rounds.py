@@ -113,12 +113,13 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
 
 
 def _present(r: Round, candidates: Sequence[Candidate]) -> np.ndarray:
-    """(m,) probabilities that each candidate is there at any size, beside nothing; means as `instead`'s."""
+    """(m,) probabilities that each candidate is there at any size, beside nothing, by its standard errors where these say less
+    than the fall of −2 log likelihood does; means as `instead`'s."""
     if not candidates:
         return np.empty(0)
     supports = [c.support for c in candidates]
     without, *others = _resampled(r, candidates)
-    moved = np.array(others) - without
+    moved = np.array(others) - without - np.array([c.excess for c in candidates])[:, None]
     large, slight, left = (np.array([getattr(s, what) for s in supports])[:, None] for what in ("large", "slight", "left"))
     logs = np.logaddexp(large + moved, slight + (1 - left) * moved) + r.log_prior
     return np.mean(special.expit(logs), axis=1)
