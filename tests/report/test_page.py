@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from wheelchair_fmu.quantities import N_S_M, RAD, N, Parameter
+from wheelchair_fmu.quantities import M, N_S_M, RAD, N, Parameter
 from wheelchair_fmu.report.content import layers
 from wheelchair_fmu.report.page import MODULES, asset, page, unpacked
 from wheelchair_fmu.report.tale import Story
@@ -88,6 +88,10 @@ def test_an_error_that_only_bent_values_bring_down_is_said_so():
     low = [{"step": "calibrated", "fit": 0.99, "heldout": 1.01}]
     said = sentence(told("outside", calibration=calibration) | {"ladder": low}, TITLES)
     assert said.startswith("The error comes down to the noise only with chair.a as nobody would have measured it")
+    known = {"chair.a": Parameter("chair.a", M, "way to the casters")}
+    assert "only with the way to the casters as nobody" in sentence(
+        told("outside", calibration=calibration) | {"ladder": low}, TITLES, known
+    )
     for more in ({"ladder": [low[0] | {"heldout": 1.2}]}, {"ladder": low, "leftover": {"proposal": {"term": "odd"}}}):
         other = sentence(told("outside", calibration=calibration) | more, TITLES)
         assert other.startswith("Something is left")
@@ -100,9 +104,18 @@ def test_the_sizes_and_the_fall_come_next():
     }
     lines = particulars(told("missing", ["drag"]), records)
     left = {"proposal": {"term": "odd", "estimate": -0.01, "se": 0.001}}
-    assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06 deg."
+    assert particulars(told("outside", leftover=left), records)[0] == "The term that helps most: a lean, −0.57 ± 0.06°."
     assert particulars(told("tie", ["drag"], [["slope", "toe"]]), records) == lines
     assert particulars(told("tie", ["drag", "slope"], [["drag", "slope"]]), records) == lines[1:]  # no size of what may not be
+    level = [{"step": "calibrated", "fit": 1.0, "heldout": 1.001}, {"step": "+drag", "fit": 1.0, "heldout": 1.003}]
+    still = particulars({**told("missing", ["drag"]), "ladder": level, "notes": ["drag_k of chair.a is odd, see x.y"]}, records)
+    assert still[-2] == "The error on runs held out is 1.00 times what noise alone gives, about as after calibration."
+    assert still[-1] == "Note: drag_k of chair.a is odd, see x.y."  # names that nobody knows stay
+    known = {**records, "chair.a": Parameter("chair.a", M, "way to the casters")}
+    plain = particulars(
+        told("missing", ["drag"], notes=["chair.a beside toe_in is odd"]), known, {"toe_in": "wheels that toe in"}
+    )
+    assert plain[-1] == "Note: the way to the casters beside wheels that toe in is odd."
     assert lines == [
         "Drag: size of the drag = 1.234 ± 0.021 N s/m.",
         "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone.",

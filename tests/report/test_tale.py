@@ -33,9 +33,12 @@ def tale(diagnosis):
     return story_of(diagnosis, TITLES, RECORDS, UNITS)
 
 
+LEVEL = [{**SAMPLE["ladder"][0]}, *({**step, "fit": 1.0, "heldout": 1.0} for step in SAMPLE["ladder"][1:])]
 CASES = {
     "missing": told("missing", [DRAG]),
     "two": told("missing", [DRAG, LEAN]),
+    "together": told("missing", [DRAG, LEAN], groups=[{"effects": [DRAG, LEAN], "found": True}]),
+    "no fall": told("missing", [DRAG], ladder=LEVEL),
     "tie": told("tie", [DRAG, LEAN], [[DRAG, LEAN]]),
     "small": told("small", [DRAG]),
     "outside": told(
@@ -113,10 +116,11 @@ def test_the_chance_that_a_size_matters(row, expected):
 
 
 def test_what_is_left_is_told_in_units_of_sensors_where_it_is_known():
-    physical = {"yaw_rate": {"heldout_rms": 0.0061, "unit": "rad/s", "share_of_sd": 0.04, "constant_rms": 0.15}}
+    physical = {"yaw_rate": {"heldout_rms": 0.35, "unit": "deg/s", "share_of_sd": 0.04, "constant_rms": 8.6}}
     assert tale(told("missing", [DRAG], physical=physical)).physical == [
-        "The yaw rate is foretold to 0.35 deg/s, 4% of how much it varies."
+        "The yaw rate is foretold to 0.35 °/s, 4 % of how much it varies."
     ]
+    assert SAMPLE["physical"]["yaw_rate"]["unit"] == "deg/s"  # a diagnosis has it in the unit in which it is told
     assert not tale(told("missing", [DRAG], physical={})).physical
 
 
@@ -124,6 +128,33 @@ def test_the_right_guess_is_among_the_choices_and_the_rest_are_not_right():
     choices = next(s for s in tale(CASES["two"]).screens if s["kind"] == "guess")["choices"]
     assert {c["effect"] for c in choices if c["right"]} == {DRAG, LEAN}
     assert len(choices) > 2 and all(c["answer"] for c in choices)
+
+
+def test_effects_that_were_put_in_at_once_are_told_as_one():
+    story = tale(CASES["together"])
+    assert "These were put in at once, as one acts through the other." in story.cards[0]["lines"]
+    guess, rivals = (next(s for s in story.screens if s["kind"] == kind) for kind in ("guess", "rivals"))
+    answers = [c["answer"] for c in guess["choices"] if c["right"]]
+    assert len(answers) == 2 and all("together with" in answer for answer in answers)
+    found = [bar["title"] for bar in rivals["bars"] if bar["found"]]
+    assert found == ["one rear wheel that rolls harder than the other with rear wheels that lean"]
+    others = [{"effects": [DRAG, LEAN], "found": False}], [{"effects": [DRAG, "toe_misalignment"], "found": True}]
+    for groups in others:  # of which not all was kept
+        assert not any("at once" in line for line in tale(told("missing", [DRAG, LEAN], groups=groups)).cards[0]["lines"])
+
+
+def test_where_no_error_falls_nobody_is_told_to_watch_one():
+    put = next(s for s in tale(CASES["no fall"]).screens if s["kind"] == "put")
+    assert "fall" not in put["title"]
+    errs = [a["answer"] for s in tale(CASES["no fall"]).screens for a in s.get("choices", ()) if not a["right"]]
+    assert not any("helps" in answer and "1.00" in answer for answer in errs)
+
+
+def test_outside_names_the_term_that_helps_and_shows_its_error():
+    screens = {s["kind"]: s for s in tale(CASES["outside"]).screens}
+    assert "a torque on each caster" in screens["put"]["lines"][0]
+    assert "a torque on each caster" in screens["rivals"]["bars"][-1]["title"]
+    assert screens["rivals"]["bars"][-1]["error"] == SAMPLE["ladder"][-1]["heldout"]
 
 
 def test_every_effect_of_the_catalogue_can_be_inspected():

@@ -40,10 +40,12 @@ def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str
     """The page that `wheelchair report` writes, as HTML."""
     chair = _with_proposal(chair, told)
     titles = {e.id: e.title for e in chair.catalogue.values()}
-    records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
+    records = {p.name: p for p in (*chair.parameters(), *(p for e in chair.catalogue.values() for p in e.owned))}
     colour = NoiseModel({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
     tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
-    return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), tale)
+    return page(
+        content(measured, chair, colour, told, fixed), sentence(told, titles, records), particulars(told, records, titles), tale
+    )
 
 
 def supplement_of(

@@ -5,8 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from ..loop.ties import grouped
-from .told import Told, actions, capital, exceeds, fall_words, number, odds_words, rival_words, size_lines, sized
-from .words import listed, probability_words, value_text
+from .told import (
+    Told,
+    actions,
+    capital,
+    exceeds,
+    fall_words,
+    number,
+    odds_words,
+    rival_words,
+    size_lines,
+    sized,
+    together_words,
+)
+from .words import listed, probability_words, spoken, strained
 
 
 def cards(t: Told) -> list[dict[str, Any]]:
@@ -32,7 +44,7 @@ def _what(t: Told) -> tuple[str, list[str]]:
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
             return capital(t.title(t.found[0])), size_lines(t, t.found[0])
-        return f"{number(len(t.found))} effects", [sized(t, e) for e in t.found]
+        return f"{number(len(t.found))} effects", [*(sized(t, e) for e in t.found), *together_words(t)]
     if t.verdict == "outside":
         return _outside(t)
     if t.verdict == "adequate":
@@ -44,12 +56,19 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     found = t.proposal
     if found:
         record = t.records[f"effect.{found['term']}.q"]
-        size = value_text(found["estimate"], found["se"], record.unit)
+        size = spoken(found["estimate"], found["se"], record.unit)
         return "A force that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
-    bent = [n for n, v in (t.diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+    bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
     return "Something that no effect in the catalogue describes", (
-        helped or ([f"It comes down only with an unbelievable {listed(bent, 'and')}."] if bent else [])
+        helped
+        or (
+            [
+                f"The error comes down only where {listed(bent, 'and')} {'come' if len(bent) > 1 else 'comes'} out as nobody would measure it."
+            ]
+            if bent
+            else []
+        )
     )
 
 

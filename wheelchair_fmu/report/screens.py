@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from .told import STILL, Told, actions, fall_words, near_rivals, rival_words, sized, why_not
+from .told import Told, actions, fall_words, near_rivals, rival_words, sized, together_words, why_not
+from .words import STILL, listed
 
 CHOICES = 3  # guesses that are offered beside what was found
+TRIED = 6  # effects in the picture of the rivals
 
 
 def screens(t: Told) -> list[dict[str, Any]]:
@@ -64,20 +66,33 @@ def choices(t: Told) -> list[dict[str, Any]]:
 
 def _answer(t: Told, effect: str) -> str:
     row = t.rows[effect]
-    later = t.found and t.rows[t.found[0]]["heldout_before"] != row["heldout_before"]
-    once = f" once {t.title(t.found[0])} is in" if later else ""
-    comes = t.error(effect)
-    error = "" if comes is None else f" The error comes to {comes:.2f}{once}."
     if t.verdict in ("adequate", "cannot_see") or (t.verdict == "small" and effect in t.found):
         if row["power"] >= 0.8:
             return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
-        return f"These runs would show it at that size with a chance of {row['power']:.0%} only."
+        return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
+    comes = t.error(effect)
+    error = "" if comes is None else f" The error comes to {comes:.2f}{_once(t, effect)}."
     if effect in t.found:
         tied = t.verdict == "tie" and any(effect in tie for tie in t.diagnosis["ties"])
         return ("It may be: this or its rival." if tied else "Yes.") + error
     if any(effect == r["effect"] for r in near_rivals(t)):
         return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
-    return f"It helps, but not enough.{error}" if error else "No: it would hardly change what is seen in these runs."
+    if comes is None:
+        return "No: it would hardly change what is seen in these runs."
+    if row["heldout_before"] is not None and row["heldout_before"] - comes < STILL:
+        return f"No: the error on {t.runs} stays at {comes:.2f}{_once(t, effect)}."
+    if comes < t.fall[1] + STILL:
+        return f"Close, but over all moments these runs are explained less well by it.{error}"
+    return f"It helps, but not enough.{error}"
+
+
+def _once(t: Told, effect: str) -> str:
+    """Of an error with an effect in, what else is in."""
+    partners = [e for e in t.partners(effect) if e != effect]
+    if partners:
+        return f" together with {listed([t.title(e) for e in partners], 'and')}"
+    later = t.found and t.rows[t.found[0]]["heldout_before"] != t.rows[effect]["heldout_before"] and effect != t.found[0]
+    return f" once {t.title(t.found[0])} is in" if later else ""
 
 
 def _put(t: Told, before: float, after: float) -> dict[str, Any]:
@@ -88,14 +103,14 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"The error on {whose} stays about where it is."],
         }
     if t.verdict == "outside":
-        what = "what helps most" if t.proposal or t.found else "what is known"
+        verb = "falls" if t.falls else "goes"
         return {
             "title": "Put in what helps most",
-            "lines": [f"With {what}, the error on {whose} goes from {before:.2f} to {after:.2f}."],
+            "lines": [f"With {_helping(t)}, the error on {whose} {verb} from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
         each = "either" if len(t.found) == 2 else "any of them"
-        if abs(before - after) < 0.03:
+        if not t.falls:
             return {
                 "title": "Put one in: these runs hardly change",
                 "lines": [
@@ -107,10 +122,20 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "title": "Put one in and watch the error fall",
             "lines": [f"With {each}, the error on {whose} falls to about {after:.2f}."],
         }
+    them = "it" if len(t.found) == 1 else "them"
+    watch = "and watch the error fall" if t.falls else "and look where the two curves part"
     return {
-        "title": f"Put {'it' if len(t.found) == 1 else 'them'} in and watch the error fall",
-        "lines": [fall_words(t), "1.00 is what the noise of the sensors leaves."],
+        "title": f"Put {them} in {watch}",
+        "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
     }
+
+
+def _helping(t: Told) -> str:
+    """What was put in where nothing in the catalogue suffices."""
+    record = t.records.get(f"effect.{t.proposal['term']}.q") if t.proposal else None
+    if record is not None:
+        return record.meaning
+    return listed([t.title(e) for e in t.found], "and") if t.found else "what is known"
 
 
 def _rivals(t: Told) -> dict[str, Any]:
@@ -124,36 +149,36 @@ def _rivals(t: Told) -> dict[str, Any]:
     elif t.verdict == "outside":
         title, lines = (
             "Why nothing in the catalogue",
-            ["Each effect was put in and its size fitted; this is the error that each leaves."],
+            ["Each of the likeliest was put in and its size fitted; this is the error that each leaves."],
+        )
+    elif len(bars(t)) > 1:
+        title, lines = (
+            "Why nothing else",
+            ["This is the error that each leaves when it is put in: none is better than the model without."],
         )
     else:
         title, lines = (
             "Why nothing else",
-            ["This is the error that each leaves when it is put in: none is better than the model without."],
+            ["Every effect of the catalogue was held against what the model leaves over. Not one of them shows in it."],
         )
     return {"title": title, "lines": lines, "bars": bars(t)}
 
 
 def _unmoved(t: Told) -> list[str]:
     """Where errors over all channels tell little, what the choice rests on."""
-    before, after = t.fall
-    return (
-        ["Over all channels the errors are alike; likelihood tells them apart, which weighs every moment."]
-        if before - after < STILL
-        else []
-    )
+    return [] if t.falls else ["Over all channels the errors are alike; moment by moment the runs tell them apart."]
 
 
 def bars(t: Told) -> list[dict[str, Any]]:
-    """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]."""
-    tried = [r for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
-    with_each = [
-        {"title": t.title(r["effect"]), "error": t.error(r["effect"]), "found": r["effect"] in t.found} for r in tried[:6]
+    """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]. Effects
+    that were put in together are one."""
+    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
+    groups = list(dict.fromkeys(tuple(t.partners(e)) for e in tried))[:TRIED]
+    each = [
+        {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups
     ]
     before, after = t.fall
-    whole = (
-        [{"title": "all that was found together", "error": after, "found": True}]
-        if len(t.found) > 1 and t.verdict != "tie"
-        else []
-    )
-    return [{"title": "without any", "error": before, "found": False}, *with_each, *whole]
+    several = len(t.found) > 1 and t.verdict != "tie" and set(t.found) != set(t.partners(t.found[0]))
+    whole = [{"title": "all that was found together", "error": after, "found": True}] if several else []
+    term = [{"title": _helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []
+    return [{"title": "without any", "error": before, "found": False}, *each, *whole, *term]

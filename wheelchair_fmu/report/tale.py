@@ -10,7 +10,7 @@ from ..quantities import Quantity, Unit
 from .cards import cards
 from .screens import screens
 from .told import Told, capital
-from .words import value_text
+from .words import spoken
 
 CHANNELS = {
     "wheel_speed_l": "the left wheel's speed",
@@ -18,6 +18,9 @@ CHANNELS = {
     "yaw_rate": "the yaw rate",
     "a_x": "the forward acceleration",
     "a_y": "the sideways acceleration",
+    "x": "the position along x",
+    "y": "the position along y",
+    "yaw": "the heading",
 }
 
 
@@ -48,11 +51,16 @@ def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
     left = t.diagnosis.get("physical") or {}
     said = []
     for name, v in left.items():
-        unit = units.get(name)
-        if unit is not None and v.get("heldout_rms") is not None:
-            share = f", {v['share_of_sd']:.0%} of how much it varies" if v.get("share_of_sd") is not None else ""
-            said.append(f"{capital(channel_words(name))} is foretold to {value_text(v['heldout_rms'], None, unit)}{share}.")
+        if name in units and v.get("heldout_rms") is not None:
+            error = spoken(v["heldout_rms"], None, Unit(v["unit"]))  # in the unit that it names already
+            said.append(f"{capital(channel_words(name))} is foretold to {error}{_share(v.get('share_of_sd'))}.")
     return said
+
+
+def _share(share: float | None) -> str:
+    if share is None:
+        return ""
+    return f", {f'{share:.0%}'.replace('%', ' %') if share > 0.01 else 'less than 1 %'} of how much it varies"
 
 
 def texts(items: Sequence[Mapping[str, Any]]) -> list[str]:

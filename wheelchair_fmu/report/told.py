@@ -9,10 +9,9 @@ from typing import Any
 
 from ..quantities import Quantity
 from .advice import inspect
-from .words import listed, probability_words, title_of, value_text
+from .words import STILL, listed, probability_words, spoken, title_of
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
-STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
 NAMED = 3  # rivals in a sentence
 
 
@@ -52,9 +51,25 @@ class Told:
         before = next((s for s in ladder if s["step"] == self.diagnosis.get("begins", "calibrated")), ladder[0])
         return float(before[self.key]), float(ladder[-1][self.key])
 
+    @property
+    def falls(self) -> bool:
+        """Does the error come down by what one would see?"""
+        before, after = self.fall
+        return before - after > STILL
+
+    @property
+    def together(self) -> list[list[str]]:
+        """Of what was found, effects that were put in at once, as one acts through the other."""
+        groups = [[e for e in self.found if e in g["effects"]] for g in self.diagnosis.get("groups") or () if g["found"]]
+        return [group for n, group in enumerate(groups) if len(group) > 1 and group not in groups[:n]]
+
+    def partners(self, effect: str) -> list[str]:
+        """Those that were put in together with an effect, which is among them; it alone, where there are none."""
+        return next((group for group in self.together if effect in group), [effect])
+
     def error(self, effect: str) -> float | None:
-        """The error on runs held out with an effect in; of what was found alone, that of the last step, as everywhere."""
-        return self.fall[1] if self.found == [effect] else self.rows[effect]["heldout_after"]
+        """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere."""
+        return self.fall[1] if set(self.found) == set(self.partners(effect)) else self.rows[effect]["heldout_after"]
 
     @property
     def proposal(self) -> Mapping[str, Any] | None:
@@ -111,6 +126,13 @@ def fall_words(t: Told) -> str:
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
 
 
+def together_words(t: Told) -> list[str]:
+    """Which of what was found act only together."""
+    every = len(t.together) == 1 and len(t.together[0]) == len(t.found)
+    names = ["these" if every else listed([t.title(e) for e in group], "and") for group in t.together]
+    return [f"{capital(name)} were put in at once, as one acts through the other." for name in names]
+
+
 def near_rivals(t: Told) -> list[Mapping[str, Any]]:
     """Refitted effects that explain the runs nearly as well as what was found in their place, though they were not chosen."""
     if t.verdict not in ("missing", "small"):
@@ -156,17 +178,17 @@ def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
 
 
 def size_lines(t: Told, effect: str) -> list[str]:
-    lines = [f"{capital(r.meaning)}: {value_text(v['estimate'], v['se'], r.unit)}." for _, v, r in t.sizes(effect)]
+    lines = [f"{capital(r.meaning)}: {spoken(v['estimate'], v['se'], r.unit)}." for _, v, r in t.sizes(effect)]
     return [*lines, f"That is {_times(t.multiple(effect))} the size that would matter{_interest(t, effect)}."]
 
 
 def sized(t: Told, effect: str) -> str:
-    sizes = " and ".join(value_text(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
+    sizes = " and ".join(spoken(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
     return f"{capital(t.title(effect))}: {sizes}, {_times(t.multiple(effect))} the size that would matter."
 
 
 def _interest(t: Told, effect: str) -> str:
-    sizes = [value_text(v["smallest_interesting"], None, r.unit) for _, v, r in t.sizes(effect) if v["smallest_interesting"]]
+    sizes = [spoken(v["smallest_interesting"], None, r.unit) for _, v, r in t.sizes(effect) if v["smallest_interesting"]]
     return f", {sizes[0]}" if len(set(sizes)) == 1 else ""
 
 
@@ -198,7 +220,7 @@ def actions(t: Told) -> list[str]:
         near = near_rivals(t)
         look = [inspect(e, t.title(e)) for e in found]
         also = (
-            [f"To rule out {t.title(near[0]['effect'])}: {_lower(inspect(near[0]['effect'], t.title(near[0]['effect'])))}"]
+            [f"To rule out {t.title(near[0]['effect'])}, {_lower(inspect(near[0]['effect'], t.title(near[0]['effect'])))}"]
             if near
             else []
         )
@@ -211,7 +233,7 @@ def actions(t: Told) -> list[str]:
     if t.verdict == "outside":
         orders = [f"{o['words'][0].upper()}{o['words'][1:]}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
         return [
-            "Compare the missing force below with what you know of the chair.",
+            "Compare the missing force with what you know of the chair.",
             *orders,
             *measure,
             "Write the effect that it suggests: a file of one expression is enough.",

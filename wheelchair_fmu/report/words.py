@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,10 +12,12 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a probability below which the data show something like the effect
+STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
+NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
-def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
-    """The verdict in one sentence; `titles` say what each effect is."""
+def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity] | None = None) -> str:
+    """The verdict in one sentence; `titles` say what each effect is, `records` what each parameter means."""
     if diagnosis["verdict"] == "tie":
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
     names = [title_of(e, titles) for e in diagnosis["effects"]]
@@ -25,14 +28,14 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str]) -> str:
         "small": f"The model is adequate: {listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
-        "outside": outside(diagnosis).removesuffix(".")
+        "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
 
 
-def outside(diagnosis: Mapping[str, Any]) -> str:
+def outside(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity] | None = None) -> str:
     """What "outside" means here: an error that nothing brings down, or one that only values bring down that nobody measured."""
-    bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+    bent = strained(diagnosis, records or {})
     last, left = diagnosis["ladder"][-1], (diagnosis.get("leftover") or {}).get("proposal")
     if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > A_LITTLE:
         return "Something is left that no effect in the catalogue explains."
@@ -40,6 +43,24 @@ def outside(diagnosis: Mapping[str, Any]) -> str:
         f"The error comes down to the noise only with {listed(bent, 'and')} as nobody would have measured it: "
         "what was given is wrong, or it stands in for what the model lacks."
     )
+
+
+def strained(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
+    """Calibrated values that came out as nobody would have measured them, in words."""
+    bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
+    return [f"the {records[name].meaning}" if name in records else name for name in bent]
+
+
+def named(text: str, titles: Mapping[str, str], records: Mapping[str, Quantity]) -> str:
+    """Text of the search with what code names mean in their place."""
+
+    def plain(found: re.Match[str]) -> str:
+        name = found.group()
+        if "." in name and name in records:
+            return f"the {records[name].meaning}"
+        return titles[name] if "_" in name and name in titles else name
+
+    return NAME.sub(plain, text)
 
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
@@ -64,10 +85,13 @@ def title_of(effect: str, titles: Mapping[str, str]) -> str:
     return titles.get(effect, effect.replace("_", " "))
 
 
-def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
+def particulars(
+    diagnosis: Mapping[str, Any], records: Mapping[str, Quantity], titles: Mapping[str, str] | None = None
+) -> list[str]:
     """What comes next to the verdict: sizes, the fall of the error, the next experiment, notes."""
+    titles = titles or {}
     rows = {row["effect"]: row for row in diagnosis["ranking"]}
-    said = [_size(e, rows[e], records) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
+    said = [_size(e, rows[e], records, titles) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
     said += _proposal(diagnosis.get("leftover") or {}, records)
     said.append(_fall(diagnosis["ladder"]))
     said += (diagnosis.get("disturbance") or {}).get("words", ())
@@ -75,16 +99,17 @@ def particulars(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -
     if following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
         said.append(f"Measure next{times}: {following['manoeuvre']}.")
-    return [*said, *(f"Note: {note}." for note in diagnosis.get("notes", ()))]
+    return [*said, *(f"Note: {named(note, titles, records)}." for note in diagnosis.get("notes", ()))]
 
 
-def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity]) -> str:
+def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity], titles: Mapping[str, str]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
     parts = [
-        f"{record.meaning} = {value_text(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
+        f"{record.meaning} = {spoken(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
         for name, record in known.items()
     ]
-    return f"{effect.replace('_', ' ').capitalize()}: {', '.join(parts)}."
+    title = title_of(effect, titles)
+    return f"{title[:1].upper()}{title[1:]}: {', '.join(parts)}."
 
 
 def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
@@ -92,7 +117,7 @@ def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> l
     record = records.get(f"effect.{found['term']}.q") if found else None
     if not found or record is None:
         return []
-    return [f"The term that helps most: {record.meaning}, {value_text(found['estimate'], found['se'], record.unit)}."]
+    return [f"The term that helps most: {record.meaning}, {spoken(found['estimate'], found['se'], record.unit)}."]
 
 
 def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
@@ -101,7 +126,10 @@ def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
     key, runs = ("heldout", "runs held out") if last.get("heldout") is not None else ("fit", "the fitted runs")
     if last is before:
         return f"The error on {runs} is {last[key]:.2f} times what noise alone gives, after calibration."
-    return f"The error on {runs} falls from {before[key]:.2f} to {last[key]:.2f}, where 1.0 is noise alone."
+    if abs(last[key] - before[key]) < STILL:
+        return f"The error on {runs} is {last[key]:.2f} times what noise alone gives, about as after calibration."
+    verb = "falls" if last[key] < before[key] else "rises"
+    return f"The error on {runs} {verb} from {before[key]:.2f} to {last[key]:.2f}, where 1.0 is noise alone."
 
 
 def value_text(value: float, se: float | None, unit: Unit) -> str:
@@ -113,7 +141,12 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
         return f"{value:.3g}{name}".replace("-", "−")
     first, exponent = f"{se:.0e}".split("e")
     place = max(0, (1 if first in "12" else 0) - int(exponent))
-    return f"{value:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")
+    return f"{round(value, place) + 0.0:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")  # + 0.0: a zero has no sign
+
+
+def spoken(value: float, se: float | None, unit: Unit) -> str:
+    """The same as it is printed: degrees by their sign."""
+    return re.sub(r" deg$", "°", re.sub(r" deg/s$", " °/s", value_text(value, se, unit)))
 
 
 def probability_words(p: float) -> str:

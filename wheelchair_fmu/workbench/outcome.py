@@ -26,7 +26,7 @@ def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any]
         records = {p.name: p for e in every.values() for p in e.owned}
         story = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
         return {
-            "sentence": sentence(told, titles),
+            "sentence": sentence(told, titles, records),
             "cards": [{**card, "lines": [line for line in card["lines"] if COMMAND not in line]} for card in story.cards],
             "effects": [e for e in told["effects"] if e in catalogue],
             "order": [row["effect"] for row in told["ranking"] if row["effect"] in catalogue],

@@ -13,6 +13,8 @@ const VERDICTS = {
 export function evidence(campaign) {
   const { diagnosis, effects } = campaign, records = new Map(effects.map((e) => [e.id, e]));
   byId("evidence").append(table(diagnosis.ranking.filter((r) => records.has(r.effect)), records, campaign));
+  const groups = (diagnosis.groups ?? []).filter((g) => g.effects.every((e) => records.has(e)));
+  if (groups.length) byId("evidence").append(together(groups, campaign));
   ties(byId("ties"), campaign);
 }
 
@@ -49,6 +51,25 @@ function line(campaign, row, record, later) {
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
     h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed"].includes(row.verdict) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : VERDICTS[row.verdict] ?? row.verdict)));
+}
+
+/** Effects that were refitted several at once. */
+function together(groups, campaign) {
+  const sizes = new Map(campaign.effects.flatMap((e) => e.parameters.map((p) => [p.name, p]))), named = (ids) => listed(ids.map((e) => titleOf(campaign, e)));
+  const cell = (head, ...inner) => h("td", { "data-head": head }, inner);
+  const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
+    cell("Estimate ± SE", Object.entries(g.parameters).map(([n, v]) => h("div", {}, withError(v.estimate, v.se, sizes.get(n))))),
+    cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Chance of noise", probability(g.p)), cell("Verdict", became(g, campaign))));
+  return h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Effects that were fitted together" },
+    h("table", { class: "evidence several" }, h("caption", {}, "Effects that were fitted together, as one acts through the other and each alone may show nothing"),
+      h("thead", {}, h("tr", {}, ["Effects", "Estimate ± SE", "Beside", "Chance of noise", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+}
+
+/** What was kept of a group. */
+function became(group, campaign) {
+  const kept = group.found ? group.effects.filter((e) => campaign.diagnosis.effects.includes(e)) : [];
+  if (kept.length === group.effects.length) return h("span", { class: "chip", "data-verdict": "missing" }, "missing");
+  return h("span", { class: "chip" }, kept.length ? `${listed(kept.map((e) => titleOf(campaign, e)))} suffices` : group.p < SEEN ? "another explains it better" : VERDICTS["not needed"]);
 }
 
 function columns(ranking) {

@@ -13,7 +13,7 @@ export function stepOf(campaign, step) {
 }
 
 export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
-export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replaceAll("_", " ");
+export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
 export const runOf = (run) => (run.role === "holdout" ? `${run.name} (held out)` : run.name);
 
 /** "a, b and c" */
