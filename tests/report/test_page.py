@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from wheelchair_fmu.quantities import M, N_S_M, RAD, N, Parameter
+from wheelchair_fmu.quantities import N_S_M, RAD, M, N, Parameter
 from wheelchair_fmu.report.content import layers
 from wheelchair_fmu.report.page import MODULES, asset, page, unpacked
 from wheelchair_fmu.report.tale import Story

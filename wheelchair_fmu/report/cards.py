@@ -60,16 +60,9 @@ def _outside(t: Told) -> tuple[str, list[str]]:
         return "A force that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
-    return "Something that no effect in the catalogue describes", (
-        helped
-        or (
-            [
-                f"The error comes down only where {listed(bent, 'and')} {'come' if len(bent) > 1 else 'comes'} out as nobody would measure it."
-            ]
-            if bent
-            else []
-        )
-    )
+    come = "come" if len(bent) > 1 else "comes"
+    only = [f"The error comes down only where {listed(bent, 'and')} {come} out as nobody would measure it."] if bent else []
+    return "Something that no effect in the catalogue describes", helped or only
 
 
 def _how_sure(t: Told) -> tuple[str, list[str]]:
