@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
+
+COMMAND = re.compile(r"(wheelchair add [\w ]+)\.$")  # at the end of a sentence, as somebody types it
+SYMBOL = re.compile(r"\b([^\W\d_])_([^\W_]+)\b")  # one letter with an index: C_λ
 
 
 def cards_html(cards: Sequence[Mapping[str, Any]]) -> str:
@@ -27,4 +31,13 @@ def screens_html(screens: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _lines(lines: Sequence[str]) -> str:
-    return "".join(f"<p>{escape(line)}</p>" for line in lines)
+    return "".join(f"<p>{marked(line)}</p>" for line in lines)
+
+
+def marked(line: str) -> str:
+    """A sentence as HTML, with commands and symbols as they are printed."""
+    return SYMBOL.sub(r"\1<sub>\2</sub>", COMMAND.sub(_typed, escape(line)))
+
+
+def _typed(command: re.Match[str]) -> str:
+    return f"<code>{command[1]}</code>"

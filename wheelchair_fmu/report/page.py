@@ -10,7 +10,7 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from .markup import cards_html, screens_html
+from .markup import cards_html, marked, screens_html
 from .press import press
 from .tale import Story
 
@@ -36,6 +36,7 @@ MODULES = (
     "pool",
     "publish",
     "refit",
+    "regimes",
     "scene",
     "staircase",
     "story",
@@ -58,7 +59,7 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "title": f"{escape(content['name'])}: {escape(sentence)}",
         "name": escape(content["name"]),
         "sentence": escape(sentence),
-        "particulars": "".join(f"<p>{escape(line)}</p>" for line in (*particulars, *story.physical)),
+        "particulars": "".join(f"<p>{marked(line)}</p>" for line in (*particulars, *story.physical)),
         "cards": cards_html(story.cards),
         "screens": screens_html(story.screens),
         "policy": POLICY,

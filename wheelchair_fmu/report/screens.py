@@ -181,4 +181,4 @@ def bars(t: Told) -> list[dict[str, Any]]:
     several = len(t.found) > 1 and t.verdict != "tie" and set(t.found) != set(t.partners(t.found[0]))
     whole = [{"title": "all that was found together", "error": after, "found": True}] if several else []
     term = [{"title": _helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []
-    return [{"title": "without any", "error": before, "found": False}, *each, *whole, *term]
+    return [{"title": "the calibrated model alone", "error": before, "found": False}, *each, *whole, *term]

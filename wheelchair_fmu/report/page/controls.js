@@ -1,6 +1,6 @@
 // What the reader sets: steps of the search, effects with their sizes, calibrated values.
 
-import { h } from "page/dom";
+import { h, symbols } from "page/dom";
 import { display, inUnit, significant, unitText } from "page/numbers";
 import { capital, stepOf } from "page/words";
 
@@ -93,7 +93,7 @@ export class Controls {
     const found = row?.parameters[p.name.split(".").at(-1)], fitted = found && seen(found) ? found.estimate : row ? null : this.start().values[p.name];
     const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `${p.name}: back to the fitted size`, onclick: () => this.put({ ...this.values, [p.name]: fitted }) }, "↺");
     const help = [p.name.startsWith("effect.") ? null : p.name, p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, fitted === null || fitted === undefined ? null : `▲ fitted ${inUnit(fitted, p)}`].filter(Boolean).join("; ");
-    return h("div", { class: "slider" }, h("label", { for: id }, capital(p.meaning)), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
+    return h("div", { class: "slider" }, h("label", { for: id }, symbols(capital(p.meaning))), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
       h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit)), fitted === null || fitted === undefined ? null : back), h("small", { id: `${id}-help` }, help));
   }
 

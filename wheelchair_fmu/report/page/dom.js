@@ -12,6 +12,20 @@ export function h(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** Words whose symbols have their index below the line: C_λ. */
+export const symbols = (words) => indexed(words).map(([t, below]) => (below ? h("sub", {}, t) : t));
+
+/** Words in pieces [[text, whether it is an index]]. */
+export function indexed(words) {
+  const out = [];
+  let from = 0;
+  for (const { 0: whole, 1: letter, 2: index, index: at } of words.matchAll(/(?<![\p{L}\d_])(\p{L})_([\p{L}\d]+)(?![\p{L}\d_])/gu)) {
+    out.push([words.slice(from, at) + letter, false], [index, true]);
+    from = at + whole.length;
+  }
+  return [...out, [words.slice(from), false]].filter(([t]) => t);
+}
+
 export const byId = (id) => document.getElementById(id);
 
 /** What is packed in base64 of deflated JSON; series come as {f64: [...]}, null in gaps. */

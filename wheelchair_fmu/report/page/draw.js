@@ -1,5 +1,7 @@
 // What every figure is drawn with: SVG elements, colours of the theme or of paper, and axes.
 
+import { indexed } from "page/dom";
+
 const NS = "http://www.w3.org/2000/svg";
 const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good"];
 
@@ -32,6 +34,18 @@ export const canvas = (width, height, children) =>
 
 /** Text at a place; `anchor` is start, middle or end. */
 export const text = (x, y, words, fill, anchor = "start", more = {}) => svg("text", { x: round(x), y: round(y), fill, "text-anchor": anchor, ...more }, String(words));
+
+/** The same, symbols with their index below the line. */
+export function symbolic(x, y, words, fill, anchor, more) {
+  const made = text(x, y, "", fill, anchor, more);
+  let low = false;
+  made.replaceChildren(...indexed(String(words)).map(([t, below]) => {
+    const piece = svg("tspan", { dy: below === low ? null : below ? 3 : -3, "font-size": below ? "9.5" : null }, t);
+    low = below;
+    return piece;
+  }));
+  return made;
+}
 
 export const line = (x1, y1, x2, y2, stroke, more = {}) => svg("path", { d: `M${round(x1)} ${round(y1)}L${round(x2)} ${round(y2)}`, stroke, fill: "none", ...more });
 
@@ -69,6 +83,12 @@ export function ticks(low, high, about = 5) {
 
 /** A tick's number, without the rounding errors of adding steps. */
 export const tick = (v) => String(Number(v.toPrecision(6))).replace("-", "−");
+
+/** Ticks [[value, words]] with as many decimals as any of them needs. */
+export function ticked(values) {
+  const places = Math.max(0, ...values.map((v) => (String(Number(v.toPrecision(6))).split(".")[1] ?? "").length));
+  return values.map((v) => [v, v === 0 ? "0" : v.toFixed(Math.min(places, 8)).replace("-", "−")]);
+}
 
 /** Least and greatest of what is finite; [0, 1] of nothing. */
 export function extent(...series) {

@@ -7,6 +7,7 @@ import { forest, panels } from "page/forest";
 import { Heat, heat } from "page/heat";
 import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
+import { against, drawn as drawnAgainst } from "page/regimes";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
 import { capital, channelOf, listed, runOf, stepOf, titleOf } from "page/words";
@@ -42,10 +43,9 @@ export class Figures {
     this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
-    this.add("regimes", "When the error is", this.moments(), true);
+    this.add("regimes", "The error against what was going on", this.moments());
     this.add("physical", "The same in the sensors' own units", this.units());
     this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
-    this.heatRegimes = new Heat(this.all.regimes.drawing, "Error by quarters of all samples, noise = 1", ["least", "", "", "greatest"]);
   }
 
   stairs() {
@@ -53,7 +53,7 @@ export class Figures {
     return {
       draw: (width, look) => staircase(width, look, this.ladder, this.apart() ? this.app.now : null),
       columns: () => ({ step: steps().map((s) => s.name), "held-out runs": steps().map((s) => s.heldout), "fitted runs": steps().map((s) => s.fit) }),
-      caption: () => `Root mean square error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
+      caption: () => `Error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
     };
   }
 
@@ -118,7 +118,7 @@ export class Figures {
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
       columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "fall of twice the log likelihood": all.flatMap((p) => p.ys) }),
-      caption: () => "How much worse the model fits (twice the fall of the log likelihood, allowing for residuals that last) where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
+      caption: () => "How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
     };
   }
 
@@ -162,7 +162,7 @@ export class Figures {
       draw: (width, look) => {
         const { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
         const most = Math.max(4, ...Array.from(timeline.errors).filter(Number.isFinite).map(Math.abs));
-        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error [σ]", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
+        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error ÷ noise", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
       },
       columns: () => {
         const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);
@@ -170,7 +170,7 @@ export class Figures {
       },
       caption: () => {
         const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within ±2 σ. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
       },
     };
   }
@@ -192,11 +192,19 @@ export class Figures {
   }
 
   moments() {
+    const { app, campaign } = this, panels = () => this.against ?? [];
     return {
-      draw: (width, look) => heat(width, look, ["least", "", "", "greatest"], this.times ?? []),
-      columns: () => { const cells = this.rows ?? []; return { regime: cells.map((r) => r.name), from: cells.map((r) => r.from), to: cells.map((r) => r.to), "error, noise = 1": cells.map((r) => r.rms), "share of the excess": cells.map((r) => r.share) }; },
-      caption: () => "Error in each quarter of all samples, sorted by what was going on: a row whose colour grows to one side shows when the model fails.",
+      subject: () => `${campaign.name}, all runs`, file: () => `${campaign.name}-regimes-${app.shown.channel}`,
+      draw: (width, look) => drawnAgainst(width, look, panels()),
+      columns: () => ({ regime: panels().flatMap((p) => p.xs.map(() => p.label)), at: panels().flatMap((p) => p.xs), "mean error, noise = 1": panels().flatMap((p) => p.means), "2.5 % lie below": panels().flatMap((p) => p.lows), "2.5 % lie above": panels().flatMap((p) => p.highs) }),
+      caption: () => `Error of the ${channelOf(app.shown.channel)} in all runs, measured less model, in units of the noise: its mean, and about it where 95 of 100 readings lie; a perfect model keeps within the shading. A line that leaves zero shows when the model fails.${this.worst()}`,
     };
+  }
+
+  /** When the error over all channels is greatest. */
+  worst() {
+    const most = (this.rows ?? []).reduce((a, b) => (a && a.rms >= b.rms ? a : b), null);
+    return most ? ` Over all channels the error is greatest, ${rms(most.rms)} times the noise, where the ${most.name} is ${between(most.from, most.to, this.campaign.regimes.find((r) => r.name === most.name))}.` : "";
   }
 
   units() {
@@ -218,12 +226,11 @@ export class Figures {
 
   /** The rest, once values rest. */
   rested() {
-    const { campaign, app } = this, records = new Map(campaign.regimes.map((r) => [r.name, r]));
+    const { campaign, app } = this;
     this.rows = excessBy(campaign.regimes, campaign.runs, app.results);
-    this.times = [...new Set(this.rows.map((r) => r.name))].map((name) => ({ name, cells: this.rows.filter((r) => r.name === name).map((r) => ({ value: r.rms, note: between(r.from, r.to, records.get(name)), at: null })) }));
-    this.heatRegimes.show(this.times);
-    for (const id of ["path", "overlay", "where", "regimes"]) this.all[id].said();
-    for (const id of ["staircase", "physical"]) this.all[id].redraw();
+    this.against = against(campaign.regimes, campaign.runs, app.results, app.shown.channel);
+    for (const id of ["path", "overlay", "where"]) this.all[id].said();
+    for (const id of ["staircase", "physical", "regimes"]) this.all[id].redraw();
   }
 
   redraw() {

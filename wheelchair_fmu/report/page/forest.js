@@ -1,7 +1,7 @@
 // Estimates with their 95 % intervals: of effects, in sizes of interest; of calibrated values, in standard deviations of what
 // was given.
 
-import { broken, canvas, fitted, line, long, svg, text, tick, ticks } from "page/draw";
+import { broken, canvas, fitted, line, long, svg, symbolic, text, ticked, ticks } from "page/draw";
 
 const ROW = 24, CLIP = 12;
 
@@ -26,7 +26,7 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
-  for (const v of ticks(low, most, (width - left - right) / 70)) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, tick(v), look.faint, "middle", { "font-size": 11 }));
+  for (const [v, words] of ticked(ticks(low, most, (width - left - right) / 70))) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
   drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
@@ -38,8 +38,8 @@ function written(r, { name, top, middle }, narrow, left, right, look) {
   const weight = { "font-weight": r.strong ? 600 : 400 };
   const [at, side, step, first] = narrow ? [right, "end", 13, top + 17] : [right + 10, "start", 13, middle + (r.under ? -2 : 4)];
   const notes = [text(at, first, r.note, r.strong && !narrow ? look.ink : look.faint, side, { "font-size": narrow ? 11 : 11.5 }), r.under ? text(at, first + step, r.under, look.faint, side, { "font-size": 11 }) : null];
-  if (narrow) return [name.map((t, k) => text(left, top + 17 + 14 * k, t, look.ink, "start", weight)), notes];
-  return [name.map((t, k) => text(left - 10, middle + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end", weight)), notes];
+  if (narrow) return [name.map((t, k) => symbolic(left, top + 17 + 14 * k, t, look.ink, "start", weight)), notes];
+  return [name.map((t, k) => symbolic(left - 10, middle + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end", weight)), notes];
 }
 
 /** A row's bounds, interval and value. */
@@ -59,11 +59,11 @@ export function bars(width, look, rows) {
   const across = (v) => 4 + (width - 60) * (Math.log(v / least) / Math.log(most / least));
   rows.forEach((r, i) => {
     const y = i * high, colour = r.found ? look.accent : look.faint;
-    drawn.push(text(4, y + 14, fitted(r.title, width - 8, look, 12, r.found ? 600 : 400), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
-      svg("rect", { x: Math.min(across(1), across(r.error)), y: y + 20, width: Math.max(2, Math.abs(across(r.error) - across(1))), height: 11, rx: 2, fill: colour }), text(Math.max(across(r.error), across(1)) + 7, y + 30, r.error.toFixed(2), look.ink));
+    drawn.push(text(across(1) - 2, y + 14, fitted(r.title, width - 8, look, 12, r.found ? 600 : 400), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
+      svg("rect", { x: Math.min(across(1), across(r.error)), y: y + 20, width: Math.max(2, Math.abs(across(r.error) - across(1))), height: 11, rx: 2, fill: colour }), text(Math.max(across(r.error), across(1)) + 7, y + 30, r.error.toFixed(2), look.ink), line(across(1), y + 17, across(1), y + 34, look.ink));
   });
   const end = rows.length * high;
-  return canvas(width, end + 18, [...drawn, line(across(1), 0, across(1), end, look.ink, { "stroke-dasharray": "4 3" }), text(across(1) + 4, end + 12, "1.00: noise alone", look.faint, "start", { "font-size": 11 })]);
+  return canvas(width, end + 18, [...drawn, text(across(1) - 2, end + 12, "1.00: noise alone", look.faint, "start", { "font-size": 11 })]);
 }
 
 /** Small panels of curves with bands: [{label, xs, ys, ses}], one unit. */
@@ -73,8 +73,8 @@ export function panels(width, look, all, unit) {
   all.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * high + 10, w = wide - 58, hh = high - 58, there = p.xs.map((_, i) => i).filter((i) => p.ys[i] !== null);
     const [from, to] = [p.xs[0], p.xs.at(-1)], across = (v) => x0 + (w * (v - from)) / (to - from), down = (v) => y0 + hh * (1 - (v - low) / (most - low || 1));
-    for (const v of ticks(low, most, 4)) drawn.push(line(x0, down(v), x0 + w, down(v), v === 0 ? look.faint : look.line), text(x0 - 5, down(v) + 4, tick(v), look.faint, "end", { "font-size": 10.5 }));
-    for (const v of ticks(from, to, 4)) drawn.push(text(across(v), y0 + hh + 14, tick(v), look.faint, "middle", { "font-size": 10.5 }));
+    for (const [v, words] of ticked(ticks(low, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), v === 0 ? look.faint : look.line), text(x0 - 5, down(v) + 4, words, look.faint, "end", { "font-size": 10.5 }));
+    for (const [v, words] of ticked(ticks(from, to, 4))) drawn.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
     if (there.length) {
       const edge = (way) => there.map((i) => `${across(p.xs[i]).toFixed(1)} ${down(p.ys[i] + way * 1.96 * p.ses[i]).toFixed(1)}`);
       drawn.push(svg("path", { d: `M${edge(1).join("L")}L${edge(-1).reverse().join("L")}Z`, fill: look.error, "fill-opacity": 0.22 }),

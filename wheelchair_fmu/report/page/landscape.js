@@ -1,6 +1,6 @@
 // The likelihood about the estimates: by each size alone, and by the sizes of two rivals together.
 
-import { canvas, course, fitted, line, svg, text, tick, ticks } from "page/draw";
+import { canvas, course, fitted, line, svg, text, ticked, ticks } from "page/draw";
 
 const HIGH = 230;
 
@@ -10,13 +10,30 @@ export function profiles(width, look, all, level) {
   all.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 62;
     const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - Math.min(v, most) / most);
-    for (const v of ticks(0, most, 4)) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
-    for (const v of ticks(from, to, w / 80)) drawn.push(text(across(v), y0 + hh + 16, tick(v), look.faint, "middle", { "font-size": 11 }));
+    for (const [v, words] of ticked(ticks(0, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, words, look.faint, "end", { "font-size": 11 }));
+    for (const [v, words] of ticked(ticks(from, to, w / 80))) drawn.push(text(across(v), y0 + hh + 16, words, look.faint, "middle", { "font-size": 11 }));
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
-    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))), look.accent, { "stroke-width": 2 }));
+    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(...smooth(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v)))), look.accent, { "stroke-width": 2 }));
     drawn.push(text(x0 + w / 2, y0 + hh + 34, fitted(p.label, wide - 8, look), look.ink, "middle"));
+    if (n % abreast === 0) drawn.push(text(0, 0, "worse fit", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
+}
+
+const BETWEEN = 8; // points drawn from one of a curve to the next
+
+/** A curve through points as cubics go through four of them at a time, [xs, ys]; straight beside a gap or an end. */
+function smooth(xs, ys) {
+  const out = [[], []], at = (v, i) => (Number.isFinite(v[i]) ? v[i] : NaN);
+  for (let i = 0; i < xs.length; i++)
+    for (let k = 0; k < (i + 1 < xs.length ? BETWEEN : 1); k++) {
+      const s = k / BETWEEN;
+      [xs, ys].forEach((v, axis) => {
+        const [b, c] = [at(v, i), at(v, i + 1)], around = [ys[i - 1], ys[i], ys[i + 1], ys[i + 2]].every(Number.isFinite), [a, d] = around ? [v[i - 1], v[i + 2]] : [2 * b - c, 2 * c - b];
+        out[axis].push(k ? b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a))) : b);
+      });
+    }
+  return out;
 }
 
 /** Where a height crosses `level` in the cells of a grid, as pieces [[x, y], [x, y]] between places of the grid. */
@@ -68,11 +85,11 @@ export function together(width, look, pair) {
   const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
   const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];
   drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
-  for (const v of ticks(...xs, w / 70)) drawn.push(line(across(v), top, across(v), top + hh, v === 0 ? look.faint : look.line), text(across(v), top + hh + 16, tick(v), look.faint, "middle"));
-  for (const v of ticks(...ys, hh / 45)) drawn.push(line(left, down(v), left + w, down(v), v === 0 ? look.faint : look.line), text(left - 7, down(v) + 4, tick(v), look.faint, "end"));
+  for (const [v, words] of ticked(ticks(...xs, w / 70))) drawn.push(line(across(v), top, across(v), top + hh, v === 0 ? look.faint : look.line), text(across(v), top + hh + 16, words, look.faint, "middle"));
+  for (const [v, words] of ticked(ticks(...ys, hh / 45))) drawn.push(line(left, down(v), left + w, down(v), v === 0 ? look.faint : look.line), text(left - 7, down(v) + 4, words, look.faint, "end"));
   for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
-  drawn.push(text(left + w / 2, top + hh + 36, fitted(pair.names[0], width - left, look), look.ink, "middle"), text(0, 0, fitted(pair.names[1], top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
+  drawn.push(text(left + w / 2, top + hh + 36, fitted(`${pair.names[0]}, in sizes that matter`, width - left, look), look.ink, "middle"), text(0, 0, fitted(`${pair.names[1]}, in sizes that matter`, top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
   return canvas(width, top + hh + 46, drawn);
 }

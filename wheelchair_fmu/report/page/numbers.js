@@ -42,7 +42,7 @@ export function between(from, to, record) {
   const { unit, factor } = display(record), [a, b] = [from * factor, to * factor], span = Math.abs(b - a);
   const place = span > 0 ? Math.min(Math.max(0, 1 - Math.floor(Math.log10(span))), 4) : 2;
   const text = (v) => minus(v.toFixed(place)).replace(/^−(0(\.0*)?)$/, "$1");
-  return `${text(a)} to ${text(b)} ${unitText(unit)}`.trim();
+  return `${text(a)} to ${text(b)}${unit === "deg" ? "" : " "}${unitText(unit)}`.trim();
 }
 
 /** A probability. */

@@ -141,8 +141,28 @@ export class Scene {
       this.wheel(c, (way * rear) / 2, b, 2 * R, 0.045, 0, ghost ? null : rolled[side][i], colour);
       this.wheel(c, (way * front) / 2, -a, 0.14, 0.03, results[`caster.f${side}`]?.[i] ?? 0, null, colour, 0.05);
     }
-    if (!ghost) { c.fillStyle = colour; c.beginPath(); c.arc(0, 0, 0.022, 0, 7); c.fill(); }
+    if (!ghost) {
+      this.rider(c, a, b, rear, colour);
+      c.fillStyle = colour; c.beginPath(); c.arc(0, 0, 0.022, 0, 7); c.fill();
+    }
     c.restore();
+  }
+
+  /** Who sits in it, as wide as the chair lets him: backrest, legs with footrests, shoulders and head. */
+  rider(c, a, b, rear, colour) {
+    const half = Math.min(0.23, 0.42 * rear), back = b - 0.02, hips = back - 0.1;
+    c.fillStyle = c.strokeStyle = colour;
+    c.globalAlpha = 0.3;
+    for (const side of [-1, 1]) {
+      c.beginPath(); c.roundRect(side * 0.42 * half - 0.3 * half, -a - 0.06, 0.6 * half, hips + a + 0.06, 0.05); c.fill();
+      c.beginPath(); c.roundRect(side * 0.42 * half - 0.22 * half, -a - 0.26, 0.44 * half, 0.22, 0.04); c.fill();
+    }
+    c.beginPath(); c.ellipse(0, hips, half, 0.42 * half, 0, 0, 7); c.fill();
+    c.globalAlpha = 0.75;
+    c.beginPath(); c.arc(0, hips - 0.02, 0.085, 0, 7); c.fill();
+    c.lineWidth = 0.03; c.lineCap = "round";
+    c.beginPath(); c.moveTo(-half, back); c.lineTo(half, back); c.stroke();
+    c.globalAlpha = 1; c.lineCap = "butt";
   }
 
   /** A wheel from above; treads pass over it as it rolls. */

@@ -2,6 +2,7 @@
 
 import { byId, h } from "page/dom";
 import { look } from "page/draw";
+import { same } from "page/controls";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
@@ -23,6 +24,7 @@ export class Story {
     this.stages = Object.fromEntries(this.screens.map((s) => [s.dataset.kind, s.querySelector(".stage")]));
     this.guessing();
     this.putting();
+    this.advising();
     this.go(Math.min(Math.max(Math.round(open ?? 0), 0), this.screens.length - 1));
   }
 
@@ -38,14 +40,34 @@ export class Story {
     this.draw();
   }
 
+  /** A guess is answered in words and, where the search refitted it, by its curve. */
   guessing() {
     const answer = h("p", { class: "answer", role: "status" });
+    this.guessed = h("div", { class: "curve" });
     const choices = this.told("guess").choices.map((c) => h("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: ({ currentTarget }) => {
       for (const b of choices) b.setAttribute("aria-pressed", b === currentTarget);
       currentTarget.dataset.right = c.right;
       answer.textContent = c.answer;
-    } }, c.title));
-    this.stages.guess.append(h("div", { class: "choices-list" }, choices), answer);
+      this.choice = c;
+      this.reveal();
+    } }, capital(c.title)));
+    this.stages.guess.append(h("div", { class: "choices-list" }, choices), answer, this.guessed);
+  }
+
+  async reveal() {
+    const { choice, app } = this, { run } = app.shown, values = this.campaign.diagnosis.ranking.find((r) => r.effect === choice?.effect)?.values;
+    const after = values ? await app.pool.later({ run, values, aside: true }).catch(() => null) : null;
+    if (choice === this.choice && run === app.shown.run) this.guessed.replaceChildren(...(after ? this.curves(app.before(), after, "with this guess") : []));
+  }
+
+  /** What stands beside the last screen: the missing force, where it is drawn; commands can be copied. */
+  advising() {
+    for (const code of this.stages.next.parentNode.querySelectorAll(".told code")) {
+      const button = h("button", { type: "button", class: "quiet", onclick: async () => {
+        button.textContent = await navigator.clipboard.writeText(code.textContent).then(() => "copied", () => "select it and copy");
+      } }, "copy");
+      code.after(" ", button);
+    }
   }
 
   /** The button puts in the last step of the search, or the likeliest effect where nothing was found. */
@@ -54,7 +76,7 @@ export class Story {
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = this.last === begins ? { ...begins.values, ...Object.fromEntries(sizes) } : this.last.values;
     this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
-    this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), " → ", this.after = h("b", {}, "–"), h("span", {}, " times the noise"));
+    this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
   }
@@ -67,9 +89,11 @@ export class Story {
   draw() {
     const kind = this.screens[this.at].dataset.kind, stage = this.stages[kind];
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
+    if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
     if (kind === "rivals") {
-      const rows = this.told("rivals").bars;
-      stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
+      const rows = this.told("rivals").bars, other = this.campaign.diagnosis.ties.length ? "joint" : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
+      if (drawn.length) stage.replaceChildren(...drawn);
+      else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
     if (kind === "put") {
       const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", told = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins), start = this.app.forces ? this.app.began : told;
@@ -77,15 +101,22 @@ export class Story {
       this.toggle.setAttribute("aria-pressed", this.isIn());
       this.before.textContent = rms(start?.[key]);
       this.after.textContent = rms(this.app.now?.[key]);
+      this.change.hidden = same(this.app.values, this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins).values);
       this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
     }
   }
 
-  curves(before, after) {
+  /** One of the expert's pictures with its caption, where there is one. */
+  drawing(id, stage) {
+    const figure = this.app.figures.all[id];
+    return figure ? [h("h4", {}, figure.says.title), figure.says.draw(Math.max(280, Math.min(760, stage.clientWidth || 600)), look()), h("p", { class: "caption" }, figure.says.caption())] : [];
+  }
+
+  curves(before, after, name = "model now") {
     const { run: index, channel } = this.app.shown, run = this.campaign.runs[index], record = this.campaign.channels.find((c) => c.name === channel);
     if (!before?.predicted?.[channel]) return [];
     const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
-    const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? ["model now", scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
+    const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? [name, scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
     const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
     return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];
   }

@@ -59,7 +59,7 @@ export class Timeline {
     const names = Object.keys(run.channels);
     this.cells = names.map((name) => ({ name, measured: h("td"), model: h("td"), error: h("td") }));
     this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),
-      h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error [σ]"].map((t) => h("th", { scope: "col" }, t)))),
+      h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error ÷ noise"].map((t) => h("th", { scope: "col" }, t)))),
       h("tbody", {}, this.cells.map((c) => h("tr", { "data-channel": c.name }, h("th", { scope: "row" },
         h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
   }
@@ -92,7 +92,7 @@ export class Timeline {
     const colour = (name) => () => this.look[name];
     const edge = { width: 0, auto: false, points: { show: false } }; // the scale is that of the curves
     const series = [[edge, edge, ...this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false }, gaps: this.gaps }))], [{ stroke: colour("error"), width: 1, points: { show: false }, gaps: this.gaps }]];
-    this.plots = [this.unit, "error [σ]"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
+    this.plots = [this.unit, "error ÷ noise"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
     this.marks = this.plots.map((plot) => plot.over.appendChild(h("div", { class: "now-line" })));
     this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)), h("span", {}, h("i", { class: "band" }), "95 % band"));
   }
@@ -124,7 +124,7 @@ export class Timeline {
   };
 
   size(index) {
-    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 200 : 330 };
+    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 230 : 400 };
   }
 
   /** Where 95 % of a perfect model's errors lie. */
