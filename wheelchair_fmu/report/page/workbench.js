@@ -1,6 +1,6 @@
 // The workbench: forms over a session that the server keeps. Nothing lives only in this page.
 
-import { byId, h, save } from "page/dom";
+import { byId, h, save, symbols } from "page/dom";
 import { chair, columns, noise, priors, runs } from "page/forms";
 import { rms, unitText } from "page/numbers";
 import { capital } from "page/words";
@@ -73,7 +73,7 @@ class Workbench {
 
   show(state) {
     this.state = state;
-    byId("name").textContent = state.campaign?.campaign?.name ?? "";
+    byId("name").textContent = state.files.length ? state.campaign?.campaign?.name ?? "" : "";
     this.showFaults();
     byId("forms").replaceChildren(...(state.campaign && state.files.length ? [runs(this), columns(this), noise(this), chair(this), priors(this)] : []));
     this.showHistory();
@@ -196,7 +196,7 @@ class Workbench {
     box.replaceChildren(
       outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This is of the model, or of the measurements, before the last change, and so is the report. Diagnose again for what is so now."),
       h("h3", {}, outcome.sentence),
-      h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, l))))),
+      h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, symbols(l)))))),
       h("p", { class: "tools wide-tools" }, add.map((e) => h("button", { type: "button", class: "step", "aria-pressed": "true", "data-add": e, onclick: () => this.job("add", { effect: e }) }, `add it: ${this.titleOf(e)}`)),
         h("a", { class: "button", id: "report", href: `${this.here}/report?${report}`, target: "_blank", rel: "noopener" }, "open the report, in which the model runs ↗")));
     this.enable();
