@@ -2,7 +2,7 @@
 
 import * as address from "page/address";
 import { Controls, same } from "page/controls";
-import { byId, h, unpacked } from "page/dom";
+import { byId, h, sized, unpacked } from "page/dom";
 import { look } from "page/draw";
 import { together } from "page/errors";
 import { evidence } from "page/evidence";
@@ -48,6 +48,8 @@ class App {
     if (typeof WebAssembly !== "object" || typeof Worker !== "function") throw new Error("it has no WebAssembly or no workers");
     this.pool = new Pool(byId("worker").textContent, campaign, (run, result) => this.heard(run, result), (words) => this.give(words));
     this.shown = this.firstShown();
+    this.mini = document.querySelector(".mini");
+    this.room = sized(this.mini);
     this.figures.alive();
     this.scene = new Scene(this.figures.all.path.drawing, campaign);
     this.timeline = new Timeline(this.figures.all.overlay.drawing, this.figures.all.path.drawing, campaign, this.scene, (channel) => this.show(this.shown.run, channel), () => this.write());
@@ -303,7 +305,7 @@ class App {
     this.scene.show(this.motion, this.look ??= look(), run.name);
     const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
     this.timeline.show(this.shown.channel, result, before, pinned, this.band(result));
-    mini(document.querySelector(".mini"), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
+    mini(this.mini, this.room(), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
   }
 
   /** `rested`: also what takes long to sort. */
@@ -311,7 +313,7 @@ class App {
     byId("now-fit").textContent = rms(this.now.fit);
     byId("now-heldout").textContent = rms(this.now.heldout);
     this.figures.follow();
-    this.story.draw();
+    this.story.draw(rested);
     if (!rested) return;
     this.figures.rested();
     this.pins.show({ values: this.values, errors: this.now });

@@ -36,6 +36,7 @@ export class Controls {
     const order = [...rows.keys()].map((id) => this.campaign.effects.find((e) => e.id === id)).filter(Boolean);
     const likely = order.filter((e) => rows.get(e.id).values), others = order.filter((e) => !rows.get(e.id).values);
     this.boxes = new Map();
+    this.shown = new Map(); // what every slider stands at
     this.sliders = new Map();
     this.steps = this.models.map((m) => h("button", { type: "button", class: "step", onclick: () => this.put({ ...m.values }) }, stepOf(this.campaign, m.step)));
     const effects = (list) => list.map((e) => this.effect(e, rows.get(e.id)));
@@ -82,7 +83,7 @@ export class Controls {
     const number = h("input", { type: "number", min: (p.lower ?? -1e300) * factor, max: (p.upper ?? 1e300) * factor, step: "any", "aria-label": `${p.name} [${unit}]` });
     const put = (source) => {
       const value = source.valueAsNumber / factor;
-      if (!Number.isFinite(value) || value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity)) return number.setCustomValidity(`between ${p.lower} and ${p.upper}`);
+      if (!Number.isFinite(value) || value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity)) return this.shown.delete(p.name), number.setCustomValidity(`between ${p.lower} and ${p.upper}`);
       number.setCustomValidity("");
       this.put({ ...this.values, [p.name]: value });
     };
@@ -133,7 +134,9 @@ export class Controls {
     }
     this.again.disabled = ![...this.boxes.values()].some(({ box }) => box.checked); // not hidden: nothing moves under a pointer that drags
     for (const [name, { range, number, factor, record }] of this.sliders) {
-      const value = (this.values[name] ?? this.campaign.known[name] ?? record.default) * factor;
+      const value = (this.values[name] ?? this.campaign.known[name] ?? record.default) * factor, active = document.activeElement;
+      if (this.shown.get(name) === value && active !== range && active !== number) continue;
+      this.shown.set(name, value);
       if (document.activeElement !== range || Math.abs(range.valueAsNumber - value) > 1e-9 * Math.abs(value)) range.value = value;
       if (document.activeElement !== number) number.value = Number(value.toPrecision(5));
       range.setAttribute("aria-valuetext", `${significant(value, 4)} ${unitText(display(record).unit)}`);

@@ -26,6 +26,14 @@ export function indexed(words) {
   return [...out, [words.slice(from), false]].filter(([t]) => t);
 }
 
+/** How wide and high an element is inside, asked for seldom: () => [width, height]. To ask the element itself would have the page
+ *  laid out anew with every drawing. */
+export function sized(element) {
+  let size = null;
+  new ResizeObserver(() => { size = null; }).observe(element);
+  return () => (size ??= [element.clientWidth, element.clientHeight]);
+}
+
 export const byId = (id) => document.getElementById(id);
 
 /** What is packed in base64 of deflated JSON; series come as {f64: [...]}, null in gaps. */

@@ -4,9 +4,9 @@ import { extent } from "page/draw";
 
 const POINTS = 240;
 
-/** Measured and model, (n,) each, on a <canvas>; nothing is drawn where the page has no place for it. */
-export function mini(canvas, look, measured, model) {
-  const width = canvas.clientWidth, height = canvas.clientHeight, scale = devicePixelRatio || 1;
+/** Measured and model, (n,) each, on a <canvas> of this size; nothing is drawn where the page has no place for it. */
+export function mini(canvas, [width, height], look, measured, model) {
+  const scale = devicePixelRatio || 1;
   if (!width) return;
   [canvas.width, canvas.height] = [width * scale, height * scale];
   const c = canvas.getContext("2d"), [low, high] = extent(measured, model), step = Math.max(1, Math.floor(model.length / POINTS));

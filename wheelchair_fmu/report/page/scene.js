@@ -1,7 +1,7 @@
 // The chair from above on a canvas: the whole path, and close by the model's chair with the measured one as a ghost, its wheels
 // and casters turning, and arrows of what pushes it.
 
-import { h } from "page/dom";
+import { h, sized } from "page/dom";
 import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
@@ -14,6 +14,7 @@ export class Scene {
     this.canvas = h("canvas", { class: "scene", role: "img" });
     this.paths = h("canvas"); // the overview, which only changes with the run and the model
     place.append(this.canvas);
+    this.room = sized(place);
   }
 
   /** `motion` is {time, model, measured, before, results, inputs, rolled, lacking}; see app.js. */
@@ -26,7 +27,7 @@ export class Scene {
   }
 
   fit() {
-    const width = Math.max(260, this.canvas.parentNode.clientWidth), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.room()[0]), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
     this.lying = xs[1] - xs[0] > ys[1] - ys[0];

@@ -25,6 +25,7 @@ export class Story {
     this.guessing();
     this.putting();
     this.advising();
+    new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; }).observe(this.curve);
     this.go(Math.min(Math.max(Math.round(open ?? 0), 0), this.screens.length - 1));
   }
 
@@ -85,9 +86,12 @@ export class Story {
     return Object.entries(this.with).every(([n, v]) => (this.app.values[n] ?? 0) === v);
   }
 
-  /** Only what is on the open screen. */
-  draw() {
+  /** Only what is on the open screen; of what follows from values only where it is in sight, as drawing costs time. `rested`:
+   *  values rest, and all may be drawn. */
+  draw(rested = true) {
     const kind = this.screens[this.at].dataset.kind, stage = this.stages[kind];
+    if (kind === "put") return this.drawPut(rested);
+    if (!rested) return;
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
     if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
     if (kind === "rivals") {
@@ -95,15 +99,16 @@ export class Story {
       if (drawn.length) stage.replaceChildren(...drawn);
       else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
-    if (kind === "put") {
-      const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", told = this.campaign.diagnosis.ladder.find((s) => s.step === this.campaign.diagnosis.begins), start = this.app.forces ? this.app.began : told;
-      this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
-      this.toggle.setAttribute("aria-pressed", this.isIn());
-      this.before.textContent = rms(start?.[key]);
-      this.after.textContent = rms(this.app.now?.[key]);
-      this.change.hidden = same(this.app.values, this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins).values);
-      this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
-    }
+  }
+
+  drawPut(rested) {
+    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, told = ladder.find((s) => s.step === begins), start = this.app.forces ? this.app.began : told;
+    this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
+    this.toggle.setAttribute("aria-pressed", this.isIn());
+    this.before.textContent = rms(start?.[key]);
+    this.after.textContent = rms(this.app.now?.[key]);
+    this.change.hidden = same(this.app.values, models.find((m) => m.step === begins).values);
+    if (rested || this.seen) this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
   }
 
   /** One of the expert's pictures with its caption, where there is one. */
