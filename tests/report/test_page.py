@@ -9,6 +9,7 @@ import pytest
 
 from wheelchair_fmu.quantities import N_S_M, RAD, M, N, Parameter
 from wheelchair_fmu.report.content import layers
+from wheelchair_fmu.report.markup import marked
 from wheelchair_fmu.report.page import MODULES, asset, page, unpacked
 from wheelchair_fmu.report.tale import Story
 from wheelchair_fmu.report.words import particulars, sentence, value_text
@@ -169,3 +170,16 @@ def test_every_module_is_in_the_import_map():
 def test_the_plotting_library_comes_with_its_licence():
     html = page({"name": "a"}, "", [], Story([], []))
     assert "uPlot" in html and "Permission is hereby granted" in html
+
+
+def test_a_page_says_what_it_was_made_by():
+    story = Story([], [])
+    diagnosis = {"made_by": {"version": "1.2.3", "code": "c" * 64}, "fingerprint": "f" * 64}
+    html = page({"name": "n", "diagnosis": diagnosis}, "s", [], story)
+    assert "Found by wheelchair-fmu 1.2.3 (code cccccccccccc) in measurements with the fingerprint ffffffffffff." in html
+    assert "Found by wheelchair-fmu." in page({"name": "n"}, "s", [], story)  # of a diagnosis that says nothing of itself
+
+
+def test_commands_and_symbols_are_printed_as_such():
+    assert marked("Put it in: wheelchair add drag toe_in.") == "Put it in: <code>wheelchair add drag toe_in</code>"
+    assert marked("Stiffness C_λ of one_tyre & more") == "Stiffness C<sub>λ</sub> of one_tyre &amp; more"

@@ -22,15 +22,27 @@ from .words import listed, probability_words, spoken, strained
 
 
 def cards(t: Told) -> list[dict[str, Any]]:
-    """What, how sure, what to do: [{"head", "lead", "lines"}]."""
+    """What, how sure, what to do: [{"head", "lead", "lines"}], some with a "gauge" of bars:
+    {"bars": [(label, length)], "mark": a length, "words": what it is}."""
     lead, lines = _what(t)
     sure, reasons = _how_sure(t)
     first, *more = [f"{part}." for line in actions(t)[:1] for part in line.rstrip(".").split(". ")] + actions(t)[1:]
     return [
-        {"head": "What", "lead": lead, "lines": lines},
-        {"head": "How sure", "lead": sure, "lines": reasons},
+        {"head": "What", "lead": lead, "lines": lines, **_size_gauge(t)},
+        {"head": "How sure", "lead": sure, "lines": reasons, **_fall_gauge(t)},
         {"head": "What to do", "lead": first, "lines": more},
     ]
+
+
+def _size_gauge(t: Told) -> dict[str, Any]:
+    if len(t.found) != 1 or t.verdict not in ("missing", "small"):
+        return {}
+    return {"gauge": {"bars": [("size", t.multiple(t.found[0]))], "mark": 1.0, "words": "would matter"}}
+
+
+def _fall_gauge(t: Told) -> dict[str, Any]:
+    before, after = t.fall
+    return {"gauge": {"bars": [("before", before), ("after", after)], "mark": 1.0, "words": "noise alone"}} if t.falls else {}
 
 
 def _what(t: Told) -> tuple[str, list[str]]:

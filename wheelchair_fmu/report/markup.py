@@ -15,9 +15,21 @@ def cards_html(cards: Sequence[Mapping[str, Any]]) -> str:
     """Three cards above the fold."""
     return "".join(
         f'<section class="card"><h2>{escape(c["head"])}</h2><p class="lead">{escape(c["lead"])}</p>'
-        f"{_lines(c['lines'])}</section>"
+        f"{_gauge(c['gauge']) if 'gauge' in c else ''}{_lines(c['lines'])}</section>"
         for c in cards
     )
+
+
+def _gauge(gauge: Mapping[str, Any]) -> str:
+    """Bars beside a mark; the sentences say the same."""
+    longest = 1.1 * max(gauge["mark"], *(length for _, length in gauge["bars"]))
+    at = f"left:{100 * gauge['mark'] / longest:.1f}%"
+    bars = "".join(
+        f'<span>{escape(label)}</span><b><i style="width:{100 * length / longest:.1f}%"></i><u style="{at}"></u></b>'
+        for label, length in gauge["bars"]
+    )
+    mark = f'<span></span><b class="mark"><em style="{at}">{escape(gauge["words"])}</em></b>'
+    return f'<div class="gauge" aria-hidden="true">{bars}{mark}</div>'
 
 
 def screens_html(screens: Sequence[Mapping[str, Any]]) -> str:

@@ -44,6 +44,7 @@ MODULES = (
     "words",
 )
 PLOT = "vendor/uplot-1.6.32"  # https://github.com/leeoniya/uPlot, MIT
+KEPT = 12  # characters of a fingerprint that are enough to tell it
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
     "img-src data: blob:; worker-src blob:"
@@ -62,6 +63,7 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "particulars": "".join(f"<p>{marked(line)}</p>" for line in (*particulars, *story.physical)),
         "cards": cards_html(story.cards),
         "screens": screens_html(story.screens),
+        "made": escape(_made(content.get("diagnosis") or {})),
         "policy": POLICY,
         "style": asset("style.css"),
         "plotstyle": asset(f"{PLOT}.min.css"),
@@ -78,6 +80,14 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         name, _, text = piece.partition("}}")
         parts += [places[name], text]
     return "".join(parts)
+
+
+def _made(diagnosis: Mapping[str, Any]) -> str:
+    """Which program found this in which measurements, so that a printed page can be traced."""
+    made, data = diagnosis.get("made_by") or {}, diagnosis.get("fingerprint")
+    version = " ".join(part for part in ("wheelchair-fmu", made.get("version")) if part)
+    code = f" (code {made['code'][:KEPT]})" if made.get("code") else ""
+    return f"Found by {version}{code}{f' in measurements with the fingerprint {data[:KEPT]}' if data else ''}."
 
 
 def packed(content: Mapping[str, Any]) -> str:

@@ -195,7 +195,7 @@ class App {
     const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
     const card = document.querySelectorAll(".card")[1];
     card.querySelector(".physical")?.remove();
-    card.querySelector(".lead").nextElementSibling?.after(h("p", { class: "physical" }, words));
+    card.querySelector("p:not(.lead)")?.after(h("p", { class: "physical" }, words));
   }
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
