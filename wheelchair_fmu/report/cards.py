@@ -69,7 +69,7 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     if found:
         record = t.records[f"effect.{found['term']}.q"]
         size = spoken(found["estimate"], found["se"], record.unit)
-        return "A force that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
+        return "A force or torque that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"
@@ -81,7 +81,12 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
     fall, rivals = fall_words(t), rival_words(t)
     if t.verdict == "tie":
         left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
-        together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
+        errors = {f"{error:.2f}" for error in left.values()}
+        if len(left) == len(t.found) > 1 and len(errors) == 1:
+            each = "either" if len(left) == 2 else "any of them"
+            together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
+        else:
+            together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
         return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
     if t.verdict in ("missing", "small") and t.found:
         sure = min(exceeds(t.rows[e]) for e in t.found)

@@ -1,6 +1,6 @@
 // The evidence table, ties and the next experiment, from the diagnosis.
 
-import { byId, csv, h, save } from "page/dom";
+import { byId, csv, h, save, symbols } from "page/dom";
 import { inUnit, probability, rms, significant, withError } from "page/numbers";
 import { capital, channelOf, listed, titleOf } from "page/words";
 
@@ -39,7 +39,7 @@ function line(campaign, row, record, later) {
   const parameters = record.parameters.map((p) => [p, row.parameters[p.name.split(".").at(-1)]]).filter(([, v]) => v);
   const several = parameters.length > 1, better = campaign.diagnosis.effects.length || campaign.diagnosis.leftover?.proposal;
   const slight = parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta);
-  const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, p.name.split(".").at(-1), " ") : null, text);
+  const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, symbols(p.name.split(".").at(-1)), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
     h("th", { scope: "row" }, capital(record.title), h("small", {}, h("code", {}, row.effect))),
@@ -56,7 +56,7 @@ function line(campaign, row, record, later) {
 /** Effects that were refitted several at once. */
 function together(groups, campaign) {
   const sizes = new Map(campaign.effects.flatMap((e) => e.parameters.map((p) => [p.name, p]))), named = (ids) => listed(ids.map((e) => titleOf(campaign, e)));
-  const cell = (head, ...inner) => h("td", { "data-head": head }, inner);
+  const cell = (head, inner) => h("td", { "data-head": head }, inner);
   const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
     cell("Estimate ± SE", Object.entries(g.parameters).map(([n, v]) => h("div", {}, withError(v.estimate, v.se, sizes.get(n))))),
     cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Chance of noise", probability(g.p)), cell("Verdict", became(g, campaign))));

@@ -10,7 +10,7 @@ import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
 import { between, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, listed, runOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
@@ -69,7 +69,7 @@ export class Figures {
       const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
       if (!own || !p.delta) return null;
       const [low, high] = own.interval ?? [own.estimate - 1.96 * (own.se ?? 0), own.estimate + 1.96 * (own.se ?? 0)];
-      return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${p.name.split(".").at(-1).replaceAll("_", " ")}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
+      return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
         note: withError(own.estimate, own.se, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
@@ -110,7 +110,7 @@ export class Figures {
 
   sizeOf(name) {
     const effect = this.campaign.effects.find((e) => e.parameters.some((p) => p.name === name)), record = effect.parameters.find((p) => p.name === name);
-    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${name.split(".").at(-1).replaceAll("_", " ")}` : "") };
+    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${shortOf(name)}` : "") };
   }
 
   profiled(curves) {
@@ -123,7 +123,8 @@ export class Figures {
   }
 
   joined(joint) {
-    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta) };
+    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
+      bounds: sizes.map(({ record: { lower, upper, delta } }) => [(lower ?? -Infinity) / delta, (upper ?? Infinity) / delta]) };
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),

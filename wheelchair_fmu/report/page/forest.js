@@ -1,7 +1,8 @@
 // Estimates with their 95 % intervals: of effects, in sizes of interest; of calibrated values, in standard deviations of what
 // was given.
 
-import { broken, canvas, fitted, line, long, svg, symbolic, text, ticked, ticks } from "page/draw";
+import { broken, canvas, line, long, svg, symbolic, text, ticked, ticks } from "page/draw";
+import { capital } from "page/words";
 
 const ROW = 24, CLIP = 12;
 
@@ -55,15 +56,17 @@ function drawnRow(r, y, across, [low, most], look) {
 
 /** Bars of errors from the noise upwards: [{title, error, found}]. */
 export function bars(width, look, rows) {
-  const high = 40, most = Math.max(1.3, ...rows.map((r) => r.error)) * 1.02, least = 0.997 * Math.min(1, ...rows.map((r) => r.error)), drawn = [];
-  const across = (v) => 4 + (width - 60) * (Math.log(v / least) / Math.log(most / least));
-  rows.forEach((r, i) => {
-    const y = i * high, colour = r.found ? look.accent : look.faint;
-    drawn.push(text(across(1) - 2, y + 14, fitted(r.title, width - 8, look, 12, r.found ? 600 : 400), look.ink, "start", { "font-weight": r.found ? 600 : 400 }),
-      svg("rect", { x: Math.min(across(1), across(r.error)), y: y + 20, width: Math.max(2, Math.abs(across(r.error) - across(1))), height: 11, rx: 2, fill: colour }), text(Math.max(across(r.error), across(1)) + 7, y + 30, r.error.toFixed(2), look.ink), line(across(1), y + 17, across(1), y + 34, look.ink));
-  });
-  const end = rows.length * high;
-  return canvas(width, end + 18, [...drawn, text(across(1) - 2, end + 12, "1.00: noise alone", look.faint, "start", { "font-size": 11 })]);
+  const most = Math.max(1.3, ...rows.map((r) => r.error)) * 1.02, least = 0.997 * Math.min(1, ...rows.map((r) => r.error)), drawn = [];
+  const across = (v) => 4 + (width - 60) * (Math.log(v / least) / Math.log(most / least)), noise = across(1);
+  let y = 0;
+  for (const r of rows) {
+    const weight = r.found ? 600 : 400, name = broken(capital(r.title), width - noise - 8, look, 12, weight, 2), at = across(r.error), top = y + 6 + 14 * name.length;
+    name.forEach((t, k) => drawn.push(text(noise - 2, y + 14 + 14 * k, t, look.ink, "start", { "font-weight": weight })));
+    drawn.push(svg("rect", { x: Math.min(noise, at), y: top, width: Math.max(2, Math.abs(at - noise)), height: 11, rx: 2, fill: r.found ? look.accent : look.faint }),
+      text(Math.max(at, noise) + 7, top + 10, r.error.toFixed(2), look.ink), line(noise, top - 3, noise, top + 14, look.ink));
+    y = top + 20;
+  }
+  return canvas(width, y + 18, [...drawn, text(noise - 2, y + 12, "1.00: noise alone", look.faint, "start", { "font-size": 11 })]);
 }
 
 /** Small panels of curves with bands: [{label, xs, ys, ses}], one unit. */

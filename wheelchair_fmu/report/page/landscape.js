@@ -1,20 +1,20 @@
 // The likelihood about the estimates: by each size alone, and by the sizes of two rivals together.
 
-import { canvas, course, fitted, line, svg, text, ticked, ticks } from "page/draw";
+import { broken, canvas, course, fitted, line, long, svg, text, ticked, ticks } from "page/draw";
 
-const HIGH = 230;
+const HIGH = 236;
 
 /** Curves of heights over sizes: [{label, xs, ys, estimate}], with the level below which 95 % lie; three abreast at most. */
 export function profiles(width, look, all, level) {
   const abreast = Math.max(1, Math.min(all.length, 3, Math.floor(width / 240))), wide = width / abreast, most = 2.4 * level, drawn = [];
   all.forEach((p, n) => {
-    const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 62;
-    const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - Math.min(v, most) / most);
+    const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 70;
+    const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - v / most), curve = smooth(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))));
     for (const [v, words] of ticked(ticks(0, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, words, look.faint, "end", { "font-size": 11 }));
     for (const [v, words] of ticked(ticks(from, to, w / 80))) drawn.push(text(across(v), y0 + hh + 16, words, look.faint, "middle", { "font-size": 11 }));
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
-    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(...smooth(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v)))), look.accent, { "stroke-width": 2 }));
-    drawn.push(text(x0 + w / 2, y0 + hh + 34, fitted(p.label, wide - 8, look), look.ink, "middle"));
+    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : y)), look.accent, { "stroke-width": 2 }));
+    broken(p.label, wide - 12, look, 12, 400, 2).forEach((t, k) => drawn.push(text(x0 + w / 2, y0 + hh + 34 + 14 * k, t, look.ink, "middle")));
     if (n % abreast === 0) drawn.push(text(0, 0, "worse fit", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
@@ -75,13 +75,39 @@ export function joined(pieces) {
   return out;
 }
 
+const FINER = 6; // steps drawn from one of the grid to the next
+
+/** Heights over a finer grid, [about, heights]: the parabola that lies nearest to them, and between their places what they differ
+ *  from it by. So a contour is smooth, and goes on where no model could be asked, beyond a bound. */
+export function finer(about, heights) {
+  const terms = (u, v) => [1, u, v, u * u, u * v, v * v], known = [];
+  heights.forEach((row, j) => row.forEach((h, i) => { if (h !== null) known.push([about[i], about[j], h]); }));
+  const weights = known.map(([, , h]) => 1 / (1 + h)), a = terms(0, 0).map((_, p) => terms(0, 0).map((__, q) => known.reduce((sum, [u, v], k) => sum + weights[k] * terms(u, v)[p] * terms(u, v)[q], p === q ? 1e-9 : 0)));
+  const fit = solved(a, terms(0, 0).map((_, p) => known.reduce((sum, [u, v, h], k) => sum + weights[k] * terms(u, v)[p] * h, 0)));
+  const parabola = (u, v) => terms(u, v).reduce((sum, t, p) => sum + t * fit[p], 0), rest = heights.map((row, j) => row.map((h, i) => (h === null ? 0 : h - parabola(about[i], about[j]))));
+  const places = Array.from({ length: (about.length - 1) * FINER + 1 }, (_, k) => [Math.min(Math.floor(k / FINER), about.length - 2), k]).map(([i, k]) => [i, k / FINER - i]);
+  const fine = places.map(([i, s]) => about[i] + s * (about[i + 1] - about[i]));
+  return [fine, places.map(([j, t], b) => places.map(([i, s], a) => Math.max(0, parabola(fine[a], fine[b]) + (1 - t) * ((1 - s) * rest[j][i] + s * rest[j][i + 1]) + t * ((1 - s) * rest[j + 1][i] + s * rest[j + 1][i + 1]))))];
+}
+
+/** A small system of equations, by elimination with the greatest pivot. */
+function solved(a, b) {
+  const m = a.map((row, i) => [...row, b[i]]), n = b.length;
+  for (let i = 0; i < n; i++) {
+    const most = m.slice(i).reduce((best, row, k) => (Math.abs(row[i]) > Math.abs(m[best][i]) ? k + i : best), i);
+    [m[i], m[most]] = [m[most], m[i]];
+    for (let k = 0; k < n; k++) if (k !== i) { const by = m[k][i] / m[i][i]; for (let c = i; c <= n; c++) m[k][c] -= by * m[i][c]; }
+  }
+  return m.map((row, i) => row[n] / row[i]);
+}
+
 /** Two sizes together: contours of 50 and 95 % about the best, and either size alone on its axis. `pair` is the landscape's
- *  with `names` and `deltas`; both axes are in the smallest sizes that would matter. */
+ *  with `names`, `deltas` and `bounds` [[least, greatest], ...]; both axes are in the smallest sizes that would matter. */
 export function together(width, look, pair) {
-  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, about, heights, deltas } = pair;
+  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, deltas, bounds } = pair, [about, heights] = finer(pair.about, pair.heights);
   const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
-  const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [joined(contour(heights, about, level)).map((points) => points.map(at)), dash]);
-  const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat())], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
+  const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [joined(contour(heights, about, level)).map((points) => within(points.map(at), bounds)), dash]);
+  const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat()).filter(([v]) => Number.isFinite(v))], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
   const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
   const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];
   drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
@@ -90,6 +116,24 @@ export function together(width, look, pair) {
   for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
-  drawn.push(text(left + w / 2, top + hh + 36, fitted(`${pair.names[0]}, in sizes that matter`, width - left, look), look.ink, "middle"), text(0, 0, fitted(`${pair.names[1]}, in sizes that matter`, top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
+  drawn.push(text(left + w / 2, top + hh + 36, measured(pair.names[0], width - left, look), look.ink, "middle"), text(0, 0, measured(pair.names[1], top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
   return canvas(width, top + hh + 46, drawn);
 }
+
+/** A course as far as it lies within bounds, to the very bounds, with a gap where it does not. */
+function within(points, bounds) {
+  const out = [], inside = (q) => q.every((v, k) => v >= bounds[k][0] && v <= bounds[k][1]);
+  points.forEach((q, i) => {
+    const before = points[i - 1];
+    if (before && inside(before) !== inside(q)) {
+      let [kept, lost] = inside(q) ? [q, before] : [before, q];
+      for (let n = 0; n < 30; n++) { const middle = kept.map((v, k) => (v + lost[k]) / 2); if (inside(middle)) kept = middle; else lost = middle; }
+      out.push(kept);
+    }
+    out.push(inside(q) ? q : [NaN, NaN]);
+  });
+  return out;
+}
+
+/** A name with what its axis counts, or, where that has no place, as much of it as has. */
+const measured = (name, room, look) => [`${name}, in sizes that matter`, `${name} [1 matters]`].find((t) => long(t, look) <= room) ?? fitted(name, room, look);

@@ -8,6 +8,21 @@ import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
 import { capital, channelOf, runOf } from "page/words";
 
+const SLIGHT = 1.5; // error of a channel, noise = 1: below that, its curves hardly part to the eye
+const HALF = 0.25; // s either side of a mean
+
+/** Means of a series over half a second. */
+function smooth(time, values) {
+  const sums = new Float64Array(values.length + 1), counts = new Float64Array(values.length + 1);
+  values.forEach((v, i) => { const there = Number.isFinite(v); sums[i + 1] = sums[i] + (there ? v : 0); counts[i + 1] = counts[i] + there; });
+  let low = 0, high = 0;
+  return Float64Array.from(time, (t) => {
+    while (time[low] < t - HALF) low++;
+    while (high < time.length && time[high] <= t + HALF) high++;
+    return (sums[high] - sums[low]) / (counts[high] - counts[low]);
+  });
+}
+
 export class Story {
   /** `app` has values, results and put; `turned(screen)` hears which is open. */
   constructor(campaign, app, open, turned) {
@@ -76,7 +91,7 @@ export class Story {
     const begins = this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins), first = this.campaign.diagnosis.ranking.find((r) => this.campaign.effects.some((e) => e.id === r.effect));
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = this.last === begins ? { ...begins.values, ...Object.fromEntries(sizes) } : this.last.values;
-    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) });
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
@@ -103,7 +118,8 @@ export class Story {
 
   drawPut(rested) {
     const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, told = ladder.find((s) => s.step === begins), start = this.app.forces ? this.app.began : told;
-    this.toggle.textContent = this.isIn() ? "take it out again" : "put it in";
+    const several = this.campaign.diagnosis.effects.length > 1 && !this.campaign.diagnosis.ties.length, it = several ? "them" : "it";
+    this.toggle.textContent = this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
     this.before.textContent = rms(start?.[key]);
     this.after.textContent = rms(this.app.now?.[key]);
@@ -123,6 +139,8 @@ export class Story {
     const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
     const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? [name, scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
     const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
-    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];
+    const shown = there ? after : before, slight = Math.sqrt(before.squares[channel] / before.counts[channel]) < SLIGHT;
+    const means = slight ? [{ label: "mean error", lines: [["error", smooth(run.time, shown.errors[channel]), "error", 1.5]], height: 70 }] : [];
+    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }, ...means]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];
   }
 }

@@ -12,6 +12,12 @@ export function stepOf(campaign, step) {
   return step.startsWith("+") ? `${added[0]?.step === step ? "with" : "and"} ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
 }
 
+/** The last part of a parameter's name in words; a symbol with an index stays one. */
+export function shortOf(name) {
+  const own = name.split(".").at(-1);
+  return /^\p{L}_[\p{L}\d]+$/u.test(own) ? own : own.replaceAll("_", " ");
+}
+
 export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
 export const runOf = (run) => (run.role === "holdout" ? `${run.name} (held out)` : run.name);
