@@ -33,7 +33,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             "title": "Here the model errs, a little",
             "lines": [
                 "Over all that was recorded, the calibrated model misses the sensors by hardly more than their noise.",
-                "In some runs and channels it misses more. Below the curves, the mean of the error over half a second shows where.",
+                "In some runs and channels it misses more: below the curves, the mean error over half a second shows where.",
             ],
         }
     how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"

@@ -27,7 +27,7 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
-  for (const [v, words] of ticked(ticks(low, most, (width - left - right) / 70))) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
+  for (const [v, words] of ticked(ticks(low, most, Math.max(4, (width - left - right) / 70)))) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
   drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
