@@ -89,7 +89,8 @@ export class Scene {
     if (!(near.w > 0)) return;
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    c.drawImage(this.paths, 0, 0);
+    const [wide, high] = [this.over.w, this.over.h].map((v) => Math.round(v * this.scale));
+    c.drawImage(this.paths, 0, 0, wide, high, 0, 0, wide, high);
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
     for (const [p, colour] of [[measured, look.measured], [model, look.model]]) {
       if (!p || !Number.isFinite(p.x[i] + p.y[i])) continue;
