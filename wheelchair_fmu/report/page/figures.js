@@ -83,10 +83,11 @@ export class Figures {
   calibrated() {
     const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
+      const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
       const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
-      const bounds = v.at_bound ? [v.lower, v.upper].filter(Number.isFinite).map((b) => (b - v.prior) / v.prior_sd) : [];
-      const words = record.meaning ?? name;
-      return { name: capital(words), words, value: off, low: off - by, high: off + by, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
+      const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
+      const words = record.meaning ?? name, [low, high] = [Math.max(off - by, at(v.lower, -Infinity)), Math.min(off + by, at(v.upper, Infinity))];
+      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
         parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {

@@ -25,7 +25,7 @@ export function withError(estimate, se, record) {
   const { unit, factor } = display(record), suffix = unitText(unit), space = suffix === "°" || !suffix ? "" : " ";
   const [value, error] = [estimate * factor, se === null ? null : se * factor];
   if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
-  if (error > 100 * Math.abs(value)) return `not seen${space}${suffix ? ` [${suffix}]` : ""}`;
+  if (value !== 0 && error > 100 * Math.abs(value)) return `not seen${space}${suffix ? ` [${suffix}]` : ""}`;
   const [first, exponent] = error.toExponential(0).split("e").map(Number);
   const place = Math.max(0, (first < 3 ? 1 : 0) - exponent);
   return `${minus(value.toFixed(Math.min(place, 8)))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;

@@ -79,7 +79,7 @@ export class Story {
   /** What stands beside the last screen: the missing force, where it is drawn; commands can be copied. */
   advising() {
     for (const code of this.stages.next.parentNode.querySelectorAll(".told code")) {
-      const button = h("button", { type: "button", class: "quiet", onclick: async () => {
+      const button = h("button", { type: "button", class: "quiet", "aria-label": "copy the command", onclick: async () => {
         button.textContent = await navigator.clipboard.writeText(code.textContent).then(() => "copied", () => "select it and copy");
       } }, "copy");
       code.after(" ", button);
@@ -91,7 +91,7 @@ export class Story {
     const begins = this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins), first = this.campaign.diagnosis.ranking.find((r) => this.campaign.effects.some((e) => e.id === r.effect));
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = this.last === begins ? { ...begins.values, ...Object.fromEntries(sizes) } : this.last.values;
-    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) });
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
