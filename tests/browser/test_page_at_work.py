@@ -30,6 +30,8 @@ def test_five_screens_go_from_the_error_to_what_to_do(reader):
     page.click("text=next →")
     page.click(".choice >> text=one rear wheel that rolls harder")
     assert "Yes" in page.inner_text(".answer")
+    page.wait_for_selector(".screen:visible .curve svg")  # and by its curve
+    assert "with this guess" in page.text_content(".screen:visible .curve svg")
     page.click(".choice >> text=a slope across the chair")
     assert "Yes" not in page.inner_text(".answer")
     page.click(".tab >> nth=2")
@@ -39,7 +41,21 @@ def test_five_screens_go_from_the_error_to_what_to_do(reader):
     page.click(".tab >> nth=3")
     assert page.locator(".screen:visible .stage svg").count() == 1
     page.click(".tab >> nth=4")
-    assert "wheelchair add" in page.inner_text(".screen:visible")
+    assert "wheelchair add" in page.inner_text(".screen:visible code")
+
+
+def test_the_error_is_drawn_against_what_was_going_on(reader):
+    """Panels for the shown channel; with the effect in, its mean keeps to zero."""
+    page = reader.page
+    page.evaluate("report.show(report.campaign.runs.findIndex(r => r.role === 'holdout'), 'yaw_rate')")
+    most = "Math.max(...report.figures.against.flatMap(p => p.means).map(Math.abs))"
+    page.wait_for_function("() => document.querySelector('#regimes .caption').innerText.includes('yaw rate')")
+    before, panels = page.evaluate(most), page.evaluate("report.figures.against.map(p => p.label)")
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    page.wait_for_function(f"() => {most} < 1")
+    assert before > 2 and len(panels) == len(page.evaluate("report.campaign.regimes"))
+    assert "Speed [m/s]" in panels and page.locator("#regimes svg path").count() > 2 * len(panels)
 
 
 def test_a_tick_climbs_the_staircase_and_further_sizes_are_fitted_together(reader):
@@ -286,6 +302,9 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
         told["ladder"], told["models"] = told["ladder"][:2], told["models"][:2]
     for row in told["ranking"]:
         row["verdict"] = verdict if row["effect"] in told["effects"] else "not needed"
+    if verdict == "missing":
+        sizes = {f"effect.{HIDDEN}.D": {"estimate": 1.6, "se": 0.1}, "effect.floor_cross_slope.theta": {"estimate": 0.1, "se": None}}
+        told["groups"] = [{"effects": pair, "beside": [], "parameters": sizes, "p": 1e-9, "lr": 9.0, "found": True}]
     if verdict == "outside":
         panel = {"variable": "speed", "unit": "m/s", "knots": [0, 1, 2], "estimate": [None, 0.5, 1.0], "se": [None, 0.1, 0.2]}
         told["missing"] = {"words": "force along the chair", "unit": "N", "panels": [panel]}
@@ -294,6 +313,8 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     assert reader.page.locator(".card").count() == 3
     assert reader.page.is_visible("#missing") == (verdict == "outside")
     assert reader.page.locator("#ties #joint svg").count() == (verdict == "tie")
+    assert reader.page.locator(".several tbody tr").count() == (verdict == "missing")
+    assert "[object" not in reader.page.text_content("main")
     for i in range(5):
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()

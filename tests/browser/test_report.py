@@ -141,7 +141,7 @@ def test_the_simulation_is_pythons(open_report, campaign, model, tolerance, grid
 
 
 def test_dragging_follows_at_once(reader):
-    """The run that is shown first, then all ten, while the pointer still moves.
+    """The run that is shown first, then all ten, while the pointer still moves; frames go on.
 
     Times are printed with -s and not asserted: other programs run beside the tests.
     """
@@ -154,10 +154,18 @@ def test_dragging_follows_at_once(reader):
     page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
     page.mouse.down()
     begun, errors = page.evaluate("report.timings.length"), []
+    page.evaluate("""() => {
+        window.frames_at = [];
+        const frame = (now) => { frames_at.push(now); requestAnimationFrame(frame); };
+        requestAnimationFrame(frame);
+        report.costs.length = 0;
+    }""")
     for i in range(25):
         page.mouse.move(box["x"] + (0.7 - 0.02 * i) * box["width"], box["y"] + box["height"] / 2)
         page.wait_for_timeout(60)
         errors.append(page.evaluate("report.now.heldout"))
+    frames = page.evaluate("1000 * (frames_at.length - 1) / (frames_at.at(-1) - frames_at[0])")
+    drawing = median(page.evaluate("report.costs.filter(c => !c.rested).map(c => c.ms)"))
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + box["height"] / 2)  # at zero the effect is out
     page.wait_for_timeout(300)
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + box["height"] / 2)
@@ -170,7 +178,7 @@ def test_dragging_follows_at_once(reader):
     exact = page.evaluate("report.timings.filter(t => t.exact).at(-1).all")
     print(
         f"\nfirst paint {paint:.0f} ms; one run {one:.0f} ms, ten runs {every:.0f} ms (median of {len(timings)}); "
-        f"exact, ten runs {exact:.0f} ms"
+        f"exact, ten runs {exact:.0f} ms; {frames:.0f} frames a second while dragging, {drawing:.1f} ms of the main thread to draw"
     )
     assert errors[-1] > errors[0] + 0.1  # away from the truth, the error grows
     assert timings

@@ -74,9 +74,9 @@ export class Figures {
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
-      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, in the smallest that would matter", "shaded: too small to matter"),
+      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as refitted, or as its slope foretells, in the smallest that would matter. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
   }
 

@@ -11,21 +11,28 @@ const WITHIN = 0.025; // of the samples of a bin lie below the band, and as many
  *  which errors 95 % of them lie. */
 export function against(regimes, runs, results, channel) {
   const there = runs.map((run, i) => [run, results[i]]).filter(([, r]) => r?.errors?.[channel] && r.results);
-  const series = (regime, run, r) => (regime.output ? r.results[regime.output] : total(run));
   return regimes.map((regime) => {
-    const { factor, unit } = display(regime), pairs = there.flatMap(([run, r]) => {
-      const x = series(regime, run, r), e = r.errors[channel];
-      return x ? Array.from(e, (v, k) => [x[k] * factor, v]).filter(([a, b]) => Number.isFinite(a + b)) : [];
-    });
-    return { label: `${capital(regime.name)} [${unitText(unit) || "1"}]`, ...binned(pairs.sort(([a], [b]) => a - b)) };
-  }).filter((p) => p.xs.length > 2 && p.xs.at(-1) > p.xs[0]);
+    const { factor, unit } = display(regime), xs = [], es = [];
+    for (const [run, r] of there) {
+      const x = regime.output ? r.results[regime.output] : total(run), e = r.errors[channel];
+      if (x) for (let k = 0; k < e.length; k++) if (Number.isFinite(x[k] + e[k])) { xs.push(x[k] * factor); es.push(e[k]); }
+    }
+    return { label: `${capital(regime.name)} [${unitText(unit) || "1"}]`, ...binned(xs, es) };
+  }).filter((p) => p.xs.length > 2);
 }
 
-function binned(pairs) {
-  const out = { xs: [], means: [], lows: [], highs: [] }, count = Math.min(BINS, Math.floor(pairs.length / LEAST));
-  for (let k = 0; k < count; k++) {
-    const own = pairs.slice(Math.floor((k * pairs.length) / count), Math.floor(((k + 1) * pairs.length) / count)), errors = own.map(([, e]) => e).sort((a, b) => a - b), mean = (i) => own.reduce((sum, p) => sum + p[i], 0) / own.length;
-    for (const [name, v] of [["xs", mean(0)], ["means", mean(1)], ["lows", errors[Math.floor(WITHIN * errors.length)]], ["highs", errors[Math.ceil((1 - WITHIN) * errors.length) - 1]]]) out[name].push(v);
+/** Errors `es` at places `xs`, in bins of about as many. */
+function binned(xs, es) {
+  const sorted = Float64Array.from(xs).sort(), count = Math.min(BINS, Math.floor(xs.length / LEAST)), out = { xs: [], means: [], lows: [], highs: [] };
+  const edges = [...new Set(Array.from({ length: count }, (_, k) => sorted[Math.floor((k * xs.length) / count)]))], bins = edges.map(() => ({ x: 0, e: 0, all: [] }));
+  xs.forEach((x, i) => {
+    const bin = bins[edges.findLastIndex((edge) => edge <= x)];
+    bin.x += x; bin.e += es[i]; bin.all.push(es[i]);
+  });
+  for (const { x, e, all } of bins) {
+    const own = Float64Array.from(all).sort(), n = own.length;
+    if (n < LEAST) continue;
+    for (const [name, v] of [["xs", x / n], ["means", e / n], ["lows", own[Math.floor(WITHIN * n)]], ["highs", own[Math.ceil((1 - WITHIN) * n) - 1]]]) out[name].push(v);
   }
   return out;
 }
