@@ -49,7 +49,7 @@ def test_the_error_is_drawn_against_what_was_going_on(reader):
     page = reader.page
     page.evaluate("report.show(report.campaign.runs.findIndex(r => r.role === 'holdout'), 'yaw_rate')")
     most = "Math.max(...report.figures.against.flatMap(p => p.means).map(Math.abs))"
-    page.wait_for_function("() => document.querySelector('#regimes .caption').innerText.includes('yaw rate')")
+    page.wait_for_function("() => document.querySelector('#regimes .caption').textContent.includes('yaw rate')")
     before, panels = page.evaluate(most), page.evaluate("report.figures.against.map(p => p.label)")
     page.check(f"#effect-{HIDDEN}")
     reader.settle()
