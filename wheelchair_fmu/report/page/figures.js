@@ -4,7 +4,7 @@ import { byId } from "page/dom";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { forest, panels } from "page/forest";
-import { Heat, heat } from "page/heat";
+import { Heat, QUIET, heat } from "page/heat";
 import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
@@ -206,7 +206,7 @@ export class Figures {
   /** When the error over all channels is greatest. */
   worst() {
     const most = (this.rows ?? []).reduce((a, b) => (a && a.rms >= b.rms ? a : b), null);
-    return most ? ` Over all channels the error is greatest, ${rms(most.rms)} times the noise, where the ${most.name} is ${between(most.from, most.to, this.campaign.regimes.find((r) => r.name === most.name))}.` : "";
+    return most?.rms > QUIET ? ` Over all channels the error is greatest, ${rms(most.rms)} times the noise, where the ${most.name} is ${between(most.from, most.to, this.campaign.regimes.find((r) => r.name === most.name))}.` : "";
   }
 
   units() {

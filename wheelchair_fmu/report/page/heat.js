@@ -4,7 +4,8 @@ import { h } from "page/dom";
 import { broken, canvas, long, svg, text } from "page/draw";
 import { rms, significant } from "page/numbers";
 
-const QUIET = 1.1, LOUD = 6; // whitened RMS without colour, and with all of it
+export const QUIET = 1.1; // whitened RMS without colour
+const LOUD = 6; // and with all of it
 const STRONGEST = 55; // per cent of colour, on which text in ink still stands out
 
 /** How much colour an error has, in per cent. */
