@@ -57,7 +57,8 @@ def add(sbom: Path, version: str) -> None:
 def said(one: Distribution) -> str:
     """What a package says its licence is."""
     about = one.metadata
-    classified = [c.rpartition(" :: ")[2] for c in about.get_all("Classifier", []) if c.startswith("License :: ")]
+    known = [c.rpartition(" :: ")[2] for c in about.get_all("Classifier", []) if c.startswith("License :: ")]
+    classified = [c for c in known if c != "OSI Approved"]  # which says of no licence that it is this one
     words = about.get("License-Expression") or ", ".join(classified) or about.get("License", "").partition("\n")[0]
     return words or "not stated by the package"
 
