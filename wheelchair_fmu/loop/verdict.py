@@ -395,6 +395,7 @@ def _structured(left: Evidence, policy: SearchPolicy) -> bool:
 
 
 def _slight(first: Round) -> tuple[str, ...]:
-    """Effects that are surely there and slight: the likeliest, and those that data cannot tell from it."""
-    small = [c for c in first.slight if not c.matters]
+    """Effects that are surely there and slight, and foretell what was held out better than by chance: the likeliest, and those
+    that data cannot tell from it."""
+    small = [c for c in first.slight if not c.matters and (c.gain is None or c.gain[1] > 0)]
     return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
