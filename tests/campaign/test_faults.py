@@ -117,7 +117,7 @@ TOML_FAULTS = [
     (
         "negative mass",
         lambda h, r: (h.replace("80.0", "-80.0"), r),
-        "line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units",
+        "line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
     ),
     (
         "unknown set",
@@ -127,7 +127,7 @@ TOML_FAULTS = [
     (
         "impossible set",
         lambda h, r: (h, r + 'set = { "chair.m" = 900 }\n'),
-        "line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; correct it; parameters are in SI units",
+        "line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
     ),
     (
         "unknown prior",
@@ -483,7 +483,7 @@ def test_ten_faults_at_once_give_ten_lines(campaign):
     with pytest.raises(CampaignError) as caught:
         read(folder, KNOWN)
     assert str(caught.value).split("\n") == [
-        "campaign.toml line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units",
+        "campaign.toml line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
         "campaign.toml line 6: no parameter 'chair.I_x'; did you mean 'chair.I_z' or 'chair.m'?",
         "campaign.toml line 25: run 3 (c.csv): no such file; did you mean 'b.csv' or 'a.csv'?",
         "run a.csv line 11 column 'a_y [m/s2]': 'abc' is not a number; write a number, or leave the cell empty for a gap",

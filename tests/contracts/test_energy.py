@@ -10,21 +10,28 @@ import pytest
 
 from wheelchair_fmu.contracts import Subject
 from wheelchair_fmu.contracts.energy import Energy
+from wheelchair_fmu.model.choice import serves
 from wheelchair_fmu.model.effects import bundled
-from wheelchair_fmu.model.stage import Effect, adds
+from wheelchair_fmu.model.stage import Effect, Row, adds
 from wheelchair_fmu.model.wheelchair import Choice, assemble
-from wheelchair_fmu.quantities import N_M_S, N, Parameter
+from wheelchair_fmu.quantities import KG, M_S, N_M_S, N_S_M, M, N, Parameter, State, Unit
 
 EFFECTS = bundled()
 PAIRS, SEED = 60, 20
-CHOICES = [Choice("linear", "ideal"), Choice("linear", "swivelling"), Choice("dugoff", "swivelling"), Choice("magic_formula")]
+CHOICES = [
+    Choice("linear", "ideal"),
+    Choice("linear", "swivelling"),
+    Choice("dugoff", "swivelling"),
+    Choice("magic_formula"),
+    Choice("linear", "slipping"),
+]
 
 
 @pytest.fixture(scope="module", params=CHOICES, ids=lambda c: f"{c.tyre}-{c.caster}")
 def chair(request) -> Energy:
     """All effects that these laws allow, in one model: those that are not asked of are off."""
     choice = request.param
-    effects = [e for e in EFFECTS.values() if all(getattr(choice, kind) == law for kind, law in e.needs.items())]
+    effects = [e for e in EFFECTS.values() if all(serves(choice, kind, law) for kind, law in e.needs.items())]
     return Energy(Subject(tuple(effects), assemble(choice, effects), assemble(choice)))
 
 
@@ -76,3 +83,39 @@ def test_a_caster_with_two_trails_is_found_out():
     effect = replace(friction, contributions=(*friction.contributions, adds("M_f", lever_of_its_own)))
     chair = Energy(Subject.of([effect]))
     assert any(chair.breaches([effect], np.random.default_rng(seed)) for seed in range(8))
+
+
+LOAD = Parameter("load", KG, "mass", off=0.0, smallest_interesting=1.0, lower=0.0, upper=20.0, source="chosen")
+STIFFNESS = Parameter("k", Unit("N/m", kg=1, s=-2), "of the spring", default=2000.0, source="chosen")
+FRICTION = Parameter("friction", N_S_M, "of the load on the frame", default=5.0, source="chosen")
+PLACE = Row(State("place", M, "how far it has moved", nominal=0.05), lambda: 1.0, lambda sliding: sliding)
+
+
+def pulled(k, place, friction, sliding):
+    return -k * place - friction * sliding
+
+
+def a_load(rate=pulled, stored=lambda k, place, sliding: k * place * sliding, shared=lambda load: load) -> Effect:
+    """A load that slides on the frame on a spring, with friction, and moves with u and ψ'."""
+    halves = {"u": shared, "psi_dot": lambda load, t_r: load * t_r / 2}
+    sliding = Row(State("sliding", M_S, "how fast"), lambda load: load, rate, coupled=halves)
+    return Effect("load", "a load on a spring", (LOAD,), (), (PLACE, sliding), (STIFFNESS, FRICTION), absorbs=stored)
+
+
+def test_inertia_that_is_shared_with_the_chair_is_in_the_sum():
+    """½ wᵀ M w of all speeds together: what a load takes from the frame it has, and its spring gives back what it was given."""
+    assert told(Energy(Subject.of([a_load()])).breaches([a_load()], np.random.default_rng(SEED))) == []
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        a_load(stored=None),  # a spring that nobody wound
+        a_load(rate=lambda k, place, friction, sliding: -k * place + friction * sliding),  # friction that drives
+        replace(a_load(), contributions=(adds("F_x", lambda k, place: -k * place),)),  # felt twice
+    ],
+    ids=["wound by nobody", "driven by friction", "felt twice"],
+)
+def test_a_load_that_drives_is_found_out(effect):
+    energy = Energy(Subject.of([effect]))
+    assert any("its energy rises" in str(b) for b in energy.breaches([effect], np.random.default_rng(SEED), times=400))

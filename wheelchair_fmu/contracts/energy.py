@@ -1,8 +1,9 @@
 """Energy: without a push the chair only loses it, whatever the motion, and no drag is below zero.
 
 Asked of the equations themselves, moment by moment, so that no integrator's tolerance is in the way: the power of all forces,
-less gravity's and with what goes into the states of effects, is not above zero. Camber and self-aligning torque are left out,
-as the paper's own terms for them take part in no balance of energy.
+less gravity's and with what goes into the states of laws and effects, is not above zero. Inertia that an effect shares with the
+chair counts by the equations as they were before each had one rate. Camber and self-aligning torque are left out, as the
+paper's own terms for them take part in no balance of energy.
 
 A tyre that slides takes so much power that it hides what drives. So half of the motions are such that a chair without effects
 loses nothing: no resistance, no brake, and a rear axle that rolls where it points.
@@ -29,7 +30,7 @@ LEAST = 1e-12  # W
 DRAGS = ("D_f", "D_w", "d_f", "d_r", "braking", "side")
 SPENT = -1e-8  # N or N s/m: what rounding may leave of a drag that has run out
 NONE = ("tyre.C_m_lambda", "tyre.c_p", "tyre.C_phi", "tyre.C_m_phi")
-RANGE = {"lagged_slip": 1.0, "smoothed_rate": 5.0, "felt_push": 60.0, "lean": 0.05}  # sizes that states of effects may have
+RANGE = {"lagged_slip": 1.0, "smoothed_rate": 5.0, "felt_push": 60.0, "lean": 0.05}  # sizes of states that are not nominal
 KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in each kind of motion
     "at rest": (0.0, 0.0, 0.0),
     "all but at rest": (1e-4, 1e-4, 1e-4),
@@ -86,15 +87,21 @@ class Energy:
             x[4] = p[self._names.index("chair.b")] * x[5]  # v = b ψ'
             x[len(ROWS) :] *= rng.choice([0.0, 1.0])
             self._trail(x, p, rng)
+            self._roll(x, w, p)
         return Place(x, w, p)
 
     def _trail(self, x: np.ndarray, p: np.ndarray, rng: np.random.Generator) -> None:
         """Casters all but behind their pivots, where a little of their torque moves the chair and swings them by much."""
-        swivels = [i for i, name in enumerate(n for s in self._model.states for n in s.names) if name.startswith("swivel.")]
-        if swivels:
+        if swivels := self._places("swivel"):
             a, t_f = (p[self._names.index(name)] for name in ("chair.a", "chair.t_f"))
             ways = np.arctan2(x[4] + a * x[5], x[3] + np.array([t_f / 2, -t_f / 2]) * x[5])  # (9), (10)
             x[swivels] = ways + rng.choice([0.003, 0.3]) * rng.normal(size=len(swivels))
+
+    def _roll(self, x: np.ndarray, w: np.ndarray, p: np.ndarray) -> None:
+        """Casters that may slip turn as fast as those that roll do."""
+        if turning := self._places("turning_rate"):
+            slip, trail = (v.full().ravel() for v in self._slips.call([x, w, p]))
+            x[turning] += slip / trail
 
     def _states(self, spread: tuple[float, float, float], rng: np.random.Generator) -> np.ndarray:
         """Speeds of either sign, casters anywhere round, and what effects remember."""
@@ -103,7 +110,7 @@ class Energy:
         for state in self._model.states:
             name = state.name.rpartition(".")[2]
             round_about = name in ("psi", "swivel")
-            size = moving.get(name, RANGE.get(name, 0.0))
+            size = moving.get(name, 0.0 if name in ("x", "y") else RANGE.get(name, state.nominal))
             x.append(rng.uniform(-np.pi, np.pi, state.size) if round_about else size * rng.normal(size=state.size))
         return np.concatenate(x)
 
@@ -125,6 +132,10 @@ class Energy:
     def _sizes(self, on: Collection[Effect], place: Place) -> str:
         names = [f"effect.{e.id}.{q.name}" for e in on for q in e.parameters]
         return "".join(f", {n.rpartition('.')[2]} = {place.p[self._names.index(n)]:.4g}" for n in names)
+
+    def _places(self, state: str) -> list[int]:
+        """Where a pair of states is among all."""
+        return [i for i, name in enumerate(n for s in self._model.states for n in s.names) if name.startswith(f"{state}.")]
 
     @property
     def _model(self) -> Model:
@@ -155,10 +166,15 @@ class Energy:
         return Settler(self._model)
 
     @cached_property
-    def _of_casters(self) -> cs.Function:
-        """Power [W] of the casters' forces and of their bearings' moments, part by part."""
+    def _slips(self) -> cs.Function:
         m, q = self._model, self._model.quantities
-        parts = q["F_xf"] * q["v_xf"], q["F_yf"] * q["v_yf"], q["M_f"] * q["psi_dot"]
+        return cs.Function("slips", [m.x, m.w, m.p], [q["swivel_slip"], q["c"]])
+
+    @cached_property
+    def _of_casters(self) -> cs.Function:
+        """Power [W] of the casters' forces, of their bearings' moments, and into states of theirs, part by part."""
+        m, q = self._model, self._model.quantities
+        parts = q["F_xf"] * q["v_xf"], q["F_yf"] * q["v_yf"], q["M_f"] * q["psi_dot"], m.absorbed
         return cs.Function("of_casters", [m.x, m.w, m.p], [cs.vertcat(*parts)])
 
     @cached_property

@@ -130,7 +130,7 @@ class Model:
     start: cs.SX
     quantities: Mapping[str, cs.SX]  # every quantity of the equations by its symbol
     records: Mapping[str, Quantity]  # and what it means
-    absorbed: cs.SX = field(default_factory=lambda: cs.SX(0))  # power [W] that goes into effects' own states
+    absorbed: cs.SX = field(default_factory=lambda: cs.SX(0))  # power [W] that goes into states beside u, v and ψ'
 
 
 def assemble(choice: Choice = Choice(), effects: Iterable[Effect] = ()) -> Model:
@@ -227,6 +227,7 @@ class _Assembly:
                 self._add_row(row, self.own[effect.id], owner=effect.id)
         self.records: dict[str, Quantity] = {}
         self.uncoupled: dict[str, tuple[cs.SX, cs.SX]] = {}  # by state, masses and rates that share inertia with the chair
+        self.shared = cs.SX(0)  # power [W] that goes into what these and the chair have in common
 
     def _refuse_misfit(self, effect: Effect) -> None:
         for kind, name in effect.needs.items():
@@ -295,7 +296,10 @@ class _Assembly:
                 M[i, j] = M[j, i] = self.call(entry, scope, f"state {row.state.name}")
         masses, rates, driving = uncoupled(M, [rate for _, rate in (*own, *chair)], 2 - self.known["speed_mode"])
         self.uncoupled = dict(zip((row.state.name for row, _ in coupled), zip(masses, rates, strict=True), strict=False))
+        for (row, scope), (_, force) in zip(coupled, own, strict=True):
+            self.shared += scope[row.state.symbol] * force
         for speed, mass, rate in zip(SPEEDS, masses[len(own) :], rates[len(own) :], strict=True):
+            self.shared += self.known[speed] * (self.known[symbols[speed][1]] - rate)
             self.known.update(zip(symbols[speed], (mass, rate), strict=True))
         self.known["driving"] = driving  # what a chair of free speed has; the next stage holds the speed, where it is held
 
@@ -337,7 +341,9 @@ class _Assembly:
         if cs.depends_on(mass, cs.vertcat(x, w)):
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
         states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
-        absorbed = sum((self.call(e.absorbs, self.own[e.id], f"effect {e.id}") for e in self.effects if e.absorbs), cs.SX(0))
+        into = [(law("caster", self.choice).absorbs, self.known, "caster law")]
+        into += [(e.absorbs, self.own[e.id], f"effect {e.id}") for e in self.effects]
+        absorbed = sum((self.call(power, own, reader) for power, own, reader in into if power), self.shared)
         extra = self._state_outputs()
         y = cs.vertcat(
             *(self.known[o.symbol][o.component] for o in OUTPUTS),

@@ -366,7 +366,7 @@ def _parameter(
         lower, upper = known[name]
         if not lower <= plain <= upper:
             fact = f"{title}{name} = {plain:g} is outside {lower:g} to {upper:g}"
-            yield doc.fault(path, fact, "correct it; parameters are in SI units", place)
+            yield doc.fault(path, fact, "correct it; parameters are in SI units, angles in rad", place)
 
 
 def bad_column(doc: Document, known: Known | None) -> Iterator[Fault]:

@@ -186,6 +186,13 @@ def casters(swivel, rolling, D_f, d_f, M_w, M_p, F_caster, c, drag_eps):
     return M_w + M_p - c * F_caster, drag * forward - F_caster * right, drag * right + F_caster * forward, -M_w
 
 
+def turned_and_wound(turning_rate, turning_torque, C_caster, deflection, mu_caster, N_f, deflecting):
+    """Power that turns the casters, and that winds their tyres without what the carcass damps."""
+    wound = C_caster * deflection
+    spring = wound / cs.sqrt(1 + (wound / (mu_caster * cs.fmax(N_f, LIGHTEST))) ** 2)
+    return cs.sum1(turning_rate * turning_torque + spring * deflecting)
+
+
 LAW = Alternative(
     "slipping",
     (one_trail, patches, swivelling.turned, tyres, torques, casters),
@@ -202,4 +209,5 @@ LAW = Alternative(
     ),
     loads=loads,
     serves=(swivelling.LAW.name,),
+    absorbs=turned_and_wound,
 )
