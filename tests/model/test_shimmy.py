@@ -5,8 +5,10 @@ With the pivot at a speed u straight ahead, δ' = Ω, I Ω' = −d Ω − c C z 
     s³ + (d/I + u/σ) s² + (d u + c² C)/(I σ) s + c C u/(I σ) = 0
 
 whose roots are all to the left, by Routh, where (d/σ) u² + (d²/I − C c (1 − c/σ)) u + d c² C/I > 0. A caster whose tyre's σ is
-shorter than its trail never shimmies; else little damping leaves a range of speeds in which it does, as Kauzlarich, Bruning and
-Thacker (1984, 2000) describe for wheelchairs.
+shorter than its trail never shimmies; else little damping leaves a range of speeds in which it does. A bearing's dry friction M
+damps small swings more than large ones, as 4 M/(π ω A) of their amplitude A does: it keeps those quiet which that suffices for.
+
+Kauzlarich, Bruning and Thacker (1984, 2000) describe both for wheelchairs; their own formula is not held against this one.
 """
 
 from __future__ import annotations
@@ -39,6 +41,12 @@ def limits(sigma: float = SIGMA, d: float = DAMPING) -> np.ndarray:
     """Speeds between which they shimmy."""
     c, C, I = TRAIL, STIFFNESS, INERTIA  # noqa: E741
     return np.sort(np.roots([d / sigma, d * d / I - C * c * (1 - c / sigma), d * c * c * C / I]))
+
+
+def critical_damping(u: float) -> float:
+    """With less than this d of a bearing, casters shimmy at u."""
+    c, C, I = TRAIL, STIFFNESS, INERTIA  # noqa: E741
+    return float(np.roots([u / I, u * u / SIGMA + c * c * C / I, -C * c * (1 - c / SIGMA) * u]).max())
 
 
 def eigenvalues(u: float, **values: float) -> np.ndarray:
@@ -84,3 +92,18 @@ def test_a_knock_dies_out_below_the_critical_speed_and_grows_to_a_bounded_swing_
         assert swing[1] > 5 * swing[0] and swing[1] < np.pi  # friction bounds the side force, and so the swing
     else:
         assert swing[1] < 0.05 * swing[0]
+
+
+@pytest.mark.parametrize(("times", "grows"), [(0.7, False), (2.0, True)])
+def test_dry_friction_keeps_those_swings_quiet_that_it_damps_enough(times, grows):
+    u, M = 5.0, 0.1
+    d = critical_damping(u)
+    omega = np.sqrt((d * u + TRAIL**2 * STIFFNESS) / (INERTIA * SIGMA))  # of the cubic above where it is about to swing
+    amplitude = 4 * M / (np.pi * omega * d)
+    knocked = {"start.u": u, "start.caster_l": times * amplitude, "start.caster_r": -times * amplitude}
+    rubbing = {"caster.M": M, "caster.d": 0.0, "regularisation.swivel_rate": 0.002}
+    chair = Simulator(variant(**{**STEADY, **knocked, **rubbing}))
+    time = np.linspace(0, 0.5, 1001)
+    swing = chair.run(time, chair.inputs(len(time), {}), tolerance=1e-7)["caster.fl"]
+    last = np.ptp(swing[time > 0.4]) / 2
+    assert last > 10 * amplitude if grows else last < 0.1 * amplitude
