@@ -24,3 +24,8 @@ def test_the_models_page_names_inputs_parameters_and_effects_that_there_are():
     named = set(re.findall(r"`([a-z]+(?:[._][a-zA-Z_]+)+)(?: = \w+)?`", text)) - {"wheelchair_fmu", "magic_formula"}
     assert len(named) > 12 and named <= known, named - known
     assert {i.name for i in model.inputs} <= set(re.findall(r"`([\w.]+)`", text))
+
+
+def test_the_drawing_of_the_stages_has_every_effect_once():
+    drawn = re.findall(r'font-family="monospace"[^>]*>(\w+)<', (DOCS / "physics" / "stages.svg").read_text(encoding="utf-8"))
+    assert sorted(drawn) == sorted(bundled())
