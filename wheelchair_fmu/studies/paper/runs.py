@@ -14,6 +14,10 @@ from ..driving import Fmu, Result
 Values = Mapping[str, float]
 
 TABLE_1 = {"tyre.C_lambda": 5038.0, "tyre.C_m_lambda": 45.0}
+TYRE_B = {
+    "tyre.C_lambda": 3893.0,
+    "tyre.C_m_lambda": 43.1,
+}  # fitted to examples/rotating-disc.csv; the text has no numbers of it
 PERIODS = 3
 
 
@@ -58,12 +62,11 @@ class Runs:
         force = self.setting.delta_force if delta_force is None else delta_force
         return self._run(manoeuvre("steady-turn", delta_force=force), values or {}, total_push)
 
-    def slalom(self, values: Values | None = None) -> Result:
-        """Three periods of the slalom."""
+    def slalom(self, values: Values | None = None, mirrored: bool = False) -> Result:
+        """Three periods of the slalom, which begins to the right, or `mirrored` to the left."""
         set = self.setting
-        course = manoeuvre(
-            "slalom", speed=set.slalom_speed, delta_force=set.delta_force, period=set.period, time=PERIODS * set.period
-        )
+        force = -set.delta_force if mirrored else set.delta_force
+        course = manoeuvre("slalom", speed=set.slalom_speed, delta_force=force, period=set.period, time=PERIODS * set.period)
         return self._run(course, values or {}, 0.0)
 
     def last_period(self, result: Result) -> slice:

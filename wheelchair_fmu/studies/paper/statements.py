@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..driving import Result
-from .runs import Runs, Values, camber, scaled
+from .runs import TYRE_B, Runs, Values, camber, scaled
 
 SCALES = (0.5, 1.0, 2.0)
 CORNERING, ALIGNING = "tyre.C_lambda", "tyre.C_m_lambda"
@@ -189,6 +189,18 @@ def slalom_goes_straight_between(runs: Runs) -> Finding:
     return Finding(f"1/R passes zero {changes} times a period; the least |R| is {least:.2f} m", changes == 2)
 
 
+def better_tyre_is_more_precise(runs: Runs) -> Finding:
+    """A path is the more precise the less it differs from that of wheels that hardly slip, of a hundred times the stiffness."""
+    stiff: Values = {CORNERING: 100 * 5038.0}
+    pairs = [[runs.turn({**tyre, **more}) for more in ({}, stiff)] for tyre in ({}, TYRE_B)]
+    slip = [float(np.abs(slips(run)[:, -1]).max()) for run, _ in pairs]
+    off = [100 * abs(radius(run) / radius(ideal) - 1) for run, ideal in pairs]
+    return Finding(
+        f"A: {slip[0]:.3f}°, {off[0]:.1f} % off the path of wheels that do not slip; B: {slip[1]:.3f}°, {off[1]:.1f} %",
+        slip[0] < slip[1] and off[0] < off[1],
+    )
+
+
 def slalom_radius_falls_with_cornering(runs: Runs) -> Finding:
     radii = [tightest(runs, run) for run in _slaloms(runs, CORNERING)]
     return Finding(f"least |R| = {_list(radii, 'm')}", _falls(radii))
@@ -281,6 +293,32 @@ def camber_shifts_slips(runs: Runs) -> Finding:
     )
 
 
+def negative_camber_mirrors_the_slalom(runs: Runs) -> Finding:
+    ends = [float(run["chair.y"][-1]) for run in (runs.slalom(camber(1.0)), runs.slalom(camber(-1.0), mirrored=True))]
+    return Finding(f"±1°, first push to either side: y = {_list(ends, 'm', 2)}", abs(sum(ends)) < 1e-6 * abs(ends[0]) > 0)
+
+
+def camber_takes_effort(runs: Runs) -> Finding:
+    """The difference of pushes that keeps the chair straight, by two turns between which the yaw rate is all but linear."""
+    held = []
+    for angle in (0.0, 0.5, 1.0):
+        leaning = camber(angle)
+        free, pushed = (
+            float(runs.turn(leaning, delta_force=force)["chair.psi_dot"][-1])
+            for force in (0.0, -0.01 * runs.setting.delta_force)
+        )
+        held.append(0.01 * runs.setting.delta_force * free / (free - pushed))
+    return Finding(f"0°, 0.5°, 1°: each hand {_list(held, 'N', 2)} off the mean to go straight", _rises(held))
+
+
+def unlike_cambers_drift(runs: Runs) -> Finding:
+    angles = (0.0, 0.0), (0.0, 1.0), (1.0, 1.0)
+    ends = [float(runs.turn(camber(*pair), delta_force=0.0)["chair.y"][-1]) for pair in angles]
+    return Finding(
+        f"right 0°, right 1°, both 1°: y = {_list(ends, 'm', 2)} after 10 m straight on", _rises(ends) and ends[1] < 0.1 * 10.0
+    )
+
+
 # Conclusion
 
 
@@ -333,6 +371,12 @@ STATEMENTS = (
         "more C_λ, a smaller radius in the slalom",
         slalom_radius_falls_with_cornering,
     ),
+    Statement(
+        "tyre-quality",
+        "6.1",
+        "the high quality tyre A slips less than the low cost tyre B, and its path is more precise",
+        better_tyre_is_more_precise,
+    ),
     Statement("radius-aligning", "6.2, Fig. 15", "more C_mλ, a larger radius", radius_rises_with_aligning),
     Statement("slip-aligning", "6.2, Fig. 15", "more C_mλ, slightly less slip", slip_falls_slightly_with_aligning),
     Statement("slalom-aligning", "6.2, Fig. 16", "more C_mλ, a slightly narrower slalom", aligning_narrows_the_slalom),
@@ -354,6 +398,14 @@ STATEMENTS = (
     Statement(
         "camber-shift", "6.3, Fig. 19", "more camber shifts the slips and makes them more asymmetric", camber_shifts_slips
     ),
+    Statement(
+        "camber-mirrored",
+        "6.3, Fig. 19",
+        "with negative angles the slalom is the mirror image",
+        negative_camber_mirrors_the_slalom,
+    ),
+    Statement("camber-effort", "6.3", "camber takes more effort to go straight", camber_takes_effort),
+    Statement("unlike-cambers", "conclusion", "unlike cambers of the wheels may cause a small drift", unlike_cambers_drift),
     Statement("seven-per-cent", "conclusion", "large changes of C_λ or C_mλ move the radius by up to 7 %", seven_per_cent),
     Statement("tight-part", "conclusion", "the stiffnesses act where the slalom is tightest", stiffness_acts_where_it_is_tight),
 )
