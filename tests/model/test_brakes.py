@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from tests.model.effects.chair import C_LAMBDA, I_Z, MASS, SMOOTH, A, B, G, run, snapshot
+from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.model.variant import Variant
 
 N_R = MASS * G * A / (A + B) / 2  # load of a rear wheel
 BOTH = {"brake.rl": 1.0, "brake.rr": 1.0}
@@ -84,3 +86,17 @@ def test_an_open_brake_is_none():
     assert free["F_s"][0] == C_LAMBDA * free["lam"][0]
     np.testing.assert_allclose(touched["F_s"], free["F_s"], rtol=1e-12)
     np.testing.assert_allclose(touched["F_w"], free["F_w"], atol=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6])
+def test_a_drag_that_builds_up_lets_a_chair_creep_under_a_light_push(share):
+    """Far below the onset's speed the drag is v/v_onset of itself, so that the chair goes at that share of it."""
+    onset = 0.01
+    chair = Simulator(Variant().with_values({"resistance.onset": onset, "start.u": 0.0}))
+    drag = 80.0 * 9.81 * (0.012 * 0.25 + 0.020 * 0.20) / 0.45
+    time = np.linspace(0, 5, 501)
+    inputs = {"push.F_rl": np.full(501, share * drag / 2), "push.F_rr": np.full(501, share * drag / 2)}
+    result = chair.run(time, chair.inputs(501, inputs))
+    assert result["chair.u"][-1] == pytest.approx(share * onset, rel=0.02)
+    braked = chair.run(time, chair.inputs(501, {**inputs, "brake.rl": np.ones(501), "brake.rr": np.ones(501)}))
+    assert abs(braked["chair.u"][-1]) < 1e-4

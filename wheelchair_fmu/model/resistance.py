@@ -31,6 +31,17 @@ PARAMETERS = (
         source="chosen: smaller wheels than the rear; not in the paper's text",
     ),
     Parameter(
+        "resistance.onset",
+        M_S,
+        "speed over which rolling resistance builds up from rest; 0: at once, so that a chair stands on a slope",
+        lower=0.0,
+        upper=0.1,
+        nominal=0.01,
+        symbol="v_onset",
+        source="chosen: tyres that hold on at once; one that creeps as it lets go has some mm/s",
+        known_to=0.01,
+    ),
+    Parameter(
         "brake.F_max",
         N,
         "braking force of one fully applied brake, as far as the tyre holds it: beyond tyre.mu times its load the wheel locks",
@@ -88,9 +99,9 @@ def brakes_paper():
 
 
 @stage(define("sliding", M_S, "speed over which each rear wheel's dry friction acts", "+swap", REAR))
-def patches(v_xw, v_yw, locked, drag_eps):
-    """A wheel that rolls resists along its plane, one that is locked whichever way it slides."""
-    return speed(v_xw * v_xw + locked * v_yw * v_yw, drag_eps)
+def patches(v_xw, v_yw, locked, drag_eps, v_onset):
+    """A wheel that rolls resists along its plane, one that is locked whichever way it slides, and that at once."""
+    return speed(v_xw * v_xw + locked * v_yw * v_yw, drag_eps + (1 - locked) * v_onset)
 
 
 @stage(

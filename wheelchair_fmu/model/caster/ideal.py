@@ -54,10 +54,10 @@ def torques():
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps):
+def casters(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps, v_onset):
     """Rolling resistance against the pivot's velocity, torque / c across it."""
     speed_squared = v_xf * v_xf + v_yf * v_yf
-    drag = D_f / speed(speed_squared, drag_eps) + d_f  # per speed
+    drag = D_f / speed(speed_squared, drag_eps + v_onset) + d_f  # per speed
     lateral = (M_w + M_p) / trail / rolling  # (8)
     return -drag * v_xf - lateral * v_yf, -drag * v_yf + lateral * v_xf, -M_w
 

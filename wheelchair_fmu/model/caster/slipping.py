@@ -179,10 +179,10 @@ def torques(swivel_rate, swivel_eps, M_bearing, d_bearing):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(swivel, rolling, D_f, d_f, M_w, M_p, F_caster, c, drag_eps):
+def casters(swivel, rolling, D_f, d_f, M_w, M_p, F_caster, c, drag_eps, v_onset):
     """(6), (7), (8) without the casters' mass: rolling resistance along the heading, the tyre's force across it."""
     forward, right = cs.cos(swivel), cs.sin(swivel)
-    drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
+    drag = -(D_f / speed(rolling * rolling, drag_eps + v_onset) + d_f) * rolling
     return M_w + M_p - c * F_caster, drag * forward - F_caster * right, drag * right + F_caster * forward, -M_w
 
 

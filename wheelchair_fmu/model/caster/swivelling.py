@@ -108,10 +108,10 @@ def turned(swivel):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(delta, rolling, D_f, d_f, M_w, M_p, c, passed, drag_eps):
+def casters(delta, rolling, D_f, d_f, M_w, M_p, c, passed, drag_eps, v_onset):
     """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
-    drag = -(D_f / speed(rolling * rolling, drag_eps) + d_f) * rolling
+    drag = -(D_f / speed(rolling * rolling, drag_eps + v_onset) + d_f) * rolling
     lateral = passed * (M_w + M_p) / c  # (8)
     return drag * forward - lateral * right, drag * right + lateral * forward, -passed * M_w
 
