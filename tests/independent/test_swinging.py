@@ -90,9 +90,14 @@ def test_casters_left_turned_round_are_found_where_nobody_filmed_them(tmp_path, 
 @pytest.mark.nightly
 @pytest.mark.parametrize("seed", [1, 4])
 def test_slow_manoeuvres_come_down_to_the_floor(tmp_path, seed):
-    """From 0.2 to 0.6 m/s, starts and stops, spins, backing up: ideal casters leave three times the noise, these hardly any."""
+    """From 0.2 to 0.6 m/s, starts and stops, spins, backing up: ideal casters leave three times the noise, these none.
+
+    While the chair backs up, its casters stand on their tips as pencils do: slopes hold only about the path on which the errors
+    of the recorded pushes led it.
+    """
     campaign = read(make(tmp_path / "slow", {}, manoeuvres="slow", seed=seed, chair=AT_PATCHES))
     found, held, *_ = Models(ModelFactory(campaign, CHAIR)).calibrate()
-    assert found.evidence.rms < 1.12 and held.rms < 1.12
+    assert found.evidence.rms < 1.03 and held.rms < 1.03
+    assert all(np.nanmean(e.r**2) < 1.1 for e in (*found.evidence.runs, *held.runs))
     ideal, ideal_held, *_ = Models(ModelFactory(campaign, Variant())).calibrate()
     assert ideal.evidence.rms > 2 and ideal_held.rms > 2

@@ -185,12 +185,26 @@ class Whitener:
 
     def smoothed(self, innovations: np.ndarray) -> np.ndarray:
         """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""
+        return self._smoothed(innovations)[:, self.recorded :]
+
+    def smoothed_pushes(self, innovations: np.ndarray) -> np.ndarray:
+        """The errors (n, nq) of the recorded pushes, likewise."""
+        return self._smoothed(innovations)[:, : self.recorded]
+
+    def _smoothed(self, innovations: np.ndarray) -> np.ndarray:
         told = np.ascontiguousarray(np.nan_to_num(innovations), float)
         noise = np.empty((len(told), self.size[1]))
         _library().wc_smooth(
             ctypes.byref(self._filter), ctypes.c_long(len(told)), _of(self._gain), _of(self._scale), _of(told), _of(noise)
         )
-        return noise[:, self.recorded :]
+        return noise
+
+    def unlikely(self, off: np.ndarray, pushed: np.ndarray) -> float:
+        """−2 log probability, but for a constant, that readings are `off` (n, nz) by their own noise and the recorded pushes by
+        `pushed` (n, nq)."""
+        readings = np.where(self.arrays["present"] > 0, off / self.noise.readings, np.nan)
+        pushes = pushed / self.arrays["input_sd"][:, : self.recorded]
+        return _fresh(readings, self.arrays["phi"]) + _fresh(pushes, self.arrays["input_phi"][:, : self.recorded])
 
     @cached_property
     def spread(self) -> np.ndarray:
@@ -201,6 +215,14 @@ class Whitener:
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
+
+
+def _fresh(noise: np.ndarray, phi: np.ndarray) -> float:
+    """Σ of squares of what is new in AR(1) noise (n, m) of unit variance, with NaN in gaps, after which all counts as new."""
+    before = np.nan_to_num(noise[:-1])
+    again = np.where(np.isfinite(noise[:-1]), phi, 0.0)
+    new = (noise[1:] - again * before) / np.sqrt(1 - again**2)
+    return float(np.nansum(noise[0] ** 2) + np.nansum(new**2))
 
 
 def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:

@@ -38,6 +38,8 @@ SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
 STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where forces lead; the whole one while steps grow shorter
+MOMENTS = 8  # up to which readings are asked where a run's pushes led
+HELD = 1.0  # Σ of squares by which innovations may differ where slopes hold: by less than one standard error of anything
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
 # s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
@@ -123,6 +125,7 @@ class RunEvidence:
     path: np.ndarray | None = None  # (n, 4) forces that nobody recorded (see `disturbance`), about which all is linearised
     added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
     driven: np.ndarray | None = None  # (n, nz) readings simulated with them
+    pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
 
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
@@ -150,7 +153,8 @@ class RunEvidence:
 
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
-        return replace(self, S=none, start_S=none, results=np.empty((0, 0)), path=None, added=0.0, driven=None)
+        brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)))
+        return brief if self.path is None else replace(brief, path=None, added=0.0, driven=None)
 
     @property
     def misfit(self) -> float:
@@ -370,8 +374,7 @@ class Likelihood:
             assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
             there = replace(e, measured=self._measured(e.run, values))
             if e.path is None:
-                results, predicted = self._simulated(e.run, values, e.start)
-                there = replace(there, results=results, predicted=predicted)
+                there = self._simulated_again(there, values, e.start)
             else:  # where other values leave another rest, other forces make up for it
                 there = self._driven_again(there, values, e.path)
                 there = self._driven_again(there, values, followed(there))
@@ -394,14 +397,20 @@ class Likelihood:
             return evidence  # which starts where forces and readings together have it
 
         def one(e: RunEvidence) -> RunEvidence:
-            start = self._better_start(e)
             try:
-                results, predicted = self._simulated(e.run, values, start)
+                return self._simulated_again(e, values, self._better_start(e))
             except SimulationError:
                 return e  # where it cannot start there, it is judged from where it can
-            return replace(e, start=start, results=results, predicted=predicted)
 
         return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+
+    def _simulated_again(self, e: RunEvidence, values: Mapping[str, float], start: Mapping[str, float]) -> RunEvidence:
+        """A run at other `values` or from another `start`, by the filter that it has."""
+        results, predicted = self._simulated(e.run, values, start)
+        there = replace(e, start=start, results=results, predicted=predicted)
+        if e.pushed is None:
+            return there
+        return replace(there, driven=self._simulated(e.run, values, start, pushed=e.pushed)[1])
 
     def readings(
         self, run: Run, values: Mapping[str, float], start: Mapping[str, float]
@@ -410,12 +419,20 @@ class Likelihood:
         return self._channels(run), self._measured(run, values), self._simulated(run, values, start)[1]
 
     def _simulated(
-        self, run: Run, values: Mapping[str, float], start: Mapping[str, float], path: np.ndarray | None = None
+        self,
+        run: Run,
+        values: Mapping[str, float],
+        start: Mapping[str, float],
+        path: np.ndarray | None = None,
+        pushed: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 4) acting."""
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 4) acting, or with
+        pushes larger than their record by `pushed` (n, nq)."""
         given, w = self._given(run, values, start)
         if path is not None:
             w = self._driven(run, given, w, path, values)
+        if pushed is not None:
+            w = self._pushed(run, w, pushed)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
         predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
         return results, read(run, self._channels(run), predicted, start)
@@ -423,14 +440,82 @@ class Likelihood:
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         if self.leads:
             return self._along(run, values, by, keep=rounds > 0)
-        e = self._one(run, values, by, self.starts[run.name])
+        e = self._one(run, values, by, self.starts[run.name], pushed=self._errors_of_pushes(run))
         for _ in range(rounds):
             better, sd = self._better_start(e), e.uncertain
             if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
                 break
             self.starts[run.name] = better
-            e = self._one(run, values, by, better)
-        return e
+            e = self._one(run, values, by, better, pushed=e.pushed)
+        return self._about_pushes(e, values, by) if rounds and self._may_flip else e
+
+    @property
+    def _may_flip(self) -> bool:
+        return all(name in self.start_names for name in CASTERS)
+
+    def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
+        """As they were found, (n, nq), for a model whose casters may flip."""
+        found = self.paths.get(run.name)
+        return found if self._may_flip and found is not None and len(found) == len(run.time) else None
+
+    def _about_pushes(self, e: RunEvidence, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
+        """The run along the path to which the errors of its pushes lead, where slopes do not hold as far as that.
+
+        While a chair backs up, its casters stand as pencils on their tips: noise of the pushes decides when they swing round,
+        and so where the chair goes. Slopes about any other path than its own say little of it. So all is linearised about the
+        likeliest errors of the pushes, by Gauss and Newton's steps, as starts are; kept for the next values.
+        """
+        first = e
+        for _ in range(MOST_STEPS):
+            there = self._towards(e, values)
+            if there is None:
+                break
+            e = there
+        if e is first:
+            return e
+        self.starts[e.run.name], self.paths[e.run.name] = dict(e.start), e.pushed if e.pushed is not None else np.empty(0)
+        return self._one(e.run, values, by, e.start, pushed=e.pushed) if by else e
+
+    def _towards(self, e: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
+        """One step to where readings have the start and the errors of the pushes; None where slopes hold as far as that, or
+        no step makes all together likelier.
+
+        Where a simulation has gone another way than the chair, slopes about it say nothing of what comes after. So besides all
+        readings, those up to each of some moments are asked, and what they say together makes likeliest is taken.
+        """
+        filter_ = e.filter.whitener
+        told = filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0]
+        now = np.zeros((len(told), filter_.recorded)) if e.pushed is None else e.pushed
+        least, best = self._unlikely(e, e.followed, now, e.start), None
+        for until in np.linspace(len(told), 0, MOMENTS, endpoint=False).astype(int):
+            known = np.arange(len(told)) < until
+            step = filter_.smoothed_pushes(np.where(known[:, None], told, 0.0)) - now
+            better = self._better_start(e, known)
+            for share in STEPS:
+                start = {**e.start, **{n: e.start.get(n, 0.0) + share * (v - e.start.get(n, 0.0)) for n, v in better.items()}}
+                pushed = now + share * step
+                try:
+                    driven = self._simulated(e.run, values, start, pushed=pushed)[1]
+                except SimulationError:
+                    continue
+                if until == len(told) and share == 1.0 and self._held(e, start, driven - filter_.response(pushed)):
+                    return None
+                if (found := self._unlikely(e, driven, pushed, start)) < least:
+                    least, best = found, (start, pushed)
+        return None if best is None else self._one(e.run, values, (), best[0], pushed=best[1])
+
+    def _held(self, e: RunEvidence, start: Mapping[str, float], foretold: np.ndarray) -> bool:
+        """Do slopes say what is `foretold` from that start? Innovations allow for another start and other pushes, so that to
+        first order they do not depend on these."""
+        r = e.filter((e.measured - foretold)[:, :, None], e.offset)[:, :, 0]
+        r = r + e.start_S @ [v - e.start.get(n, 0.0) for n, v in ((n, start[n]) for n in e.uncertain)]
+        return float(np.nansum((r - e.r) ** 2)) < HELD
+
+    def _unlikely(self, e: RunEvidence, driven: np.ndarray, pushed: np.ndarray, start: Mapping[str, float]) -> float:
+        """−2 log probability of readings, of the pushes' errors and of the start together, but for a constant."""
+        prior = self._prior(e.run)
+        begun = sum(((start.get(n, 0.0) - prior.get(n, 0.0)) / sd) ** 2 for n, sd in e.uncertain.items() if sd > 0)
+        return e.filter.whitener.unlikely(e.measured - driven, pushed) + float(begun)
 
     def _along(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], keep: bool) -> RunEvidence:
         """The run along the path that forces which nobody recorded lead it; `keep` it for the next values.
@@ -472,9 +557,16 @@ class Likelihood:
         out[:, [self._inputs.index(n) for n in pushes]] += path @ as_push.T
         return out
 
-    def _better_start(self, e: RunEvidence) -> dict[str, float]:
-        """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
-        good = np.isfinite(e.r)
+    def _pushed(self, run: Run, w: np.ndarray, pushed: np.ndarray) -> np.ndarray:
+        """Inputs (n, nw) with pushes larger than their record by `pushed`."""
+        out = w.copy()
+        out[:, [self._inputs.index(n) for n in pushes_of(run)]] += pushed
+        return out
+
+    def _better_start(self, e: RunEvidence, known: np.ndarray | None = None) -> dict[str, float]:
+        """The start, and what else is uncertain of the run, given all readings, or those in `known` (n,) rows: prior mean +
+        P₀ S₀ᵀ r, to first order."""
+        good = np.isfinite(e.r) if known is None else np.isfinite(e.r) & known[:, None]
         prior, sd = self._prior(e.run), e.uncertain
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
@@ -486,8 +578,10 @@ class Likelihood:
         by: tuple[str, ...],
         found: Mapping[str, float],
         path: np.ndarray | None = None,
+        pushed: np.ndarray | None = None,
     ) -> RunEvidence:
-        """The run from the start that was `found`, maybe by a model with casters of another kind, along `path`."""
+        """The run from the start that was `found`, maybe by a model with casters of another kind, along `path`, or with pushes
+        larger than their record by `pushed`."""
         channels, which, pushes = self._channels(run), self._which(run), pushes_of(run)
         prior, sd = self._prior(run), start_sd(run, self.start_names)
         start = {**prior, **{n: v for n, v in found.items() if n in prior or n not in CASTERS}}
@@ -495,6 +589,7 @@ class Likelihood:
         columns = [n for n in (*by, *self.start_names) if n not in self._delays and n not in self.offsets]
         path = path if self.noise_model.disturbed else None
         acting = w if path is None else self._driven(run, given, w, path, values)
+        acting = acting if pushed is None else self._pushed(run, acting, pushed)
         simulated = self.sensitivities.run(run.time, acting, given, columns, tolerance=TOLERANCE)
         measured = self._measured(run, values)
         driven = read(run, channels, simulated.readings[:, which], start)
@@ -507,6 +602,7 @@ class Likelihood:
         constants = locals_of(run)
         by_constant = [slope(c, run, channels, driven, pushes, filter_) for c in constants]
         added = filter_.response(path @ unknown.as_push.T) if unknown is not None and path is not None else 0.0
+        added = added if pushed is None else filter_.response(pushed)
         k, m = len(by), len(self.start_names)
         signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
         signals[:, :, 0] = measured - (driven - added)
@@ -522,6 +618,9 @@ class Likelihood:
         white = whitener(signals, offset, in_place=True)
         r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
         of_run = run, channels, r[:, :, 0], S, start_S, start
+        if pushed is not None:
+            alone = self._simulated(run, values, start)
+            return RunEvidence(*of_run, *alone, measured, whitener, offset, None, added, driven, pushed)
         if path is None:
             return RunEvidence(*of_run, simulated.results, driven, measured, whitener, offset)
         alone = self._simulated(run, values, self._without_swing(start, path, given, values, len(pushes)))
