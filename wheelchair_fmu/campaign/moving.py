@@ -17,6 +17,7 @@ from .series import integral
 from .windows import between, part
 
 ROLLS, STANDS = 0.2, 0.1  # m/s: a chair rolls from the former on until it is slower than the latter
+STILL = 0.05  # m/s: one that is slower stands, but for its sensors' noise
 SMOOTH = 0.1  # s over which a speed is taken
 LEAST = 2.0  # s: what rolls for less is left out
 SPEEDS = ("wheel_speed_l", "wheel_speed_r", "u")
@@ -26,6 +27,16 @@ def moving(campaign: Campaign) -> Campaign:
     """The campaign with each run cut to where its chair rolls, in several where it stood in between; a run that tells no speed,
     or that never rolls for long, stays whole."""
     return replace(campaign, runs=tuple(part for run in campaign.runs for part in _parts(run)))
+
+
+def sets_off(campaign: Campaign) -> bool:
+    """Does some run have the chair stand, and roll after that?"""
+    return any(_sets_off(speed) for speed in map(_speed, campaign.runs) if speed is not None)
+
+
+def _sets_off(speed: np.ndarray) -> bool:
+    still = np.flatnonzero(speed < STILL)
+    return bool(still.size and speed[still[0] :].max() > ROLLS)
 
 
 def _parts(run: Run) -> list[Run]:

@@ -91,10 +91,12 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
 
 
 def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:
-    """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?"""
+    """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?
+    One that is as it was given has not been stopped there."""
     reach = np.inf if record.name.startswith("effect.") else REACH * prior_sd
     near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
-    return not max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
+    inside = max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
+    return not inside and abs(value - prior) > near
 
 
 def doubts(found: Sequence[Calibrated]) -> list[str]:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..campaign import BY_NAME, Campaign, moving
+from ..campaign import BY_NAME, Campaign, moving, sets_off
 from ..campaign.channels import MOMENTUM
 from ..model.stage import Effect
 from ..model.variant import Variant
@@ -24,12 +24,22 @@ CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", 
 
 
 SCALE = "rider.scale"
+ONSET = "resistance.onset"
 TOGETHER = "+"  # between the names of effects in that of their group
 
 
 def _of_the_body(campaign: Campaign) -> tuple[str, ...]:
     """What is calibrated where the motion of the rider's body was recorded: how much of it that is."""
     return (SCALE,) if BY_NAME[MOMENTUM].fmu in driven(campaign) else ()
+
+
+def _of_a_standing_start(campaign: Campaign) -> tuple[str, ...]:
+    """What is calibrated where a chair sets off: nobody measures how its drag builds up from rest, and it decides when it lets
+    go."""
+    return (ONSET,) if sets_off(campaign) else ()
+
+
+OF_CAMPAIGNS = (SCALE, ONSET)  # what is calibrated of some only
 
 
 class ModelFactory:
@@ -41,7 +51,8 @@ class ModelFactory:
 
     def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = (), calibrated: Iterable[str] = CALIBRATED):
         self.fixed = frozenset(fixed)
-        self.calibrated = tuple(n for n in (*calibrated, *_of_the_body(campaign)) if n not in self.fixed)
+        names = (*calibrated, *_of_the_body(campaign), *_of_a_standing_start(campaign))
+        self.calibrated = tuple(n for n in dict.fromkeys(names) if n not in self.fixed)
         self.given = {n: v for n, v in variant.values.items() if n.startswith("effect.") and n not in self.fixed}
         self.campaign = campaign
         self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
@@ -60,11 +71,16 @@ class ModelFactory:
     def led(self, along: Evidence, values: Mapping[str, float]) -> ModelFactory:
         """The same, of where the chair rolls, with every run led along the forces that nobody recorded: from starts, paths and
         calibrated `values` of evidence `along` which they led."""
-        other = ModelFactory(moving(self.campaign), self.variant, self.fixed, [n for n in self.calibrated if n != SCALE])
+        other = ModelFactory(moving(self.campaign), self.variant, self.fixed, self._usual)
         other.given, other.noise_model, other.leads, other.begun = self.given, self.noise_model, True, dict(values)
         other.starts = {e.run.name: dict(e.start) for e in along.runs}
         other.paths = {e.run.name: e.path for e in along.runs if e.path is not None}
         return other
+
+    @property
+    def _usual(self) -> list[str]:
+        """What is calibrated of any campaign."""
+        return [n for n in self.calibrated if n not in OF_CAMPAIGNS]
 
     def likelihood(self, effects: Iterable[str] = ()) -> Likelihood:
         """The likelihood on which these effects may be on."""
@@ -92,7 +108,10 @@ class ModelFactory:
         key = frozenset(effects), derives
         if key not in self._benches:
             variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
-            columns = (*self.calibrated, *(n for e in self.catalogue if e in effects for n in self.parameters(e)))
+            columns = (
+                *dict.fromkeys((*self.calibrated, ONSET)),
+                *(n for e in self.catalogue if e in effects for n in self.parameters(e)),
+            )
             self._benches[key] = Likelihood(self.campaign, variant, None, columns, derives, self.leads)
         likelihood = self._benches[key]
         likelihood.noise_model = self.noise_model
@@ -121,7 +140,7 @@ class ModelFactory:
     def widened(self, more: Mapping[str, Effect]) -> ModelFactory:
         """The same campaign with more effects in the catalogue; noise and starts are kept."""
         variant = replace(self.variant, catalogue={**self.catalogue, **more})
-        other = ModelFactory(self.campaign, variant, self.fixed, [n for n in self.calibrated if n != SCALE])
+        other = ModelFactory(self.campaign, variant, self.fixed, self._usual)
         other.noise_model, other.starts, other.paths = self.noise_model, dict(self.starts), dict(self.paths)
         other.leads = self.leads
         return other
