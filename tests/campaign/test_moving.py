@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from wheelchair_fmu.campaign import moving
+from wheelchair_fmu.campaign import moving, sets_off
 
 from .test_condensed import a_campaign, a_run
 
@@ -28,6 +28,20 @@ def test_rest_before_and_after_is_left_out():
     assert 3.0 < run.time[0] < 3.3 and 14.7 < run.time[-1] < 15.1 and run.name == "a"
     assert 0.1 < run.u0 < 0.5, "the speed at its own first samples"
     assert all(len(v) == len(run.time) for v in (*run.inputs.values(), *run.channels.values(), run.baselines[0].shapes))
+
+
+def test_how_far_a_chair_has_rolled_since_it_stood_is_known_where_it_stood():
+    """From 0 to 0.2 m/s at 2 m/s² it rolls 1 cm."""
+    (run,) = moving(a_campaign(the_run((3.0, 15.0)))).runs
+    assert 0.005 < run.way < 0.03
+    (rolling_in,) = moving(a_campaign(the_run((-1.0, 15.0)))).runs
+    assert rolling_in.way is None
+
+
+def test_a_chair_sets_off_where_it_stands_and_then_rolls():
+    assert sets_off(a_campaign(the_run((3.0, 15.0))))
+    assert not sets_off(a_campaign(the_run((-1.0, 15.0))))  # it comes to rest, and that is all
+    assert not sets_off(a_campaign(the_run((3.0, 3.1))))
 
 
 def test_a_rest_between_makes_two_runs_with_names_of_their_own():

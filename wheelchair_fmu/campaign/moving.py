@@ -46,7 +46,15 @@ def _parts(run: Run) -> list[Run]:
     whole = [(a, b) for a, b in _stretches(run.time, speed) if b - a >= LEAST]
     if not whole or whole == [(run.time[0], run.time[-1])]:
         return [run]
-    return [between(run, *whole[0])] if len(whole) == 1 else [part(run, *ends) for ends in whole]
+    found = [between(run, *whole[0])] if len(whole) == 1 else [part(run, *ends) for ends in whole]
+    return [replace(piece, way=_way(run.time, speed, piece.time[0])) for piece in found]
+
+
+def _way(time: np.ndarray, speed: np.ndarray, until: float) -> float | None:
+    """How far (m) the chair has rolled since it last stood; None where it did not stand before."""
+    before = int(np.searchsorted(time, until)) + 1
+    still = np.flatnonzero(speed[:before] < STILL)
+    return float(np.trapezoid(speed[still[-1] : before], time[still[-1] : before])) if still.size else None
 
 
 def _speed(run: Run) -> np.ndarray | None:

@@ -54,7 +54,7 @@ class Run:
     Where several devices recorded the run, `time` has the times of all their samples, and a channel is NaN at those of the
     others; inputs are straight lines between their own samples. `clocks` and `baselines` are what is uncertain of it;
     `input_steps` are the times between an input's own samples, in s, where they are not those of `time`. `devices` is how many
-    recorded it.
+    recorded it. `way` is how far, in m, the chair has rolled by its first sample since it last stood; None where nobody knows.
     """
 
     name: str
@@ -70,6 +70,7 @@ class Run:
     baselines: tuple[Baseline, ...] = ()
     input_steps: Mapping[str, float] = field(default_factory=dict)
     devices: int = 1
+    way: float | None = None
 
     @cached_property
     def first(self) -> dict[str, float]:

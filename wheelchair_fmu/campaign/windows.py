@@ -115,6 +115,7 @@ def _cut(run: Run, start: int, stop: int) -> Run:
         inputs=inputs,
         channels=channels,
         baselines=baselines,
+        way=None if start else run.way,
     )
 
 
