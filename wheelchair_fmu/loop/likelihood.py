@@ -33,7 +33,8 @@ FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, wh
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
 CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to where it stands
-ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago
+ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago, where nobody knows how far it has rolled
+TRAIL = 0.05  # m over which a caster that stood aside comes back by e, c δ' = −v δ: a usual trail
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
@@ -823,6 +824,7 @@ def start_sd(run: Run, names: Sequence[str] = START) -> dict[str, float]:
     """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be. Casters may
     stand as they like where the chair does."""
     rolled = prior_start(run, {})["start.u"] / ROLLED
+    aside = 1 / (1 + rolled * rolled) if run.way is None else float(np.exp(-run.way / TRAIL))
     pose = {name: POSE_SD if TELLS[name].name in run.channels else 0.0 for name in POSE}
-    casters = dict.fromkeys(CASTERS, CASTER_SD / (1 + rolled * rolled))
+    casters = dict.fromkeys(CASTERS, CASTER_SD * aside)
     return {name: 0.0 if name in run.set else {**pose, **START_SD, **casters}[name] for name in names}
