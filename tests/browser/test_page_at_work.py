@@ -303,7 +303,8 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     for row in told["ranking"]:
         row["verdict"] = verdict if row["effect"] in told["effects"] else "not needed"
     if verdict == "missing":
-        sizes = {f"effect.{HIDDEN}.D": {"estimate": 1.6, "se": 0.1}, "effect.floor_cross_slope.theta": {"estimate": 0.1, "se": None}}
+        size = {"estimate": 1.6, "se": 0.1}
+        sizes = {f"effect.{HIDDEN}.D": size, "effect.floor_cross_slope.theta": {**size, "se": None}}
         told["groups"] = [{"effects": pair, "beside": [], "parameters": sizes, "p": 1e-9, "lr": 9.0, "found": True}]
     if verdict == "outside":
         panel = {"variable": "speed", "unit": "m/s", "knots": [0, 1, 2], "estimate": [None, 0.5, 1.0], "se": [None, 0.1, 0.2]}

@@ -178,7 +178,7 @@ def test_dragging_follows_at_once(reader):
     exact = page.evaluate("report.timings.filter(t => t.exact).at(-1).all")
     print(
         f"\nfirst paint {paint:.0f} ms; one run {one:.0f} ms, ten runs {every:.0f} ms (median of {len(timings)}); "
-        f"exact, ten runs {exact:.0f} ms; {frames:.0f} frames a second while dragging, {drawing:.1f} ms of the main thread to draw"
+        f"exact, ten runs {exact:.0f} ms; {frames:.0f} frames a second while dragging, each drawing {drawing:.1f} ms"
     )
     assert errors[-1] > errors[0] + 0.1  # away from the truth, the error grows
     assert timings
