@@ -17,7 +17,6 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.independent.campaigns import make
@@ -125,11 +124,7 @@ def test_killed_again_and_again_what_is_resumed_is_the_same(kind, campaign, tmp_
     ended = sum(killed(command(kind, garage / "a", out), lasts * rng.uniform(0.3, 0.9)) for _ in range(6))
     assert ended
     assert (done := run(command(kind, garage / "a", out))).returncode == 0, done.stderr
-    if kind == "sweep":
-        assert out.read_bytes() == whole.read_bytes()
-    else:  # but for how long each took
-        ours, expected = (pq.read_table(file).drop_columns("seconds") for file in (out, whole))
-        assert ours.equals(expected, check_metadata=True)
+    assert out.read_bytes() == whole.read_bytes()
     assert not out.with_name(out.name + ".parts").exists()
 
 
