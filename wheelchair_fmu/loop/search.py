@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy import special
 
 from ..errors import SimulationError
 from ..quantities import Parameter
@@ -192,13 +193,13 @@ class Search(Screen):
         )
 
     def matters(self, found: Fit, effect: str) -> bool:
-        """Is an effect of a fit with sensitivities likelier to be large than slight?"""
+        """Is an effect of a fit with sensitivities surely large, rather than slight or nothing?"""
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         one_sided = np.array([self.records[n].lower == 0 for n in names])
         between, fall = _between(found, names, covariance), self.weight(found, effect)
         told = support_of(effect, estimate, (covariance, between), delta, one_sided, fall, 0.0, self.policy)
-        return told.large > max(0.0, told.slight)
+        return float(special.expit(told.large - max(0.0, told.slight))) > self.policy.sure
 
     def round(
         self,
