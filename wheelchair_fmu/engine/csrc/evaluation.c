@@ -93,6 +93,7 @@ void wc_evaluation_room(const wc_recording *s, wc_evaluation *e, double *kept_in
     for (size_t i = 0; i < sizeof each / sizeof *each; i++) *each[i] = next(&kept, sizes[i]);
     for (size_t i = 0; i < sizeof lent / sizeof *lent; i++) *lent[i] = next(&work, lengths[i]);
     e->reached = (long *)next(&work, 1);
+    e->pushed = 0;
     room_of_slopes(s, &e->by, &kept, &work);
     room_of_filter(s, &e->f, &kept);
     e->f.nx = (int)nx;
@@ -161,15 +162,18 @@ static void as_push(const wc_recording *s, const wc_values *v, double *to) {
     }
 }
 
-/* Adds to w what forces of a path are as pushes. */
-static void act(const wc_recording *s, const double *by, const double *path, double *w) {
-    int nq = s->noise.nq, nd = s->noise.nd;
+/* What acts besides a record of a push: its error, and what forces of e's path are as pushes. */
+static double unrecorded(const wc_recording *s, const wc_evaluation *e, const double *by, long i, int q) {
+    int nd = s->noise.nd;
+    double sum = e->pushed ? e->pushed[i * s->noise.nq + q] : 0;
+    for (int d = 0; d < nd; d++) sum += by[q * nd + d] * e->path[i * nd + d];
+    return sum;
+}
+
+/* Adds that to the inputs. */
+static void act(const wc_recording *s, wc_evaluation *e, const double *by) {
     for (long i = 0; i < s->n; i++) {
-        for (int q = 0; q < nq; q++) {
-            double sum = 0;
-            for (int d = 0; d < nd; d++) sum += by[q * nd + d] * path[i * nd + d];
-            w[i * s->kernel->inputs + s->noise.pushes[q]] += sum;
-        }
+        for (int q = 0; q < s->noise.nq; q++) e->w[i * s->kernel->inputs + s->noise.pushes[q]] += unrecorded(s, e, by, i, q);
     }
 }
 
@@ -378,9 +382,9 @@ static void better_start(const wc_recording *s, const wc_evaluation *e, const do
 
 /* --- one run --- */
 
-static int on_a_path(const wc_recording *s, const double *path) {
-    for (long i = 0; i < s->n * s->noise.nd; i++) if (path[i] != 0) return 1;
-    return 0;
+static int on_a_path(const wc_recording *s, const wc_evaluation *e) {
+    for (long i = 0; i < s->n * s->noise.nd; i++) if (e->path[i] != 0) return 1;
+    return e->pushed != 0;
 }
 
 /* A run that begins in the middle of a stroke begins at a speed that the body's momentum takes off, and gives back before the
@@ -392,19 +396,17 @@ static double without_swing(const wc_recording *s, const wc_values *v, const dou
     return momentum / v->numbers[WC_MASS];
 }
 
-/* to: n x nz, what the forces of e's path add to the readings. */
+/* to: n x nz, what the forces of e's path, and errors of the pushes, add to the readings. */
 static void add(const wc_recording *s, wc_evaluation *e, const double *by, double *to) {
-    int nd = s->noise.nd, nq = e->f.nq;
+    int nq = e->f.nq;
     memset(e->noise, 0, sizeof(double) * (size_t)(s->n * nq));
     for (long i = 0; i < s->n; i++) {
-        for (int q = 0; q < s->noise.nq; q++) {
-            for (int d = 0; d < nd; d++) e->noise[i * nq + q] += by[q * nd + d] * e->path[i * nd + d];
-        }
+        for (int q = 0; q < s->noise.nq; q++) e->noise[i * nq + q] = unrecorded(s, e, by, i, q);
     }
     wc_respond(&e->f, s->n, e->noise, to);
 }
 
-/* Results and readings without forces, from this start. */
+/* Results and readings without forces and with pushes as recorded, from this start. */
 static int alone(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *by, const double *start,
                        double *x, wc_simulated *to) {
     double from[WC_MOST];
@@ -417,10 +419,10 @@ static int alone(const wc_recording *s, const wc_values *v, wc_evaluation *e, co
 }
 
 static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
-    int led = on_a_path(s, e->path), u = uncertain(s), nx = states(s);
+    int led = on_a_path(s, e), u = uncertain(s), nx = states(s);
     felt(s, v, e->own.start + s->starts, e->w, e->column);
     as_push(s, v, e->as_push);
-    if (led) act(s, e->as_push, e->path, e->w);
+    if (led) act(s, e, e->as_push);
     begin_at(s, v, e->own.start, e->p);
     int status = wc_tangent_run(s->kernel, s->tangent, e->p, v->numbers[WC_TOLERANCE], s->n, s->time, e->w, e->x, e->y,
                                 &e->by, e->busy, e->reached);
@@ -515,11 +517,13 @@ int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int
     if (states(s) + s->noise.nq + s->noise.nd + s->noise.nz > WC_MOST || uncertain(s) > WC_MOST) return WC_TOO_MANY;
     int status = linearise(s, v, e);
     if (status == WC_OK && rounds) status = s->leads ? lead(s, v, e) : tune(s, v, e, rounds);
-    if (status != WC_OK) return status;
+    return status;
+}
+
+void wc_find_spread(const wc_recording *s, wc_evaluation *e) {
     filter certain = e->f;
     certain.start_cov = e->none;
     wc_spread(&certain, s->n, e->spread);
-    return WC_OK;
 }
 
 /* Moves readings from e's start to another one, to first order. */
@@ -532,11 +536,11 @@ static void shift(const wc_recording *s, const wc_evaluation *e, const double *s
 }
 
 int wc_again(const wc_recording *s, const wc_values *v, wc_evaluation *e, int kept, double *x, wc_simulated *to) {
-    int led = on_a_path(s, e->path);
+    int led = on_a_path(s, e);
     double by[WC_MOST], *measured = to->predicted;
     felt(s, v, e->own.start + s->starts, e->w, e->column);
     as_push(s, v, by);
-    if (led) act(s, by, e->path, e->w);
+    if (led) act(s, e, by);
     int status = run(s, v, e, e->own.start, x, to->results);
     if (status != WC_OK) return status;
     read(s, e->own.start + s->starts, to->results, to->foretold, e->column);

@@ -67,7 +67,7 @@ typedef struct {
     double *start;     /* starts + constants */
     double *results;   /* n x outputs */
     double *predicted; /* n x nz: readings */
-    double *foretold;  /* n x nz: the same by slopes about where forces that nobody recorded lead the run */
+    double *foretold;  /* n x nz: the same by slopes about where forces that nobody recorded, or errors of pushes, lead the run */
     double *r;         /* n x nz: innovations, NaN in gaps */
 } wc_simulated;
 
@@ -78,7 +78,7 @@ typedef struct {
     double *told;        /* 2: Σ log of the innovations' variances; and of what constants add to it */
     double *spread;      /* n x nz: see wc_spread */
     double *measured;    /* n x nz: readings less offsets */
-    double *added;       /* n x nz: what the forces add to the readings */
+    double *added;       /* n x nz: what the forces, and errors of the pushes, add to the readings */
     wc_derivatives by;
     filter f;
     double *gain, *scale;
@@ -93,10 +93,12 @@ typedef struct {
     double *driven;      /* n x nz: readings as led */
     double *p, *w, *column, *busy, *innovations, *added_again, *before, *step, *noise, *none;
     long *reached;
+    const double *pushed; /* n x nq, the caller's: by how much pushes were larger than their record; or 0 */
 } wc_evaluation;
 
 /* rooms[0]: how many doubles an evaluation keeps, as long as somebody asks for the run again by its filter; rooms[1]: and how
- * many it works with, which several may share. Where blocks of so many are given, the record points into them. */
+ * many it works with, which several may share. Where blocks of so many are given, the record points into them; and to no errors
+ * of the pushes. */
 void wc_evaluation_room(const wc_recording *s, wc_evaluation *e, double *kept, double *work, long *rooms);
 
 /* The same for what wc_again() writes. */
@@ -105,9 +107,12 @@ long wc_simulated_room(const wc_recording *s, wc_simulated *to, double *block);
 /* Where a run is expected to start before its readings are asked, on no path. */
 void wc_expected(const wc_recording *s, wc_evaluation *e);
 
-/* From e->own.start along e->path. `rounds`: how often at most the start is moved to where the readings want it; a run that is
+/* From e->own.start along e->path, with e->pushed. `rounds`: how often at most the start is moved to where the readings want it; a run that is
  * led goes where forces lead it, unless that is 0. On failure e->reached says how far it came. */
 int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds);
+
+/* Fills in e->spread, of an evaluation that is the last in its place of work. */
+void wc_find_spread(const wc_recording *s, wc_evaluation *e);
 
 /* The same run at other values by the filter of e, a better start to first order. `kept`: its start is kept, and what the forces
  * add. x: n x states. */
