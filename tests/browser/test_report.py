@@ -16,10 +16,12 @@ from PIL import Image
 
 from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
 from tests.kit import tracked, with_settings
-from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.campaign import Campaign, moving, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
+from wheelchair_fmu.loop.verdict import FORCES as UNRECORDED
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.report.content import TUNING, noise_told
 from wheelchair_fmu.report.page import page as page_of
 from wheelchair_fmu.report.page import unpacked
 from wheelchair_fmu.report.tale import Story
@@ -114,6 +116,27 @@ def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
             assert found[e.run.name] == pytest.approx(e.rms, rel=1e-7), e.run.name
             assert reader.page.evaluate("i => report.results[i].start", i) == pytest.approx(e.start, abs=1e-7)
             assert {n: e.start[n] for n in e.run.set if n in e.start} == {n: v for n, v in e.run.set.items() if n in e.start}
+    reader.close()
+
+
+def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browser, tmp_path, campaign):
+    """Every run is led along them, from where it was led to at the values before, and weighed by them."""
+    ladder = [*TOLD["ladder"][:2], {**TOLD["ladder"][1], "step": UNRECORDED}, *TOLD["ladder"][2:]]
+    forces = {"force": 3.0, "moment": 0.4, "body": 1.5, "lasting": 0.7, "mass": 82.0, "by_run": {"slalom-quick": {"a_y": 1.3}}}
+    told = {**TOLD, "ladder": ladder, "noise": {**TOLD["noise"], **forces}}
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    values, rolls, before = MODELS[f"+{HIDDEN}"], moving(campaign), reader.page.evaluate("report.values")
+    reader.set(values)
+    likelihood = Likelihood(rolls, variant_of(reader, 0), noise_told(told), leads=True)
+    likelihood.evidence(rolls.runs, before, tune_start=TUNING)
+    expected = likelihood.evidence(rolls.runs, values, tune_start=TUNING)
+    table = reader.table()
+    for i, e in enumerate(expected.runs):
+        assert table[e.run.name] == pytest.approx(e.rms, rel=1e-7), e.run.name
+        found = reader.page.evaluate("i => [report.results[i].start, report.results[i].sd.a_y[50]]", i)
+        assert found[0] == pytest.approx(e.started, abs=1e-7)
+        assert found[1] == pytest.approx(1 / e.whitener.spread[50, e.channels.index("a_y")], rel=1e-9)
     reader.close()
 
 
@@ -303,6 +326,7 @@ def test_each_model_is_small_and_simulates_in_no_time(open_report):
     ]
     print("\nWebAssembly: " + ", ".join(f"{b} bytes and {ms:.1f} ms" for b, ms in zip(sizes, times, strict=True)))
     assert max(sizes) <= 100_000
+    assert open_report.page.evaluate("atob(report.campaign.evaluation).length") <= 60_000  # once for all of them
 
 
 def test_one_file_small_and_shut(report_file):

@@ -11,12 +11,11 @@ from typing import Any
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
 from ..loop.final import final
-from ..loop.likelihood import NoiseModel
 from ..loop.story import story
 from ..loop.verdict import Diagnosis, diagnose
 from ..model.generic import library
 from ..model.variant import Variant
-from ..report.content import content
+from ..report.content import content, noise_told
 from ..report.page import page
 from ..report.paper.case import checked
 from ..report.paper.folder import supplement
@@ -41,7 +40,7 @@ def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str
     chair = _with_proposal(chair, told)
     titles = {e.id: e.title for e in chair.catalogue.values()}
     records = {p.name: p for e in chair.catalogue.values() for p in e.owned}
-    colour = NoiseModel({**measured.noise, **told["noise"]["sd"]}, told["noise"]["ar"])  # channels may have come since
+    colour = noise_told(told, measured.noise)
     tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
     return page(content(measured, chair, colour, told, fixed), sentence(told, titles), particulars(told, records), tale)
 

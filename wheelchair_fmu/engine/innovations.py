@@ -31,6 +31,23 @@ class _Filter(ctypes.Structure):
     )
 
 
+class NoiseRecord(ctypes.Structure):
+    """`wc_noise` of innovations.h."""
+
+    _fields_ = (
+        *((name, ctypes.c_int) for name in ("nq", "nz", "nd")),
+        *((name, ctypes.c_void_p) for name in ("time", "pushes", "which", "push_sd", "push_ar", "push_step")),
+        *((name, ctypes.c_void_p) for name in ("sd", "ar", "step", "unknown_sd", "lasting", "together", "as_push")),
+    )
+
+
+class _Slopes(ctypes.Structure):
+    _fields_ = (
+        *((name, ctypes.c_int) for name in ("columns", "sensors")),
+        *((name, ctypes.c_void_p) for name in ("push_before", "push_after", "by_state", "by_push")),
+    )
+
+
 @dataclass(frozen=True)
 class Noise:
     """What is known of the noise: standard deviations of pushes (nq,) and readings (nz,), the AR(1) coefficients of each
@@ -87,37 +104,53 @@ class Whitener:
         pushes: Sequence[int] | None = None,
         disturbance: Disturbance | None = None,
     ):
-        self.present, self.noise = present, noise
-        n, nz = present.shape
+        self.present, self.noise, self.time = present, noise, run.time
         at = list(range(len(noise.pushes)) if pushes is None else pushes)
-        nx, nq = run.transition.shape[1], len(at)
-        self.time = run.time
-        if nx + nq + nz > MOST:
-            raise ValueError(f"{nx} states, {nq} pushes and {nz} readings are more than {MOST}")
-        push_sd, push_phi = _by_push(run.time, noise)
-        arrays = {
-            "A": run.transition,
-            "B": run.push_before[:, :, at],
-            "C": run.push_after[:, :, at],
-            "H": run.by_state[:, which],
-            "D": run.by_push[:, which][:, :, at],
-            "input_sd": push_sd,
-            "input_phi": push_phi,
-            "sd": noise.readings,
-            "phi": _by_interval(run.time, noise.colour, steps(run.time, present)),
-            "start_cov": noise.start,
-            "common": np.eye(nq),
+        self.recorded = len(at)
+        self._at, self._which = np.array(at, np.intc), np.array(which, np.intc)
+        self._slopes = {
+            name: np.ascontiguousarray(getattr(run, name), float)
+            for name in ("push_before", "push_after", "by_state", "by_push")
         }
-        self.arrays = {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
-        self.arrays["present"] = np.ascontiguousarray(present, np.int8)
-        self.size, self.recorded = (nx, nq, nz), nq
+        self.arrays = {
+            "A": np.ascontiguousarray(run.transition, float),
+            "sd": np.ascontiguousarray(noise.readings, float),
+            "start_cov": np.ascontiguousarray(noise.start, float),
+            "present": np.ascontiguousarray(present, np.int8),
+        }
+        self._compose(disturbance)
         if speeds:
             dt = float(np.median(np.diff(run.time)))
-            _library().wc_drop_kinks(ctypes.byref(self._filter), ctypes.c_long(n), ctypes.c_double(dt), *speeds)
+            _library().wc_drop_kinks(ctypes.byref(self._filter), ctypes.c_long(len(present)), ctypes.c_double(dt), *speeds)
         self.kinks = present & (self.arrays["present"] == 0)
-        if disturbance is not None:
-            self._disturb(disturbance)
         self._design()
+
+    def _compose(self, unknown: Disturbance | None) -> None:
+        """What the filter has of its inputs and readings, with these forces acting that nobody recorded."""
+        n, nz = self.present.shape
+        nx, nd = self.arrays["A"].shape[1], 0 if unknown is None else len(unknown.sd)
+        nq = self.recorded + nd
+        self.size = (nx, nq, nz)
+        if sum(self.size) > MOST:
+            raise ValueError(f"{nx} states, {self.recorded} pushes, {nd} disturbances and {nz} readings are more than {MOST}")
+        shapes = {"B": (n - 1, nx, nq), "C": (n - 1, nx, nq), "H": (n, nz, nx), "D": (n, nz, nq), "input_sd": (n, nq)}
+        shapes |= {"input_phi": (n - 1, nq), "phi": (n - 1, nz), "common": (nq, nq)}
+        self.arrays |= {name: np.empty(shape) for name, shape in shapes.items()}
+        said = noise_arrays(self.time, self.noise, steps(self.time, self.present), unknown)
+        given = {"pushes": self._at, "which": self._which, **said}
+        record = NoiseRecord(self.recorded, nz, nd, **{name: a.ctypes.data for name, a in given.items()})
+        by = self._slopes
+        slopes = _Slopes(by["by_push"].shape[2], by["by_state"].shape[1], **{name: a.ctypes.data for name, a in by.items()})
+        filter_ = self._filter
+        _library().wc_compose(ctypes.byref(record), ctypes.byref(slopes), ctypes.c_long(n), ctypes.byref(filter_))
+        kept = {
+            "push_before": "B",
+            "push_after": "C",
+            "by_state": "H",
+            "by_push": "D",
+        }  # of what was measured: all that is needed
+        self._slopes = {name: self.arrays[part] for name, part in kept.items()}
+        self._at, self._which = np.arange(self.recorded, dtype=np.intc), np.arange(nz, dtype=np.intc)
 
     def _design(self) -> None:
         n, nz = self.present.shape
@@ -127,26 +160,12 @@ class Whitener:
         )
         self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(self.noise.readings)))
 
-    def _disturb(self, unknown: Disturbance) -> None:
-        """Let forces act that nobody recorded, in the place of any that did before."""
-        recorded = {name: self.arrays[name][..., : self.recorded] for name in ("B", "C", "D", "input_sd", "input_phi")}
-        further = {name: recorded[name] @ unknown.as_push for name in ("B", "C", "D")}
-        further["input_sd"] = np.tile(unknown.sd, (len(self.time), 1))
-        further["input_phi"] = np.exp(-np.diff(self.time)[:, None] / unknown.lasting)
-        both = {name: np.concatenate((recorded[name], further[name]), axis=-1) for name in recorded}
-        both["common"] = np.eye(self.recorded + len(unknown.sd))
-        both["common"][self.recorded :, self.recorded :] = np.eye(len(unknown.sd)) if unknown.common is None else unknown.common
-        self.arrays |= {name: np.ascontiguousarray(a) for name, a in both.items()}
-        self.size = (self.size[0], self.recorded + len(unknown.sd), self.size[2])
-        if sum(self.size) > MOST:
-            raise ValueError(f"{sum(self.size)} states, pushes, disturbances and readings are more than {MOST}")
-
     def disturbed(self, disturbance: Disturbance) -> Whitener:
         """The filter of the same run where other forces act that nobody recorded."""
         other = object.__new__(Whitener)
         other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays)}
         other.__dict__.pop("spread", None)
-        other._disturb(disturbance)
+        other._compose(disturbance)
         other._design()
         return other
 
@@ -210,28 +229,25 @@ def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:
     return np.array([float(np.median(np.diff(t))) if len(t) > 1 else usual for t in own])
 
 
-def _by_interval(time: np.ndarray, colour: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """AR(1) coefficients (n−1, m) over each interval between rows, from those over each series' own step (m,).
-
-    Rows belong to several loggers, so most intervals are shorter than a series' own step.
-    """
-    return np.where(colour > 0, np.maximum(colour, 1e-300) ** (np.diff(time)[:, None] / step), 0.0)
-
-
-def _by_push(time: np.ndarray, noise: Noise) -> tuple[np.ndarray, np.ndarray]:
-    """Standard deviations (n, nq) of recorded pushes at each row, and their coefficients (n−1, nq) over each interval.
-
-    What noise adds to the chair's momentum must not depend on how many rows lie between two samples of a push. In a time T
-    that has a variance of σ² T h (1 + φ)/(1 − φ) for rows h apart, so σ goes with the rows' distance.
-    """
-    gaps = np.diff(time)
-    around = np.concatenate((gaps[:1], (gaps[1:] + gaps[:-1]) / 2, gaps[-1:]))
-    usual = np.full(len(noise.pushes), float(np.median(gaps)))
-    own = usual if noise.push_step is None else noise.push_step
-    phi = _by_interval(time, noise.push_colour, own)
-    there = np.maximum(noise.push_colour, 0.0) ** (around[:, None] / own)
-    lasting = own * (1 + noise.push_colour) / (1 - noise.push_colour)
-    return noise.pushes * np.sqrt(lasting / (around[:, None] * (1 + there) / (1 - there))), phi
+def noise_arrays(time: np.ndarray, noise: Noise, step: np.ndarray, unknown: Disturbance | None) -> dict[str, np.ndarray]:
+    """What a `NoiseRecord` points to, but for places; `step` (nz,) is the time between the samples of each reading."""
+    usual = np.full(len(noise.pushes), float(np.median(np.diff(time))))
+    none = Disturbance(np.empty(0), np.empty(0), np.empty((len(noise.pushes), 0)))
+    forces = none if unknown is None else unknown
+    arrays = {
+        "time": time,
+        "push_sd": noise.pushes,
+        "push_ar": noise.push_colour,
+        "push_step": usual if noise.push_step is None else noise.push_step,
+        "sd": noise.readings,
+        "ar": noise.colour,
+        "step": step,
+        "unknown_sd": forces.sd,
+        "lasting": forces.lasting,
+        "together": np.eye(len(forces.sd)) if forces.common is None else forces.common,
+        "as_push": forces.as_push,
+    }
+    return {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

@@ -1,9 +1,10 @@
-"""The same generated C as WebAssembly, for the report's page: no imports, one memory, compiled by PyPI's ziglang."""
+"""The same generated C as WebAssembly, for the report's page: a module for each model, without imports, and one that evaluates
+their runs, compiled by PyPI's ziglang."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -18,10 +19,11 @@ from . import cache, compiler
 from .kernel import at_rest, kernel, seldom_among
 from .source import CSRC, NOTHING, c_source, coefficients, tangent_source
 from .store import kept
-from .tangent import tangent
+from .tangent import PUSHES, noisy, tangent
 
-PUSHES = 2  # the hands' forces: a campaign states no noise of torques
+FORCES, TORQUES = 2, ("push.M_rl", "push.M_rr")  # the hands' forces carry noise; torques and a body do where they move
 STACK = 1 << 20  # bytes; the filter's matrices take the most
+BESIDE = 1 << 21  # bytes: where in a model's memory that begins which evaluates its runs, behind the model's own stack and data
 FLAGS = (
     "-target",
     "wasm32-wasi",
@@ -36,7 +38,6 @@ FLAGS = (
     "-fno-sanitize=all",
     "-fvisibility=hidden",
     f"-Wl,-z,stack-size={STACK}",
-    f"-DWC_PUSHES={PUSHES}",
 )
 
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
@@ -47,7 +48,7 @@ _deriving = Lock()  # CasADi's objects are not for several threads
 
 
 def modules(
-    models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str], moving: Iterable[str] = ()
+    models: Iterable[tuple[Choice, Iterable[Effect]]], columns: Sequence[str], moving: Collection[str] = ()
 ) -> list[bytes]:
     """Models as WebAssembly modules that export `csrc/page.c`, with derivatives by the parameters `columns`, on a level floor
     with open brakes but for inputs that are `moving`.
@@ -60,37 +61,60 @@ def modules(
         raise BuildError(
             "the model is compiled to WebAssembly by ziglang, which is not installed; pip install 'wheelchair-fmu[report]'"
         )
-    moved = seldom_among(moving)
+    moved, pushes = seldom_among(moving), _noisy(moving)
     with side_by_side() as pool:
         waiting = []
         for choice, some in models:
             effects = sorted(some, key=lambda e: e.id)
-            make = partial(_compile, choice, effects, columns, moved)
-            waiting.append(pool.submit(kept, _name(choice, effects, columns, moved), ".wasm", make))
+            make = partial(_compile, choice, effects, columns, moved, pushes)
+            waiting.append(pool.submit(kept, _name(choice, effects, columns, moved, pushes), ".wasm", make))
         return [w.result().read_bytes() for w in waiting]
 
 
-def _name(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str]) -> str:
-    words = "\n".join(
-        (cache.sources(), str(FLAGS), repr(choice), repr(list(columns)), repr(moving), *map(cache.effect_key, effects))
-    )
+def evaluation(moving: Collection[str] = ()) -> bytes:
+    """The module that evaluates runs of such models, `csrc/page_evaluation.c`, in the memory of one of them."""
+    pushes = _noisy(moving)
+    words = "\n".join((cache.sources(), str(FLAGS), str(pushes), version("ziglang")))
+    name = f"evaluation-{hashlib.sha256(words.encode()).hexdigest()[:24]}"
+    return kept(name, ".wasm", partial(_compile_evaluation, pushes)).read_bytes()
+
+
+def _compile_evaluation(pushes: int, target: Path) -> None:
+    beside = ["-Wl,--import-memory", f"-Wl,--global-base={BESIDE}"]
+    files = [CSRC / name for name in ("innovations.c", "evaluation.c", "page_evaluation.c")]
+    compiler.compile_wasm(files, target, [*FLAGS, f"-DWC_PUSHES={pushes}", *beside])
+
+
+def _noisy(moving: Collection[str]) -> int:
+    """How many of the first inputs carry noise, and are derived by."""
+    several = noisy(moving)
+    return several if several > PUSHES or any(t in moving for t in TORQUES) else FORCES
+
+
+def _name(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], pushes: int) -> str:
+    given = map(repr, (choice, list(columns), moving, pushes))
+    words = "\n".join((cache.sources(), str(FLAGS), *given, *map(cache.effect_key, effects)))
     return hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
 
 
-def _compile(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], target: Path) -> None:
-    files = _written(choice, effects, columns, moving, target.parent)
+def _compile(
+    choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], pushes: int, target: Path
+) -> None:
+    files = _written(choice, effects, columns, moving, pushes, target.parent)
     by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
-    flags = [*FLAGS, f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
+    flags = [*FLAGS, f"-DWC_PUSHES={pushes}", f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
     compiler.compile_wasm([*files, *by_hand], target, flags)
 
 
-def _written(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], place: Path) -> list[Path]:
+def _written(
+    choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], pushes: int, place: Path
+) -> list[Path]:
     """The model's C files, and what they need beside them."""
     with _deriving:
         model = at_rest(assemble(choice, effects), moving)
         sources = {
             "model.c": c_source(kernel(model), "model", KERNEL),
-            "tangent_model.c": tangent_source(tangent(model, columns, PUSHES), "tangent", TANGENT),
+            "tangent_model.c": tangent_source(tangent(model, columns, pushes), "tangent", TANGENT),
         }
     for name, text in {**sources, "coefficients.h": coefficients()}.items():
         (place / name).write_text(text)

@@ -500,7 +500,7 @@ class Likelihood:
         driven = read(run, channels, simulated.readings[:, which], start)
         to_state = simulated.start[:, [columns.index(n) for n in self.start_names]]  # (nx, m)
         spread = to_state * [sd[n] for n in self.start_names]
-        noise = self._noise(run, channels, pushes, spread @ spread.T)
+        noise = noise_of(self.noise_model, run, channels, pushes, spread @ spread.T)
         there = [self._inputs.index(n) for n in pushes]
         unknown = self._unknown(len(pushes), given, values) if self.noise_model.disturbed else None
         filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
@@ -611,15 +611,6 @@ class Likelihood:
                 by_hands = np.where([n in BODY for n in pushes_of(run)], 0.0, rate_of(run.time, pushed))
                 out[:, :, j] = whitener.response(-by_hands)
 
-    def _noise(self, run: Run, channels: tuple[str, ...], pushes: Sequence[str], start: np.ndarray) -> Noise:
-        usual = float(np.median(np.diff(run.time)))
-        step = np.array([run.input_steps.get(n, usual) for n in pushes])
-        swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
-        sd, ar = self.noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **self.noise_model.ar}
-        push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
-        reading_sd, reading_ar = np.array([(self.noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]).T
-        return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
-
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
         """The same likelihood with other noise; starts found so far are kept."""
         other = object.__new__(Likelihood)
@@ -633,6 +624,19 @@ class Likelihood:
         other.campaign, other.leads, other.paths = campaign, True, {}
         other.starts = {r.name: other._prior(r) for r in campaign.runs}
         return other
+
+
+def noise_of(
+    noise_model: NoiseModel, run: Run, channels: Sequence[str], pushes: Sequence[str], start: np.ndarray = np.empty((0, 0))
+) -> Noise:
+    """The noise of a run's recorded pushes and of its readings, and the covariance of its start."""
+    usual = float(np.median(np.diff(run.time)))
+    step = np.array([run.input_steps.get(n, usual) for n in pushes])
+    swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
+    sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
+    push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
+    reading_sd, reading_ar = np.array([(noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]).T
+    return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
 
 
 def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0) -> Disturbance:

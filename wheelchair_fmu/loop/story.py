@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from .. import __version__
@@ -12,7 +13,7 @@ from .verdict import Diagnosis
 
 
 def story(d: Diagnosis) -> dict[str, Any]:
-    """`as_json`, with what it takes to simulate it again: `calibrated` [name, ...], `noise` {sd, ar}, `models` [{step,
+    """`as_json`, with what it takes to simulate it again: `calibrated` [name, ...], `noise` (a `NoiseModel`), `models` [{step,
     values}] for steps of the staircase, the one where the search `begins`, and `values` of each refitted effect in the
     ranking. Full names, SI units. `fingerprint` is the campaign's, `made_by` says by which code."""
     content, models = as_json(d), _models(d)
@@ -25,7 +26,7 @@ def story(d: Diagnosis) -> dict[str, Any]:
         **content,
         "calibrated": list(d.search.names(())),
         "begins": _beginning(d),
-        "noise": {"sd": dict(noise_model.sd), "ar": dict(noise_model.ar)},
+        "noise": asdict(noise_model),
         "fingerprint": d.search.factory.campaign.fingerprint,
         "made_by": {"version": __version__, "code": code_fingerprint()},
         "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],

@@ -7,14 +7,30 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
-from ..campaign import CHANNELS, Campaign, Run
-from ..campaign.channels import PUSHES
+import numpy as np
+
+from ..campaign import CHANNELS, Campaign, Run, moving
 from ..campaign.recorded import PUSHES_CLOCK
+from ..engine.innovations import steps
 from ..engine.tangent import differentiable, sensed
-from ..engine.wasm import modules
+from ..engine.wasm import evaluation, modules
 from ..loop.factory import ModelFactory
 from ..loop.landscape import landscape
-from ..loop.likelihood import CASTERS, SETTLED, START, TOLERANCE, NoiseModel, driven, prior_start, start_sd, starts_of
+from ..loop.likelihood import (
+    BODY,
+    CASTERS,
+    START,
+    TOLERANCE,
+    NoiseModel,
+    disturbance,
+    driven,
+    noise_of,
+    prior_start,
+    pushes_of,
+    start_sd,
+    starts_of,
+)
+from ..loop.local import BaselineError, ClockError, Local, locals_of
 from ..loop.statistics import finite
 from ..loop.timing import Late, retimed
 from ..loop.verdict import FORCES as UNRECORDED
@@ -36,7 +52,9 @@ def content(
 
     `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
+    leads = any(step["step"] == UNRECORDED for step in diagnosis["ladder"])
     campaign = replace(campaign, runs=tuple(in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
+    campaign = used(moving(campaign), diagnosis) if leads else campaign
     factory = ModelFactory(campaign, variant, fixed)
     factory.noise_model = colour
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
@@ -45,36 +63,63 @@ def content(
     return {
         "name": campaign.name,
         "diagnosis": diagnosis,
-        "landscape": _landscape(factory, diagnosis),
-        "runs": [_run(r, campaign) for r in campaign.runs],
+        "landscape": {"profiles": [], "pair": None} if leads else landscape(factory, diagnosis),
+        "runs": [_run(r, campaign, colour, leads) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},
         "drifting": [c.name for c in CHANNELS if c.drifts],
-        "pushed": list(PUSHES),
+        "body": sorted(BODY),
         "noise": asdict(colour),
+        "forces": _forces(colour),
+        "leads": leads,
         "known": {**factory.variant.values, **campaign.known},
         "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],
+        "evaluation": b64encode(evaluation(driven(campaign))).decode(),
         "effects": [_effect(e) for e in factory.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "regimes": _regimes(variant),
         "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
         "tuning": TUNING,
-        "settled": SETTLED,
         "tolerance": TOLERANCE,
     }
 
 
-def _landscape(factory: ModelFactory, diagnosis: Mapping[str, Any]) -> dict[str, Any]:
-    """See `landscape`; none of what was found beside forces that nobody recorded, of which a plain simulation knows nothing."""
-    led = any(step["step"] == UNRECORDED for step in diagnosis["ladder"])
-    return {"profiles": [], "pair": None} if led else landscape(factory, diagnosis)
+def _forces(colour: NoiseModel) -> dict[str, Any] | None:
+    """Forces that nobody recorded, on both wheels: a `Disturbance` of a chair with a track of 1 m and the mass they were found
+    for."""
+    if not colour.disturbed:
+        return None
+    found = disturbance(colour, 2, 1.0, colour.mass)
+    assert found.common is not None
+    return {
+        "sd": found.sd.tolist(),
+        "lasting": found.lasting.tolist(),
+        "together": found.common.tolist(),
+        "as_push": found.as_push.tolist(),
+    }
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
     """The run with its pushes at the time that the diagnosis read them at, where the campaign has them at another."""
     late = sync.get(run.name, {}).get(PUSHES_CLOCK)
     return run if late is None or run.clocks else retimed(run, Late(late["offset"], 0.0))
+
+
+def noise_told(told: Mapping[str, Any], stated: Mapping[str, float] | None = None) -> NoiseModel:
+    """The noise of a diagnosis, with that which is `stated` of channels that have come since. An older one has its forces
+    elsewhere."""
+    led = any(step["step"] == UNRECORDED for step in told["ladder"])
+    forces = (told["disturbance"] or {}).get("calibrated", {}) if led else {}
+    return NoiseModel(**{**forces, **told["noise"], "sd": {**(stated or {}), **told["noise"]["sd"]}})
+
+
+def used(campaign: Campaign, told: Mapping[str, Any]) -> Campaign:
+    """The runs and channels that a diagnosis used, of those there are."""
+    runs = told["final"]["runs"]
+    kept = (r for r in campaign.runs if r.name in runs)
+    some = (replace(r, channels={c: v for c, v in r.channels.items() if c in runs[r.name]["channels"]}) for r in kept)
+    return replace(campaign, runs=tuple(some))
 
 
 def layers(w: ModelFactory, given: Sequence[str], found: Sequence[str]) -> list[tuple[str, ...]]:
@@ -102,7 +147,11 @@ def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
     }
 
 
-def _run(run: Run, campaign: Campaign) -> dict[str, Any]:
+def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[str, Any]:
+    channels, pushes = [c.name for c in CHANNELS if c.name in run.channels], pushes_of(run)
+    noise = noise_of(colour, run, channels, pushes)
+    present = np.stack([np.isfinite(run.channels[c]) for c in channels], axis=1)
+    assert noise.push_step is not None
     return {
         "name": run.name,
         "role": run.role,
@@ -110,10 +159,28 @@ def _run(run: Run, campaign: Campaign) -> dict[str, Any]:
         "set": run.set,
         "time": _series(run.time),
         "inputs": {name: _series(v) for name, v in run.inputs.items()},
-        "channels": {c.name: _series(run.channels[c.name]) for c in CHANNELS if c.name in run.channels},
-        "start": prior_start(run, {**campaign.known, **run.set}, STARTS),
+        "channels": {c: _series(run.channels[c]) for c in channels},
+        "start": prior_start(run, {**campaign.known, **run.set}, STARTS, leads),
         "start_sd": start_sd(run, STARTS),
+        "usual": float(np.median(np.diff(run.time))),
+        "pushes": {
+            "names": list(pushes),
+            "sd": noise.pushes.tolist(),
+            "ar": noise.push_colour.tolist(),
+            "step": noise.push_step.tolist(),
+        },
+        "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
+        "constants": [_constant(c) for c in locals_of(run)],
     }
+
+
+def _constant(local: Local) -> dict[str, Any]:
+    """What is uncertain of one run only, besides its start."""
+    if isinstance(local, BaselineError):
+        shape = _series(local.baseline.independent[:, local.column])
+        return {"kind": "baseline", "sd": local.sd, "inputs": [local.baseline.input], "channels": [], "shape": shape}
+    assert isinstance(local, ClockError)
+    return {"kind": "clock", "sd": local.sd, "inputs": sorted(local.clock.inputs), "channels": sorted(local.clock.channels)}
 
 
 def _effect(effect: Effect) -> dict[str, Any]:

@@ -10,10 +10,10 @@
  *
  * The filter's own state is s = (e, q, a), of size nx + nq + nz.
  */
+#include "innovations.h"
+
 #include <math.h>
 #include <string.h>
-
-#define MOST 64 /* states, inputs and readings together */
 
 #define AROUND 0.05     /* s, each way, of where a speed that */
 #define REMEMBERS 10.0  /* fades at less than this rate, 1/s, and then */
@@ -21,17 +21,6 @@
 #define OFF 0.02        /* m/s, a speed's usual error */
 #define STEEP 10.0      /* standard deviations of a reading, by such an error */
 #define CHANGING 1.1    /* ratio of a reading's slopes about there, above which it tells nothing */
-
-typedef struct {
-    int nx, nq, nz;
-    const double *A, *B, *C;  /* n-1 x nx x nx, n-1 x nx x nq, n-1 x nx x nq */
-    const double *H, *D;      /* n x nz x nx, n x nz x nq */
-    const double *input_sd, *input_phi; /* n x nq, n-1 x nq: standard deviation of each input, its AR(1) coefficient to the next */
-    const double *sd, *phi;             /* nz, n-1 x nz: the same of each reading */
-    const double *start_cov;  /* nx x nx */
-    char *present;            /* n x nz: 0 in a gap */
-    const double *common;     /* nq x nq: how inputs' noise at one moment is correlated; NULL: each is on its own */
-} filter;
 
 static inline void add_row(int m, double factor, const double *restrict from, double *restrict to) {
     if (factor == 0) return;
@@ -66,7 +55,7 @@ static inline double common(const filter *f, int q, int p) { return f->common ? 
 /* Adds to P, at sample i+1, what inputs q and p bring that have this covariance. */
 static void fresh(const filter *f, long i, int q, int p, double covariance, double *P) {
     int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
-    double G[MOST] = {0};
+    double G[WC_MOST] = {0};
     for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + p];
     G[nx + p] = 1;
     for (int r = 0; r < nx; r++) add_row(nx + nq, covariance * f->C[(i * nx + r) * nq + q], G, P + r * n);
@@ -76,7 +65,7 @@ static void fresh(const filter *f, long i, int q, int p, double covariance, doub
 /* P at sample i+1 from P at i. */
 static void predict(const filter *f, long i, double *P) {
     int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
-    double T[MOST * MOST], U[MOST * MOST];
+    double T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST];
     carry(f, i, n, P, T);
     transpose(n, T, U);
     carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
@@ -118,12 +107,10 @@ static double expect(const filter *f, long i, int z, const double *P, double *Ph
     return variance;
 }
 
-/* gain: n x nz x size, scale: n x nz, one over the standard deviation of each innovation.
- * Returns Σ log of the innovations' variances; NaN where there is no room. */
 double wc_design(const filter *f, long n, double *gain, double *scale) {
     int size = f->nx + f->nq + f->nz;
-    double P[MOST * MOST], Ph[MOST], total = 0;
-    if (size > MOST) return NAN;
+    double P[WC_MOST * WC_MOST], Ph[WC_MOST], total = 0;
+    if (size > WC_MOST) return NAN;
     begin(f, P);
     for (long i = 0; i < n; i++) {
         if (i) predict(f, i - 1, P);
@@ -170,10 +157,9 @@ static inline void whiten(const filter *f, long n, const double *gain, const dou
     }
 }
 
-/* readings: n x nz, what inputs that are larger by `change` (n x nq) add to them. */
 void wc_respond(const filter *f, long n, const double *change, double *readings) {
     int nx = f->nx, nq = f->nq;
-    double e[MOST] = {0}, next[MOST];
+    double e[WC_MOST] = {0}, next[WC_MOST];
     for (long i = 0; i < n; i++) {
         const double *now = change + i * nq, *before = now - nq;
         for (int r = 0; i && r < nx; r++) {
@@ -191,8 +177,6 @@ void wc_respond(const filter *f, long n, const double *change, double *readings)
     }
 }
 
-/* signals: n x nz x m, turned into innovations in place; 0 in gaps, whatever they were.
- * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
 void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
                double *signals, double *work) {
     if (m == 1) whiten(f, n, gain, scale, start_mean, 1, signals, work); /* what is most asked for: compiled without loops */
@@ -215,13 +199,11 @@ static void carry_back(const filter *f, long i, const double *from, double *to) 
     for (int z = 0; z < nz; z++) to[nx + nq + z] = f->phi[i * nz + z] * from[nx + nq + z];
 }
 
-/* noise: n x nq, that of the inputs as all readings have it, from their innovations (n x nz, 0 in gaps) by wc_design's gains.
- *
- * What all readings from sample i on say of s there comes back as a vector b: of s = s⁻ + P⁻ b no covariance but that of fresh
+/* What all readings from sample i on say of s there comes back as a vector b: of s = s⁻ + P⁻ b no covariance but that of fresh
  * noise is needed, as s(i+1) = F s(i) + Q b(i+1) (Koopman 1993, "Disturbance smoother for state space models"). */
 void wc_smooth(const filter *f, long n, const double *gain, const double *scale, const double *innovations, double *noise) {
     int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
-    double b[MOST] = {0}, before[MOST];
+    double b[WC_MOST] = {0}, before[WC_MOST];
     for (long i = n - 1; i >= 0; i--) {
         for (int z = nz - 1; z >= 0; z--) {
             long at = i * nz + z;
@@ -242,7 +224,7 @@ void wc_smooth(const filter *f, long n, const double *gain, const double *scale,
         memcpy(b, before, sizeof(double) * (size_t)size);
     }
     for (long i = 0; i < n; i++) {
-        double *now = noise + i * nq, fresh_now[MOST];
+        double *now = noise + i * nq, fresh_now[WC_MOST];
         const double *sd = f->input_sd + i * nq, *phi = f->input_phi + (i - 1) * nq;
         for (int q = 0; q < nq; q++) {
             fresh_now[q] = 0;
@@ -255,9 +237,8 @@ void wc_smooth(const filter *f, long n, const double *gain, const double *scale,
     }
 }
 
-/* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */
 void wc_spread(const filter *f, long n, double *scale) {
-    double P[MOST * MOST], Ph[MOST];
+    double P[WC_MOST * WC_MOST], Ph[WC_MOST];
     begin(f, P);
     for (long i = 0; i < n; i++) {
         if (i) predict(f, i - 1, P);
@@ -287,9 +268,6 @@ static int bends(const filter *f, long from, long to, int z, int state) {
     return most * OFF > STEEP * f->sd[z] && most > CHANGING * least;
 }
 
-/* Makes gaps of the readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes
- * make of that a deceleration of many times what friction can do. dt: s between samples; forward, sideways: the places of
- * these speeds among the states. */
 void wc_drop_kinks(const filter *f, long n, double dt, int forward, int sideways) {
     long half = AROUND / dt < 1 ? 1 : (long)(AROUND / dt + 0.5);
     double much = exp(-REMEMBERS * dt), little = exp(-FORGETS * dt);
@@ -300,4 +278,66 @@ void wc_drop_kinks(const filter *f, long n, double dt, int forward, int sideways
             if (bends(f, from, to, z, forward) || bends(f, from, to, z, sideways)) f->present[i * f->nz + z] = 0;
         }
     }
+}
+
+/* AR(1) coefficient over some of the time between two samples of a series. Rows belong to several loggers, so most intervals
+ * are shorter than a series' own step. */
+static double over(double ar, double seconds, double step) { return ar > 0 ? pow(ar, seconds / step) : 0; }
+
+/* Standard deviation of a recorded push at a row. What noise adds to the chair's momentum must not depend on how many rows lie
+ * between two samples of a push. In a time T that has a variance of σ² T h (1 + φ)/(1 - φ) for rows h apart, so σ goes with the
+ * rows' distance. */
+static double at_row(const wc_noise *s, long n, long i, int q) {
+    const double *t = s->time;
+    double around = i == 0 ? t[1] - t[0] : i == n - 1 ? t[n - 1] - t[n - 2] : ((t[i + 1] - t[i]) + (t[i] - t[i - 1])) / 2;
+    double ar = s->push_ar[q], there = over(ar, around, s->push_step[q]), lasting = s->push_step[q] * (1 + ar) / (1 - ar);
+    return s->push_sd[q] * sqrt(lasting / (around * (1 + there) / (1 - there)));
+}
+
+static void compose_inputs(const wc_noise *s, long n, filter *f) {
+    int nq = s->nq, both = nq + s->nd;
+    for (long i = 0; i < n; i++) {
+        double gap = i + 1 < n ? s->time[i + 1] - s->time[i] : 0;
+        for (int q = 0; q < both; q++) {
+            f->input_sd[i * both + q] = q < nq ? at_row(s, n, i, q) : s->unknown_sd[q - nq];
+            if (i + 1 < n)
+                f->input_phi[i * both + q] = q < nq ? over(s->push_ar[q], gap, s->push_step[q]) : exp(-gap / s->lasting[q - nq]);
+        }
+        for (int z = 0; i + 1 < n && z < s->nz; z++) f->phi[i * s->nz + z] = over(s->ar[z], gap, s->step[z]);
+    }
+    for (int q = 0; q < both; q++) {
+        for (int p = 0; p < both; p++) {
+            int unknown = q >= nq && p >= nq;
+            f->common[q * both + p] = unknown ? s->together[(q - nq) * s->nd + p - nq] : q == p;
+        }
+    }
+}
+
+/* to: what all inputs of the filter do, from what each of all pushes does. */
+static void compose_row(const wc_noise *s, const double *from, double *to) {
+    for (int q = 0; q < s->nq; q++) to[q] = from[s->pushes[q]];
+    for (int d = 0; d < s->nd; d++) {
+        double sum = 0;
+        for (int q = 0; q < s->nq; q++) sum += to[q] * s->as_push[q * s->nd + d];
+        to[s->nq + d] = sum;
+    }
+}
+
+void wc_compose(const wc_noise *s, const wc_slopes *by, long n, filter *f) {
+    int nx = f->nx, both = s->nq + s->nd;
+    f->nq = both;
+    f->nz = s->nz;
+    f->sd = s->sd;
+    for (long row = 0; row < (n - 1) * nx; row++) {
+        compose_row(s, by->push_before + row * by->columns, f->B + row * both);
+        compose_row(s, by->push_after + row * by->columns, f->C + row * both);
+    }
+    for (long i = 0; i < n; i++) {
+        for (int z = 0; z < s->nz; z++) {
+            long from = i * by->sensors + s->which[z], to = i * s->nz + z;
+            memcpy(f->H + to * nx, by->by_state + from * nx, sizeof(double) * (size_t)nx);
+            compose_row(s, by->by_push + from * by->columns, f->D + to * both);
+        }
+    }
+    compose_inputs(s, n, f);
 }

@@ -1,8 +1,7 @@
-/* What the report's page calls: one model's run, its derivatives and its whitening, with plain arguments.
+/* What the report's page calls of a model: its run, with plain arguments, and what page_evaluation.c calls.
  *
  * Compiled to WebAssembly. Nothing is imported and nothing allocated: the page hands out addresses in
- * the module's own memory, from wc_page_heap() on. */
-#include "innovations.c"
+ * the module's own memory, behind what both modules have there. */
 #include "rodas.h"
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
@@ -13,7 +12,9 @@ extern unsigned char __heap_base;
 
 unsigned char *EXPORT(wc_page_heap)(void) { return &__heap_base; }
 
-long EXPORT(wc_page_work)(int active) { return wc_tangent_work(&model_kernel, &tangent_tangent, active); }
+const wc_kernel *EXPORT(wc_page_kernel)(void) { return &model_kernel; }
+
+const wc_tangent *EXPORT(wc_page_tangent)(void) { return &tangent_tangent; }
 
 /* The kernel's step, for all of this module's runs. */
 int wc_page_step(const double **arg, double **res, long long *iw, double *work, int mem) {
@@ -36,21 +37,18 @@ int EXPORT(wc_page_run)(const double *p, double tolerance, double grid, long n, 
     return status != WC_OK ? status : wc_run(&model_kernel, p, accuracy, n, t, w, 0, x, y, reached, &steps);
 }
 
-/* `out` is a record of pointers that the page has filled in; see wc_tangent_run. */
-int EXPORT(wc_page_linearise)(const double *p, double tolerance, long n, const double *t, const double *w, double *x,
-                              double *y, const wc_derivatives *out, double *work, long *reached) {
-    return wc_tangent_run(&model_kernel, &tangent_tangent, p, tolerance, n, t, w, x, y, out, work, reached);
+/* From where evaluation.c begins, and on; see advance.h and tangent.h. */
+wc_status EXPORT(wc_page_start)(const wc_kernel *k, const double *p, const double *w, double *x) { return wc_start(k, p, w, x); }
+
+wc_status EXPORT(wc_page_advance)(const wc_kernel *k, const double *p, const wc_accuracy *accuracy, long n, const double *t,
+                                  const double *w, double *x, double *y, long *reached, long *steps) {
+    return wc_run(k, p, *accuracy, n, t, w, 0, x, y, reached, steps);
 }
 
-/* `f` is a record that the page has filled in; see innovations.c. */
-void EXPORT(wc_page_design)(const filter *f, long n, double *gain, double *scale) { wc_design(f, n, gain, scale); }
-
-void EXPORT(wc_page_whiten)(const filter *f, long n, const double *gain, const double *scale, const double *start_mean,
-                            int m, double *signals, double *work) {
-    wc_whiten(f, n, gain, scale, start_mean, m, signals, work);
+wc_status EXPORT(wc_page_linearise)(const wc_kernel *k, const wc_tangent *g, const double *p, double tolerance, long n,
+                                    const double *t, const double *w, double *x, double *y, const wc_derivatives *out, double *work,
+                                    long *reached) {
+    return wc_tangent_run(k, g, p, tolerance, n, t, w, x, y, out, work, reached);
 }
 
-void EXPORT(wc_page_spread)(const filter *f, long n, double *scale) { wc_spread(f, n, scale); }
-
-/* The states of every model begin with x, y, psi, u, v. */
-void EXPORT(wc_page_drop_kinks)(const filter *f, long n, double dt) { wc_drop_kinks(f, n, dt, 3, 4); }
+long EXPORT(wc_page_work)(const wc_kernel *k, const wc_tangent *g, int active) { return wc_tangent_work(k, g, active); }

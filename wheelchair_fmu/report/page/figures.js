@@ -170,7 +170,7 @@ export class Figures {
       },
       caption: () => {
         const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within ±2 σ. The band about the model holds 95 of 100 readings if it is right${app.forces ? " and no force acts that nobody recorded" : ""}, by the noise of sensor and pushes${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within ±2 σ. The band about the model holds 95 of 100 readings if it is right, by the noise of sensor and pushes${app.forces ? ", by forces that nobody recorded" : ""}${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
       },
     };
   }

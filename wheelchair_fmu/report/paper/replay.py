@@ -10,9 +10,9 @@ import numpy as np
 from ...campaign import moving
 from ...errors import Failure, SimulationError
 from ...loop.factory import ModelFactory
-from ...loop.likelihood import Evidence, Likelihood, NoiseModel
+from ...loop.likelihood import Evidence, Likelihood
 from ...model.generic import library
-from ..content import TUNING, in_time
+from ..content import TUNING, in_time, noise_told, used
 from .case import Case
 
 NEAR = 0.02  # share by which an error may differ from what the diagnosis has
@@ -58,15 +58,12 @@ def _residuals(evidence: Evidence, at: int) -> dict[str, np.ndarray]:
 
 def _likelihood(case: Case) -> Likelihood:
     """Of the runs as the diagnosis had them: pushes in time, without the channels that it left out."""
-    used = case.final["runs"]
     whole = replace(case.campaign, runs=tuple(in_time(r, case.told["sync"]) for r in case.campaign.runs))
-    runs = (r for r in (moving(whole) if case.with_forces else whole).runs if r.name in used)
-    kept = tuple(replace(r, channels={c: v for c, v in r.channels.items() if c in used[r.name]["channels"]}) for r in runs)
+    campaign = used(moving(whole) if case.with_forces else whole, case.told)
     terms = {name: term for name, term in library().items() if name in case.effects}
     chair = replace(case.chair, catalogue={**terms, **case.chair.catalogue})
-    factory = ModelFactory(replace(case.campaign, runs=kept), chair, case.fixed)
-    forces = (case.told["disturbance"] or {}).get("calibrated", {}) if case.with_forces else {}  # of an older diagnosis
-    factory.noise_model, factory.leads = NoiseModel(**{**forces, **case.told["noise"]}), case.with_forces
+    factory = ModelFactory(campaign, chair, case.fixed)
+    factory.noise_model, factory.leads = noise_told(case.told), case.with_forces
     return factory.likelihood(case.effects)
 
 

@@ -1,0 +1,606 @@
+#include "evaluation.h"
+#include "rodas.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REACH 3.0     /* standard deviations that a start may be moved */
+#define SETTLED 0.01  /* and by which it may be off where readings want it */
+#define STROKE 0.03   /* s, either side: slopes of a recorded push are taken over this, as over a sample they are mostly noise */
+#define LITTLE 1e-3   /* standard deviations of a clock, over which readings' slopes are taken */
+#define MOST_STEPS 12 /* that lead a run along forces, at most, */
+#define FARTHEST 3.0  /* standard deviations of a force over which slopes hold, */
+#define ARRIVED 0.03  /* and of a step that leads nowhere else */
+#define TURNING 1     /* of the forces that nobody recorded, the moment; it acts the more, the narrower the track is, */
+#define SWINGS 2      /* and the first of the two by which a body swings */
+#define SWEEPS 30     /* of Jacobi's rotations */
+
+static const double shares[] = {1.0, 0.5, 0.25, 0.1}; /* of a step that are tried */
+
+static int uncertain(const wc_recording *s) { return s->starts + s->constants; }
+static int states(const wc_recording *s) { return s->kernel->states; }
+static long readings(const wc_recording *s) { return s->n * s->noise.nz; }
+
+/* --- memory --- */
+
+typedef struct {
+    double *block;
+    long used;
+} space;
+
+static double *next(space *in, long count) {
+    double *at = in->block ? in->block + in->used : 0;
+    in->used += count;
+    return at;
+}
+
+static void room_of_simulated(const wc_recording *s, wc_simulated *to, space *kept, space *work) {
+    to->start = next(kept, uncertain(s));
+    to->results = next(work, s->n * s->kernel->outputs);
+    to->predicted = next(kept, readings(s));
+    to->foretold = next(kept, readings(s));
+    to->r = next(kept, readings(s));
+}
+
+long wc_simulated_room(const wc_recording *s, wc_simulated *to, double *block) {
+    space all = {block, 0};
+    room_of_simulated(s, to, &all, &all);
+    return all.used;
+}
+
+static void room_of_filter(const wc_recording *s, filter *f, space *kept) {
+    long n = s->n, nx = states(s), nz = s->noise.nz, nq = s->noise.nq + s->noise.nd;
+    f->B = next(kept, (n - 1) * nx * nq);
+    f->C = next(kept, (n - 1) * nx * nq);
+    f->H = next(kept, n * nz * nx);
+    f->D = next(kept, n * nz * nq);
+    f->input_sd = next(kept, n * nq);
+    f->input_phi = next(kept, (n - 1) * nq);
+    f->phi = next(kept, (n - 1) * nz);
+    f->start_cov = next(kept, nx * nx);
+    f->common = next(kept, nq * nq);
+    f->present = (char *)next(kept, n * nz / 8 + 1);
+}
+
+static void room_of_slopes(const wc_recording *s, wc_derivatives *by, space *kept, space *work) {
+    long n = s->n, nx = states(s), ns = s->tangent->sensors;
+    by->active = s->active;
+    by->which = s->columns;
+    by->forced = s->forced;
+    by->transition = next(kept, (n - 1) * nx * nx);
+    by->push_before = next(work, (n - 1) * nx * WC_PUSHES);
+    by->push_after = next(work, (n - 1) * nx * WC_PUSHES);
+    by->by_state = next(work, n * ns * nx);
+    by->by_push = next(work, n * ns * WC_PUSHES);
+    by->start = next(kept, nx * s->active);
+    by->by_parameter = next(work, n * ns * s->active);
+}
+
+void wc_evaluation_room(const wc_recording *s, wc_evaluation *e, double *kept_in, double *work_in, long *rooms) {
+    space kept = {kept_in, 0}, work = {work_in, 0};
+    long n = s->n, nx = states(s), all = readings(s), u = uncertain(s), l = s->constants, nd = s->noise.nd, nq = s->noise.nq;
+    long size = nx + nq + nd + s->noise.nz, busy = wc_tangent_work(s->kernel, s->tangent, s->active);
+    if (busy < 2 * size * (u + 1)) busy = 2 * size * (u + 1); /* of the filter */
+    if (busy < n) busy = n;                                   /* of one series */
+    double **each[] = {&e->path, &e->told, &e->spread, &e->measured, &e->added, &e->gain, &e->scale, &e->offset,
+                       &e->by_start, &e->slopes, &e->constant, &e->less, &e->as_push};
+    long sizes[] = {n * nd, 2, all, all, all, all * size, all, nx + l, all * u, all * u, all * l, l * l, nq * nd};
+    double **lent[] = {&e->x, &e->y, &e->driven, &e->p, &e->w, &e->column, &e->busy, &e->innovations, &e->added_again,
+                       &e->before, &e->step, &e->noise, &e->none};
+    long lengths[] = {n * nx, n * s->kernel->outputs, all, s->kernel->parameters, n * s->kernel->inputs, n, busy, all, all,
+                      n * nd + u, n * nd, n * (nq + nd), nx * nx};
+    room_of_simulated(s, &e->own, &kept, &work);
+    for (size_t i = 0; i < sizeof each / sizeof *each; i++) *each[i] = next(&kept, sizes[i]);
+    for (size_t i = 0; i < sizeof lent / sizeof *lent; i++) *lent[i] = next(&work, lengths[i]);
+    e->reached = (long *)next(&work, 1);
+    room_of_slopes(s, &e->by, &kept, &work);
+    room_of_filter(s, &e->f, &kept);
+    e->f.nx = (int)nx;
+    e->f.nq = (int)(nq + nd);
+    e->f.nz = s->noise.nz;
+    e->f.sd = s->noise.sd;
+    e->f.A = e->by.transition;
+    rooms[0] = kept.used;
+    rooms[1] = work.used;
+}
+
+/* --- inputs and readings --- */
+
+/* to: a series (n) at times that are later by `later`, and its ends before and after; `to` is every `stride`-th number. */
+static void interpolate(const wc_recording *s, const double *from, double later, int stride, double *to) {
+    const double *t = s->time;
+    long last = s->n - 1, j = 0;
+    for (long i = 0; i <= last; i++) {
+        double at = t[i] + later, value;
+        if (at <= t[0]) value = from[0];
+        else if (at >= t[last]) value = from[last];
+        else {
+            while (t[j + 1] <= at) j++;
+            value = from[j] + (from[j + 1] - from[j]) / (t[j + 1] - t[j]) * (at - t[j]);
+        }
+        to[i * stride] = value;
+    }
+}
+
+static void move(const wc_recording *s, double later, int stride, double *series, double *column) {
+    for (long i = 0; i < s->n; i++) column[i] = series[i * stride];
+    interpolate(s, column, later, stride, series);
+}
+
+static int has_input(const wc_recording *s, int constant, int input) {
+    return s->constant_inputs[constant * s->kernel->inputs + input];
+}
+
+/* One input of w as the chair felt it, where a constant has this size. */
+static void felt_by(const wc_recording *s, int constant, double size, int stride, double *series, double *column) {
+    if (s->constant_kind[constant] == WC_CLOCK) move(s, -size, stride, series, column);
+    else for (long i = 0; i < s->n; i++) series[i * stride] -= size * s->constant_shape[constant * s->n + i];
+}
+
+/* w: n x inputs, as and when the chair felt them, with constants of these sizes. */
+static void felt(const wc_recording *s, const wc_values *v, const double *sizes, double *w, double *column) {
+    int nw = s->kernel->inputs;
+    memcpy(w, s->inputs, sizeof(double) * (size_t)(s->n * nw));
+    for (int j = 0; j < s->constants; j++) {
+        for (int i = 0; sizes[j] != 0 && i < nw; i++) {
+            if (has_input(s, j, i)) felt_by(s, j, sizes[j], nw, w + i, column);
+        }
+    }
+    for (int i = 0; v->numbers[WC_DELAY] != 0 && i < nw; i++) {
+        if (s->late[i]) move(s, -v->numbers[WC_DELAY], nw, w + i, column);
+    }
+}
+
+/* As what change of the recorded pushes a unit of each force acts on a chair of this track and mass. */
+static void as_push(const wc_recording *s, const wc_values *v, double *to) {
+    for (int q = 0; q < s->noise.nq; q++) {
+        for (int d = 0; d < s->noise.nd; d++) {
+            double unit = s->noise.as_push[q * s->noise.nd + d];
+            to[q * s->noise.nd + d] = d == TURNING ? unit / v->numbers[WC_TRACK] : unit * v->numbers[WC_ALONG];
+        }
+    }
+}
+
+/* Adds to w what forces of a path are as pushes. */
+static void act(const wc_recording *s, const double *by, const double *path, double *w) {
+    int nq = s->noise.nq, nd = s->noise.nd;
+    for (long i = 0; i < s->n; i++) {
+        for (int q = 0; q < nq; q++) {
+            double sum = 0;
+            for (int d = 0; d < nd; d++) sum += by[q * nd + d] * path[i * nd + d];
+            w[i * s->kernel->inputs + s->noise.pushes[q]] += sum;
+        }
+    }
+}
+
+/* to: n x nz, results as their devices read them, with constants of these sizes. */
+static void read(const wc_recording *s, const double *sizes, const double *y, double *to, double *column) {
+    int nz = s->noise.nz;
+    for (long i = 0; i < s->n; i++) {
+        for (int z = 0; z < nz; z++) to[i * nz + z] = y[i * s->kernel->outputs + s->tangent->rows[s->noise.which[z]]];
+    }
+    for (int j = 0; j < s->constants; j++) {
+        if (s->constant_kind[j] != WC_CLOCK || sizes[j] == 0) continue;
+        for (int z = 0; z < nz; z++) {
+            if (s->constant_readings[j * nz + z]) move(s, sizes[j], nz, to + z, column);
+        }
+    }
+}
+
+static void begin_at(const wc_recording *s, const wc_values *v, const double *start, double *p) {
+    memcpy(p, v->p, sizeof(double) * (size_t)s->kernel->parameters);
+    for (int c = 0; c < s->starts; c++) p[s->start_places[c]] = start[c];
+}
+
+/* Without derivatives, with inputs e->w. */
+static int run(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *start, double *x, double *y) {
+    wc_accuracy accuracy = {v->numbers[WC_TOLERANCE], 0};
+    long steps = 0;
+    begin_at(s, v, start, e->p);
+    *e->reached = 0;
+    wc_status status = wc_start(s->kernel, e->p, e->w, x);
+    return status != WC_OK ? status : wc_run(s->kernel, e->p, accuracy, s->n, s->time, e->w, 0, x, y, e->reached, &steps);
+}
+
+/* --- the filter --- */
+
+/* Where the parameters that start the run say that it starts: its covariance, and how far that is from the simulated one. */
+static void expect_start(const wc_recording *s, wc_evaluation *e, double *cov) {
+    int nx = states(s), first = s->active - s->starts;
+    memset(cov, 0, sizeof(double) * (size_t)(nx * nx));
+    memset(e->offset, 0, sizeof(double) * (size_t)(nx + s->constants));
+    for (int c = 0; c < s->starts; c++) {
+        double sd = s->start_sd[c], off = s->start_prior[c] - e->own.start[c];
+        for (int r = 0; r < nx; r++) {
+            double slope = e->by.start[r * s->active + first + c];
+            e->offset[r] += slope * off;
+            for (int q = 0; q < nx; q++) cov[r * nx + q] += slope * sd * sd * e->by.start[q * s->active + first + c];
+        }
+    }
+    for (int j = 0; j < s->constants; j++) e->offset[nx + j] = -e->own.start[s->starts + j] / s->constant_sd[j];
+}
+
+static void make_filter(const wc_recording *s, wc_evaluation *e) {
+    wc_noise noise = s->noise;
+    wc_slopes by = {WC_PUSHES, s->tangent->sensors, e->by.push_before, e->by.push_after, e->by.by_state, e->by.by_push};
+    noise.as_push = e->as_push;
+    expect_start(s, e, (double *)e->f.start_cov);
+    wc_compose(&noise, &by, s->n, &e->f);
+    for (long at = 0; at < readings(s); at++) e->f.present[at] = !isnan(s->recorded[at]);
+    wc_drop_kinks(&e->f, s->n, *s->usual, s->speeds[0], s->speeds[1]);
+    e->told[0] = wc_design(&e->f, s->n, e->gain, e->scale);
+    for (long at = 0; at < readings(s); at++) { /* readings that tell nothing are as they were expected */
+        if (!isnan(s->recorded[at]) && !e->f.present[at]) e->told[0] += 1 + 2 * log(s->noise.sd[at % s->noise.nz]);
+    }
+}
+
+/* What one unit of a constant adds to the readings (n x nz), to first order. */
+static void slope_of_constant(const wc_recording *s, wc_evaluation *e, int constant, double *to) {
+    int nq = e->f.nq, nz = s->noise.nz, nw = s->kernel->inputs, clock = s->constant_kind[constant] == WC_CLOCK;
+    double little = LITTLE * s->constant_sd[constant], *change = e->noise, *column = e->column;
+    memset(change, 0, sizeof(double) * (size_t)(s->n * nq));
+    for (int q = 0; q < s->noise.nq; q++) {
+        int input = s->noise.pushes[q];
+        if (!has_input(s, constant, input)) continue;
+        for (int side = -1; side <= 1; side += 2) {
+            for (long i = 0; i < s->n; i++) e->busy[i] = s->inputs[i * nw + input];
+            felt_by(s, constant, side * STROKE, 1, e->busy, column);
+            for (long i = 0; i < s->n; i++) change[i * nq + q] += side * e->busy[i] / (2 * STROKE);
+        }
+    }
+    wc_respond(&e->f, s->n, change, to);
+    for (int z = 0; clock && z < nz; z++) {
+        if (!s->constant_readings[constant * nz + z]) continue;
+        for (int side = -1; side <= 1; side += 2) {
+            for (long i = 0; i < s->n; i++) e->busy[i] = e->driven[i * nz + z];
+            move(s, side * little, 1, e->busy, column);
+            for (long i = 0; i < s->n; i++) to[i * nz + z] += side * e->busy[i] / (2 * little);
+        }
+    }
+}
+
+static void find_slopes(const wc_recording *s, wc_evaluation *e) {
+    int u = uncertain(s), nz = s->noise.nz, ns = s->tangent->sensors, first = s->active - s->starts;
+    for (long i = 0; i < s->n; i++) {
+        for (int z = 0; z < nz; z++) {
+            const double *by = e->by.by_parameter + (i * ns + s->noise.which[z]) * s->active + first;
+            double *to = e->by_start + (i * nz + z) * u;
+            for (int c = 0; c < s->starts; c++) to[c] = s->start_set[c] ? 0 : by[c];
+        }
+    }
+    for (int j = 0; j < s->constants; j++) {
+        slope_of_constant(s, e, j, e->innovations);
+        for (long at = 0; at < readings(s); at++) e->by_start[at * u + s->starts + j] = e->innovations[at];
+    }
+}
+
+/* Eigenvalues of a symmetric matrix (l x l), left on its diagonal, and eigenvectors in the columns of `axes`, by Jacobi. */
+static void rotate_all(int l, double *matrix, double *axes) {
+    for (int i = 0; i < l * l; i++) axes[i] = i % (l + 1) == 0;
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double off = 0, on = 0;
+        for (int i = 0; i < l * l; i++) *(i % (l + 1) ? &off : &on) += matrix[i] * matrix[i];
+        if (off <= 1e-30 * on) return;
+        for (int a = 0; a < l; a++) {
+            for (int b = a + 1; b < l; b++) {
+                double between = matrix[a * l + b];
+                if (between == 0) continue;
+                double half = (matrix[b * l + b] - matrix[a * l + a]) / (2 * between);
+                double t = (half < 0 ? -1 : 1) / (fabs(half) + sqrt(half * half + 1)), c = 1 / sqrt(t * t + 1), d = t * c;
+                for (int i = 0; i < l; i++) {
+                    double one = matrix[i * l + a], other = matrix[i * l + b];
+                    matrix[i * l + a] = c * one - d * other;
+                    matrix[i * l + b] = d * one + c * other;
+                }
+                for (int i = 0; i < l; i++) {
+                    double one = matrix[a * l + i], other = matrix[b * l + i];
+                    matrix[a * l + i] = c * one - d * other;
+                    matrix[b * l + i] = d * one + c * other;
+                }
+                for (int i = 0; i < l; i++) {
+                    double one = axes[i * l + a], other = axes[i * l + b];
+                    axes[i * l + a] = c * one - d * other;
+                    axes[i * l + b] = d * one + c * other;
+                }
+            }
+        }
+    }
+}
+
+/* Innovations x have the covariance 1 + L Lᵀ by constants L, in units of their standard deviations; they are multiplied by its
+ * inverse square root, 1 - L less Lᵀ, where less = (1 - 1/√(1 + κ))/κ of κ = Lᵀ L, also where that is 0. */
+static int find_constants(const wc_recording *s, wc_evaluation *e) {
+    int l = s->constants, u = uncertain(s);
+    double square[WC_MOST * WC_MOST], axes[WC_MOST * WC_MOST];
+    e->told[1] = 0;
+    memset(square, 0, sizeof(double) * (size_t)(l * l));
+    for (long at = 0; at < readings(s); at++) {
+        for (int j = 0; j < l; j++) e->constant[at * l + j] = e->slopes[at * u + s->starts + j] * s->constant_sd[j];
+        for (int j = 0; j < l; j++) {
+            for (int k = 0; k < l; k++) square[j * l + k] += e->constant[at * l + j] * e->constant[at * l + k];
+        }
+    }
+    for (int i = 0; i < l * l; i++) if (!isfinite(square[i])) return 0;
+    rotate_all(l, square, axes);
+    memset(e->less, 0, sizeof(double) * (size_t)(l * l));
+    for (int a = 0; a < l; a++) {
+        double root = sqrt(1 + fmax(square[a * l + a], 0));
+        e->told[1] += 2 * log(root);
+        for (int j = 0; j < l; j++) {
+            for (int k = 0; k < l; k++) e->less[j * l + k] += axes[j * l + a] * axes[k * l + a] / (root * (root + 1));
+        }
+    }
+    return 1;
+}
+
+/* Takes the constants out of m signals (n x nz x m). */
+static void marginal(const wc_recording *s, const wc_evaluation *e, int m, double *signals) {
+    int l = s->constants;
+    for (int c = 0; l && c < m; c++) {
+        double told[WC_MOST] = {0}, taken[WC_MOST] = {0};
+        for (long at = 0; at < readings(s); at++) wc_add_row(l, signals[at * m + c], e->constant + at * l, told);
+        for (int j = 0; j < l; j++) wc_add_row(l, told[j], e->less + j * l, taken);
+        for (long at = 0; at < readings(s); at++) {
+            for (int j = 0; j < l; j++) signals[at * m + c] -= taken[j] * e->constant[at * l + j];
+        }
+    }
+}
+
+/* Of measured less foretold, as the filter has them (e->innovations) and with constants taken out (r). */
+static void innovate(const wc_recording *s, wc_evaluation *e, const double *measured, const double *foretold, double *r) {
+    int l = s->constants, nx = states(s);
+    for (long at = 0; at < readings(s); at++) e->innovations[at] = measured[at] - foretold[at];
+    wc_whiten(&e->f, s->n, e->gain, e->scale, e->offset, 1, e->innovations, e->busy);
+    memcpy(r, e->innovations, sizeof(double) * (size_t)readings(s));
+    for (long at = 0; at < readings(s); at++) {
+        for (int j = 0; j < l; j++) r[at] -= e->constant[at * l + j] * e->offset[nx + j];
+    }
+    marginal(s, e, 1, r);
+    for (long at = 0; at < readings(s); at++) if (isnan(s->recorded[at])) r[at] = NAN;
+}
+
+static void measure(const wc_recording *s, const wc_values *v, double *to) {
+    for (long at = 0; at < readings(s); at++) to[at] = s->recorded[at] - v->offsets[at % s->noise.nz];
+}
+
+static double prior(const wc_recording *s, int c) { return c < s->starts ? s->start_prior[c] : 0; }
+static double prior_sd(const wc_recording *s, int c) { return c < s->starts ? s->start_sd[c] : s->constant_sd[c - s->starts]; }
+
+/* The start, and the constants, given all readings, to first order: prior mean + P₀ S₀ᵀ r. */
+static void better_start(const wc_recording *s, const wc_evaluation *e, const double *r, double *to) {
+    int u = uncertain(s);
+    for (int c = 0; c < u; c++) {
+        double sum = 0, sd = prior_sd(s, c);
+        for (long at = 0; at < readings(s); at++) if (!isnan(r[at])) sum += r[at] * e->slopes[at * u + c];
+        to[c] = prior(s, c) + fmin(fmax(sd * sd * sum, -REACH * sd), REACH * sd);
+    }
+}
+
+/* --- one run --- */
+
+static int on_a_path(const wc_recording *s, const double *path) {
+    for (long i = 0; i < s->n * s->noise.nd; i++) if (path[i] != 0) return 1;
+    return 0;
+}
+
+/* A run that begins in the middle of a stroke begins at a speed that the body's momentum takes off, and gives back before the
+ * stroke is over: without forces, it begins at the speed of both. */
+static double without_swing(const wc_recording *s, const wc_values *v, const double *by, const double *path) {
+    double momentum = 0;
+    int nd = s->noise.nd;
+    for (int d = SWINGS; d < nd; d++) momentum += (by[d] + by[nd + d]) * s->noise.lasting[d] * path[d];
+    return momentum / v->numbers[WC_MASS];
+}
+
+/* to: n x nz, what the forces of e's path add to the readings. */
+static void add(const wc_recording *s, wc_evaluation *e, const double *by, double *to) {
+    int nd = s->noise.nd, nq = e->f.nq;
+    memset(e->noise, 0, sizeof(double) * (size_t)(s->n * nq));
+    for (long i = 0; i < s->n; i++) {
+        for (int q = 0; q < s->noise.nq; q++) {
+            for (int d = 0; d < nd; d++) e->noise[i * nq + q] += by[q * nd + d] * e->path[i * nd + d];
+        }
+    }
+    wc_respond(&e->f, s->n, e->noise, to);
+}
+
+/* Results and readings without forces, from this start. */
+static int alone(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *by, const double *start,
+                       double *x, wc_simulated *to) {
+    double from[WC_MOST];
+    memcpy(from, start, sizeof(double) * (size_t)uncertain(s));
+    from[s->forward] += without_swing(s, v, by, e->path);
+    felt(s, v, start + s->starts, e->w, e->column);
+    int status = run(s, v, e, from, x, to->results);
+    if (status == WC_OK) read(s, start + s->starts, to->results, to->predicted, e->column);
+    return status;
+}
+
+static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
+    int led = on_a_path(s, e->path), u = uncertain(s), nx = states(s);
+    felt(s, v, e->own.start + s->starts, e->w, e->column);
+    as_push(s, v, e->as_push);
+    if (led) act(s, e->as_push, e->path, e->w);
+    begin_at(s, v, e->own.start, e->p);
+    int status = wc_tangent_run(s->kernel, s->tangent, e->p, v->numbers[WC_TOLERANCE], s->n, s->time, e->w, e->x, e->y,
+                                &e->by, e->busy, e->reached);
+    if (status != WC_OK) return status;
+    read(s, e->own.start + s->starts, e->y, e->driven, e->column);
+    make_filter(s, e);
+    memset(e->added, 0, sizeof(double) * (size_t)readings(s));
+    if (led) add(s, e, e->as_push, e->added);
+    for (long at = 0; at < readings(s); at++) e->own.foretold[at] = e->driven[at] - e->added[at];
+    measure(s, v, e->measured);
+    find_slopes(s, e);
+    memcpy(e->slopes, e->by_start, sizeof(double) * (size_t)(readings(s) * u));
+    memset(e->none, 0, sizeof(double) * (size_t)(nx * nx));
+    wc_whiten(&e->f, s->n, e->gain, e->scale, e->none, u, e->slopes, e->busy);
+    if (!find_constants(s, e)) return WC_UNBOUNDED;
+    marginal(s, e, u, e->slopes);
+    innovate(s, e, e->measured, e->own.foretold, e->own.r);
+    if (led) return alone(s, v, e, e->as_push, e->own.start, e->x, &e->own);
+    memcpy(e->own.results, e->y, sizeof(double) * (size_t)(s->n * s->kernel->outputs));
+    memcpy(e->own.predicted, e->driven, sizeof(double) * (size_t)readings(s));
+    return WC_OK;
+}
+
+/* e->step: from e's path to the forces as all readings have them; in standard deviations, its largest. */
+static double follow(const wc_recording *s, wc_evaluation *e) {
+    int nd = s->noise.nd, nq = e->f.nq;
+    double most = 0;
+    wc_smooth(&e->f, s->n, e->gain, e->scale, e->innovations, e->noise);
+    for (long i = 0; i < s->n; i++) {
+        for (int d = 0; d < nd; d++) {
+            double step = e->noise[i * nq + s->noise.nq + d] - e->path[i * nd + d];
+            e->step[i * nd + d] = step;
+            if (s->noise.unknown_sd[d] > 0) most = fmax(most, fabs(step) / s->noise.unknown_sd[d]);
+        }
+    }
+    return most;
+}
+
+/* As much of a step along the forces, and of the start's, as can be simulated. */
+static int take(const wc_recording *s, const wc_values *v, wc_evaluation *e, double share) {
+    long length = s->n * s->noise.nd;
+    int u = uncertain(s);
+    double better[WC_MOST], *path = e->before, *start = e->before + length;
+    better_start(s, e, e->own.r, better);
+    memcpy(path, e->path, sizeof(double) * (size_t)length);
+    memcpy(start, e->own.start, sizeof(double) * (size_t)u);
+    for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
+        for (int c = 0; c < u; c++) e->own.start[c] = start[c] + shares[k] * (better[c] - start[c]);
+        for (long i = 0; i < length; i++) e->path[i] = path[i] + shares[k] * share * e->step[i];
+        if (linearise(s, v, e) == WC_OK) return WC_OK;
+    }
+    memcpy(e->path, path, sizeof(double) * (size_t)length);
+    memcpy(e->own.start, start, sizeof(double) * (size_t)u);
+    return linearise(s, v, e);
+}
+
+/* A model that lacks much goes another way than the chair did, and slopes along that way say little of what a force, or another
+ * value, would do. So all is linearised about where the readings say that forces led the chair. */
+static int lead(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
+    double before = INFINITY;
+    for (int k = 0; k < MOST_STEPS; k++) {
+        double size = follow(s, e);
+        if (size < ARRIVED) break;
+        int status = take(s, v, e, fmin(1, FARTHEST / size) * (size < before ? 1 : shares[1]));
+        if (status != WC_OK) return status;
+        before = size;
+    }
+    return WC_OK;
+}
+
+static int tune(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds) {
+    for (int k = 0; k < rounds; k++) {
+        double better[WC_MOST];
+        int settled = 1;
+        better_start(s, e, e->own.r, better);
+        for (int c = 0; c < uncertain(s); c++) settled &= fabs(better[c] - e->own.start[c]) <= SETTLED * prior_sd(s, c);
+        if (settled) break;
+        memcpy(e->own.start, better, sizeof(double) * (size_t)uncertain(s));
+        int status = linearise(s, v, e);
+        if (status != WC_OK) return status;
+    }
+    return WC_OK;
+}
+
+void wc_expected(const wc_recording *s, wc_evaluation *e) {
+    for (int c = 0; c < uncertain(s); c++) e->own.start[c] = prior(s, c);
+    memset(e->path, 0, sizeof(double) * (size_t)(s->n * s->noise.nd));
+}
+
+int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds) {
+    *e->reached = 0;
+    if (states(s) + s->noise.nq + s->noise.nd + s->noise.nz > WC_MOST || uncertain(s) > WC_MOST) return WC_TOO_MANY;
+    int status = linearise(s, v, e);
+    if (status == WC_OK && rounds) status = s->leads ? lead(s, v, e) : tune(s, v, e, rounds);
+    if (status != WC_OK) return status;
+    filter certain = e->f;
+    certain.start_cov = e->none;
+    wc_spread(&certain, s->n, e->spread);
+    return WC_OK;
+}
+
+/* Moves readings from e's start to another one, to first order. */
+static void shift(const wc_recording *s, const wc_evaluation *e, const double *start, double *to) {
+    int u = uncertain(s);
+    for (int c = 0; c < u; c++) {
+        double step = start[c] - e->own.start[c];
+        for (long at = 0; step != 0 && at < readings(s); at++) to[at] += step * e->by_start[at * u + c];
+    }
+}
+
+int wc_again(const wc_recording *s, const wc_values *v, wc_evaluation *e, int kept, double *x, wc_simulated *to) {
+    int led = on_a_path(s, e->path);
+    double by[WC_MOST], *measured = to->predicted;
+    felt(s, v, e->own.start + s->starts, e->w, e->column);
+    as_push(s, v, by);
+    if (led) act(s, by, e->path, e->w);
+    int status = run(s, v, e, e->own.start, x, to->results);
+    if (status != WC_OK) return status;
+    read(s, e->own.start + s->starts, to->results, to->foretold, e->column);
+    if (led && !kept) add(s, e, by, e->added_again);
+    const double *added = kept ? e->added : e->added_again;
+    for (long at = 0; led && at < readings(s); at++) to->foretold[at] -= added[at];
+    measure(s, v, measured);
+    innovate(s, e, measured, to->foretold, to->r);
+    memcpy(to->start, e->own.start, sizeof(double) * (size_t)uncertain(s));
+    if (!kept) better_start(s, e, to->r, to->start);
+    if (led && !kept) status = alone(s, v, e, by, e->own.start, x, to);
+    else memcpy(to->predicted, to->foretold, sizeof(double) * (size_t)readings(s));
+    shift(s, e, to->start, to->predicted);
+    shift(s, e, to->start, to->foretold);
+    return status;
+}
+
+/* --- what is told --- */
+
+void wc_errors(const wc_recording *s, const wc_values *v, const wc_evaluation *e, const wc_simulated *of, double *errors,
+               double *sums) {
+    int nz = s->noise.nz;
+    memset(sums, 0, sizeof(double) * (size_t)(3 * nz));
+    for (long at = 0; at < readings(s); at++) {
+        int z = (int)(at % nz);
+        double measured = s->recorded[at] - v->offsets[z], apart = measured - of->predicted[at], *sum = sums + 3 * z;
+        errors[at] = s->drifts[z] ? of->r[at] : (measured - of->foretold[at]) * e->spread[at];
+        if (isnan(errors[at])) continue;
+        sum[0] += errors[at] * errors[at];
+        sum[1] += 1;
+        sum[2] += apart * apart;
+    }
+}
+
+void wc_normal(const wc_recording *s, const wc_evaluation *e, int k, const double *steps, const double *moved, double *jtj,
+               double *jtr, double *squares) {
+    memset(jtj, 0, sizeof(double) * (size_t)(k * k));
+    memset(jtr, 0, sizeof(double) * (size_t)k);
+    *squares = 0;
+    for (long at = 0; at < readings(s); at++) {
+        double r = e->own.r[at];
+        if (!isfinite(r)) continue;
+        *squares += r * r;
+        double by[WC_MOST];
+        for (int a = 0; a < k; a++) by[a] = (moved[a * readings(s) + at] - r) / steps[a];
+        for (int a = 0; a < k; a++) {
+            jtr[a] += by[a] * r;
+            for (int b = 0; b < k; b++) jtj[a * k + b] += by[a] * by[b];
+        }
+    }
+}
+
+void wc_as_read(const wc_recording *s, const wc_values *v, const double *predicted, double *to) {
+    for (long at = 0; at < readings(s); at++) to[at] = predicted[at] + v->offsets[at % s->noise.nz];
+}
+
+void wc_doubt(const wc_recording *s, int k, const double *base, const double *steps, const double *moved,
+              const double *covariance, double *variance) {
+    for (long at = 0; at < readings(s); at++) {
+        double by[WC_MOST];
+        for (int a = 0; a < k; a++) by[a] = (moved[a * readings(s) + at] - base[at]) / steps[a];
+        variance[at] = 0;
+        for (int a = 0; a < k; a++) {
+            for (int b = 0; b < k; b++) variance[at] += by[a] * covariance[a * k + b] * by[b];
+        }
+    }
+}
