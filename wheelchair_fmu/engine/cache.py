@@ -35,6 +35,7 @@ PACKAGE = Path(__file__).parent.parent
 LEVELS = {
     **{"model": "-O2", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
     **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
+    **{"innovations": "-O3", "evaluation": "-O3"},
 }
 VECTORS = {8: ("-mavx512f", "-mavx512dq", "-mavx512vl"), 4: ("-mavx2",), 2: ()}  # flags by how many numbers a vector holds
 ANYWHERE = 2  # numbers in a vector: what every processor of a system has
@@ -139,7 +140,7 @@ def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | N
     if columns is None:
         _link(texts, ["advance"], pushes, target, wide, cross)
         return
-    by, by_hand = tangent(model, columns, pushes), ["tangent", "rodas"]
+    by, by_hand = tangent(model, columns, pushes), ["tangent", "rodas", "innovations", "evaluation"]
     of_several, names = of_stages(by, "tangent")
     together = {"tangent_lanes": of_several, "tangent_model": tangent_source(by, "tangent", names, wide)}
     try:

@@ -21,7 +21,9 @@ from .sensitivities import Linearised
 MOST = 64  # states, pushes and readings together, as in innovations.c
 
 
-class _Filter(ctypes.Structure):
+class FilterRecord(ctypes.Structure):
+    """`filter` of innovations.h."""
+
     _fields_ = (
         *((name, ctypes.c_int) for name in ("nx", "nq", "nz")),
         *(
@@ -125,6 +127,34 @@ class Whitener:
         self.kinks = present & (self.arrays["present"] == 0)
         self._design()
 
+    @classmethod
+    def of(
+        cls,
+        time: np.ndarray,
+        noise: Noise,
+        present: np.ndarray,
+        arrays: dict[str, np.ndarray],
+        recorded: int,
+        gain: np.ndarray,
+        scale: np.ndarray,
+        logdet: float,
+    ) -> Whitener:
+        """The filter of a run that is made already: its `arrays` as innovations.h has them, gains (n, nz, size) and scales (n,
+        nz); `recorded` of its pushes have a record."""
+        self = object.__new__(cls)
+        self.time, self.noise, self.present, self.arrays, self.recorded = time, noise, present, arrays, recorded
+        self.size = (arrays["A"].shape[1], arrays["common"].shape[0], present.shape[1])
+        self.kinks = present & (arrays["present"] == 0)
+        self._gain, self._scale, self.logdet = gain, scale, logdet
+        self._keep()
+        return self
+
+    def _keep(self) -> None:
+        """Of slopes what was measured, which is all that is needed from now on."""
+        kept = {"push_before": "B", "push_after": "C", "by_state": "H", "by_push": "D"}
+        self._slopes = {name: self.arrays[part] for name, part in kept.items()}
+        self._at, self._which = np.arange(self.recorded, dtype=np.intc), np.arange(self.size[2], dtype=np.intc)
+
     def _compose(self, unknown: Disturbance | None) -> None:
         """What the filter has of its inputs and readings, with these forces acting that nobody recorded."""
         n, nz = self.present.shape
@@ -143,14 +173,7 @@ class Whitener:
         slopes = _Slopes(by["by_push"].shape[2], by["by_state"].shape[1], **{name: a.ctypes.data for name, a in by.items()})
         filter_ = self._filter
         _library().wc_compose(ctypes.byref(record), ctypes.byref(slopes), ctypes.c_long(n), ctypes.byref(filter_))
-        kept = {
-            "push_before": "B",
-            "push_after": "C",
-            "by_state": "H",
-            "by_push": "D",
-        }  # of what was measured: all that is needed
-        self._slopes = {name: self.arrays[part] for name, part in kept.items()}
-        self._at, self._which = np.arange(self.recorded, dtype=np.intc), np.arange(nz, dtype=np.intc)
+        self._keep()
 
     def _design(self) -> None:
         n, nz = self.present.shape
@@ -170,8 +193,8 @@ class Whitener:
         return other
 
     @property
-    def _filter(self) -> _Filter:
-        return _Filter(*self.size, **{name: a.ctypes.data for name, a in self.arrays.items()})
+    def _filter(self) -> FilterRecord:
+        return FilterRecord(*self.size, **{name: a.ctypes.data for name, a in self.arrays.items()})
 
     def __call__(self, signals: np.ndarray, start_mean: np.ndarray, *, in_place: bool = False) -> np.ndarray:
         """Innovations (n, nz, m) of signals (n, nz, m), which they may replace.

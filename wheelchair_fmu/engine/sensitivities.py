@@ -15,7 +15,9 @@ from .simulate import Simulator, refuse_unrest, stopped
 from .tangent import differentiable, noisy, sensed
 
 
-class _Wanted(ctypes.Structure):
+class DerivativesRecord(ctypes.Structure):
+    """`wc_derivatives` of tangent.h."""
+
     _fields_ = (
         ("active", ctypes.c_int),
         ("which", ctypes.c_void_p),
@@ -59,17 +61,17 @@ class Sensitivities:
     def __init__(self, variant: Variant, columns: Sequence[str] | None = None, moving: Collection[str] = ()):
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
-        self.simulator, self._moving = Simulator(variant, self.columns or None, moving), moving
+        self.simulator, self.moving = Simulator(variant, self.columns or None, moving), moving
         self.pushes = noisy(moving)
         self.simulator.model = self.model  # which takes as long to assemble as ten runs
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
         self.results = tuple(o.name for o in self.model.outputs)
         if self.columns:
-            self._library = cache.library(variant.choice, variant.active(), self.columns, moving)
-            self._library.wc_tangent_work.restype = ctypes.c_long
-            self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "model_kernel")))
-            self._tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self._library, "tangent_tangent")))
+            self.library = cache.library(variant.choice, variant.active(), self.columns, moving)
+            self.library.wc_tangent_work.restype = ctypes.c_long
+            self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self.library, "model_kernel")))
+            self.tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self.library, "tangent_tangent")))
 
     def run(
         self, time: np.ndarray, inputs: np.ndarray, parameters: np.ndarray, by: Sequence[str] = (), *, tolerance: float = 1e-6
@@ -80,7 +82,7 @@ class Sensitivities:
         without being `moving`.
         """
         t, w, p = (np.ascontiguousarray(a, float) for a in (time, inputs, parameters))
-        refuse_unrest(self.model, w, self._moving)
+        refuse_unrest(self.model, w, self.moving)
         which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
         n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
         x, y = np.empty((n, nx)), np.empty((n, ny))
@@ -94,12 +96,12 @@ class Sensitivities:
             "by_parameter": np.empty((n, ns, k)),
         }
         forced = any(not name.startswith("start.") for name in by)
-        wanted = _Wanted(k, which.ctypes.data, forced, *(a.ctypes.data for a in out.values()))
-        work = np.empty(self._library.wc_tangent_work(self._kernel, self._tangent, ctypes.c_int(k)))
+        wanted = DerivativesRecord(k, which.ctypes.data, forced, *(a.ctypes.data for a in out.values()))
+        work = np.empty(self.library.wc_tangent_work(self._kernel, self.tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()
-        status = self._library.wc_tangent_run(
+        status = self.library.wc_tangent_run(
             self._kernel,
-            self._tangent,
+            self.tangent,
             ctypes.c_void_p(p.ctypes.data),
             ctypes.c_double(tolerance),
             ctypes.c_long(n),

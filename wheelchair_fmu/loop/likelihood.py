@@ -15,13 +15,14 @@ import numpy as np
 
 from ..campaign import BY_NAME, CHANNELS, Campaign, Run
 from ..campaign.channels import BODY_NAMES, BY_FMU_NAME, MOMENTUM, PUSHES, TELLS
+from ..engine.evaluation import Constant, Evaluation, Evaluator, Recording, Values
 from ..engine.innovations import Disturbance, Noise, Whitener
-from ..engine.sensitivities import Linearised, Sensitivities
+from ..engine.sensitivities import Sensitivities
 from ..errors import SimulationError
 from ..model.frames import to_room, velocity_at
 from ..model.variant import Variant
 from ..quantities import Parameter
-from .local import Marginal, felt, locals_of, rate_of, read, slope
+from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
 from .parallel import parallel_map
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
@@ -36,16 +37,11 @@ CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to w
 ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago
 SCATTER = 1.15  # ratio of two estimates of the same noise
 BLOCK = 2.0  # s of data that a bootstrap resamples together
-SETTLED = 0.01  # standard deviations by which a start may be off where readings want it
-STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where forces lead; the whole one while steps grow shorter
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
 # s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
 SWUNG = (0.1, 0.2)
 MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
-SWINGS = [2, 3]  # and are the two by which a body swings
-MOST_STEPS = 12  # steps that lead a run along the forces which nobody recorded, at most,
-FARTHEST, ARRIVED = 3.0, 0.03  # standard deviations of a force: slopes hold over the former, the latter leads nowhere else
 
 
 @dataclass(frozen=True)
@@ -162,12 +158,6 @@ class RunEvidence:
         """The filter, of evidence that still has it (see `summary`)."""
         assert isinstance(self.whitener, Marginal)
         return self.whitener
-
-    @property
-    def forces(self) -> np.ndarray:
-        """(4,) standard deviations of the forces that nobody recorded; see `disturbance`."""
-        filter_ = self.filter.whitener
-        return filter_.arrays["input_sd"][0, filter_.recorded :]
 
     @property
     def foretold(self) -> np.ndarray:
@@ -332,8 +322,11 @@ class Likelihood:
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
         self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
-        self._speeds = [i for i, s in enumerate(self.sensitivities.model.states) if s.name in ("u", "v")]
+        self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
+
+    def _uncertain(self, run: Run) -> dict[str, float]:
+        return uncertain(run, self.start_names)
 
     def _prior(self, run: Run) -> dict[str, float]:
         return prior_start(run, self.known(run), self.start_names, self.leads)
@@ -421,46 +414,91 @@ class Likelihood:
         return results, read(run, self._channels(run), predicted, start)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
+        """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
+        before, names = self.starts[run.name], tuple(self._uncertain(run))
+        start = {**self._prior(run), **{n: v for n, v in before.items() if n in self.start_names or n not in CASTERS}}
+        path = self.paths.get(run.name) if self.noise_model.disturbed else None
+        at = np.array([start.get(n, 0.0) for n in names])
         if self.leads:
-            return self._along(run, values, by, keep=rounds > 0)
-        e = self._one(run, values, by, self.starts[run.name])
-        for _ in range(rounds):
-            better, sd = self._better_start(e), e.uncertain
-            if all(abs(better[n] - e.start.get(n, 0.0)) <= SETTLED * sd[n] for n in sd):
-                break
-            self.starts[run.name] = better
-            e = self._one(run, values, by, better)
-        return e
+            found = self._evaluated(run, values, (), at, path, int(self.noise_model.disturbed))
+            if rounds:
+                self.starts[run.name] = {**start, **dict(zip(names, found.start.tolist(), strict=True))}
+                self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), 4))
+            found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
+        else:
+            found = self._evaluated(run, values, by, at, None, rounds)
+            if not np.array_equal(found.start, at):
+                self.starts[run.name] = dict(zip(names, found.start.tolist(), strict=True))
+        return self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
 
-    def _along(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], keep: bool) -> RunEvidence:
-        """The run along the path that forces which nobody recorded lead it; `keep` it for the next values.
+    def _evaluated(
+        self,
+        run: Run,
+        values: Mapping[str, float],
+        by: tuple[str, ...],
+        start: np.ndarray,
+        path: np.ndarray | None,
+        rounds: int,
+    ) -> Evaluation:
+        given, chair = self._set(run, values), self.chair(values)
+        offsets = [values.get(f"offset.{c}", 0.0) for c in self._channels(run)]
+        delay = sum(given.get(d, 0.0) for d in self._delays)
+        along = chair[MASS] / self.noise_model.mass if self.noise_model.mass else 1.0
+        p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
+        at = Values(p, np.array(offsets), delay, along, p[self._tread], chair[MASS])
+        columns = [n for n in by if n not in self._delays and n not in self.offsets]
+        return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds)
 
-        A model that lacks much goes another way than the chair did, and slopes along that way say little of what a force, or
-        another value, would do. So all is linearised about where the readings say that forces led the chair.
-        """
-        e = first = self._one(run, values, by, self.starts[run.name], self.paths.get(run.name))
-        before = np.inf
-        for _ in range(MOST_STEPS if self.noise_model.disturbed else 0):
-            step = followed(e) - _path(e)
-            size = float(np.max(np.abs(step[:, e.forces > 0]) / e.forces[e.forces > 0]))
-            if size < ARRIVED:
-                break
-            most = min(1.0, FARTHEST / size) * (1.0 if size < before else STEPS[1])
-            e, before = self._stepped(e, values, most * step), size
-        if keep:
-            self.starts[run.name], self.paths[run.name] = dict(e.start), _path(e)
-        return e if e is first or not by else self._one(run, values, by, e.start, e.path)
+    def _recording(self, run: Run) -> Recording:
+        channels, pushes = self._channels(run), pushes_of(run)
+        prior, sd = self._prior(run), start_sd(run, self.start_names)
+        constants = [constant(c, channels, self._inputs, len(run.time)) for c in locals_of(run)]
+        return Recording(
+            run.time,
+            self.inputs(run),
+            np.array([n not in BODY for n in self._inputs]),
+            np.stack([run.channels[c] for c in channels], axis=1),
+            self._which(run),
+            np.array([BY_NAME[c].drifts for c in channels]),
+            [self._inputs.index(n) for n in pushes],
+            noise_of(self.noise_model, run, channels, pushes),
+            disturbance(self.noise_model, len(pushes), 1.0, self.noise_model.mass) if self.noise_model.disturbed else None,
+            self.leads,
+            self.start_names,
+            np.array([prior[n] for n in self.start_names]),
+            np.array([sd[n] for n in self.start_names]),
+            np.array([n in run.set for n in self.start_names]),
+            constants,
+        )
 
-    def _stepped(self, e: RunEvidence, values: Mapping[str, float], step: np.ndarray) -> RunEvidence:
-        """The run with as much of a step along the forces, and of its start's, as can be simulated."""
-        better, path = self._better_start(e), _path(e)
-        for share in STEPS:
-            start = {n: e.start.get(n, 0.0) + share * (v - e.start.get(n, 0.0)) for n, v in better.items()}
-            try:
-                return self._one(e.run, values, (), start, path + share * step)
-            except SimulationError:
-                continue
-        return e
+    def _told(
+        self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]
+    ) -> RunEvidence:
+        """What was found of a run, with slopes by parameters through its filter."""
+        channels, constants = self._channels(run), locals_of(run)
+        led, m = bool(found.path.any()), len(self.start_names)
+        signals = np.zeros((*found.r.shape, 1 + len(by)))
+        self._fill_columns(signals[:, :, 1:], run, found, self.inputs(self.on_time(run, values, start)), by)
+        if led:
+            signals[:, :, 1:] += self._as_before(found.whitener, self._vector(run, values, start), values, found.path, by)
+        sd = np.array([c.sd for c in constants])
+        whitener = Marginal(found.whitener, found.by_start[:, :, m:] * sd)
+        off = np.concatenate((found.offset, -np.array([start.get(c.name, 0.0) for c in constants]) / sd))
+        S = whitener(signals, np.zeros(len(off)), in_place=True)[:, :, 1:].copy() if by else signals[:, :, 1:]
+        return RunEvidence(
+            run,
+            channels,
+            found.r,
+            S,
+            found.slopes,
+            start,
+            found.results,
+            found.predicted,
+            found.measured,
+            whitener,
+            off,
+            *((found.path, found.added, found.driven) if led else ()),
+        )
 
     def _unknown(self, pushes: int, given: np.ndarray, values: Mapping[str, float]) -> Disturbance:
         return disturbance(self.noise_model, pushes, given[self._tread], self.chair(values)[MASS])
@@ -478,63 +516,6 @@ class Likelihood:
         prior, sd = self._prior(e.run), e.uncertain
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
-
-    def _one(
-        self,
-        run: Run,
-        values: Mapping[str, float],
-        by: tuple[str, ...],
-        found: Mapping[str, float],
-        path: np.ndarray | None = None,
-    ) -> RunEvidence:
-        """The run from the start that was `found`, maybe by a model with casters of another kind, along `path`."""
-        channels, which, pushes = self._channels(run), self._which(run), pushes_of(run)
-        prior, sd = self._prior(run), start_sd(run, self.start_names)
-        start = {**prior, **{n: v for n, v in found.items() if n in prior or n not in CASTERS}}
-        given, w = self._given(run, values, start)
-        columns = [n for n in (*by, *self.start_names) if n not in self._delays and n not in self.offsets]
-        path = path if self.noise_model.disturbed else None
-        acting = w if path is None else self._driven(run, given, w, path, values)
-        simulated = self.sensitivities.run(run.time, acting, given, columns, tolerance=TOLERANCE)
-        measured = self._measured(run, values)
-        driven = read(run, channels, simulated.readings[:, which], start)
-        to_state = simulated.start[:, [columns.index(n) for n in self.start_names]]  # (nx, m)
-        spread = to_state * [sd[n] for n in self.start_names]
-        noise = noise_of(self.noise_model, run, channels, pushes, spread @ spread.T)
-        there = [self._inputs.index(n) for n in pushes]
-        unknown = self._unknown(len(pushes), given, values) if self.noise_model.disturbed else None
-        filter_ = Whitener(simulated, which, noise, np.isfinite(measured), self._speeds, there, unknown)
-        constants = locals_of(run)
-        by_constant = [slope(c, run, channels, driven, pushes, filter_) for c in constants]
-        added = filter_.response(path @ unknown.as_push.T) if unknown is not None and path is not None else 0.0
-        k, m = len(by), len(self.start_names)
-        signals = np.zeros((len(run.time), len(channels), 1 + k + m + len(constants)))
-        signals[:, :, 0] = measured - (driven - added)
-        self._fill_columns(signals[:, :, 1 : 1 + k + m], run, simulated, w[:, there], by, columns, which, filter_)
-        if path is not None:
-            signals[:, :, 1 : 1 + k] += self._as_before(filter_, given, values, path, by)
-        for j, column in enumerate(by_constant):
-            signals[:, :, 1 + k + m + j] = column
-        whitener = Marginal(filter_, signals[:, :, 1 + k + m :] * [c.sd for c in constants])
-        offset = np.concatenate(
-            (to_state @ [prior[n] - start[n] for n in self.start_names], [-start.get(c.name, 0.0) / c.sd for c in constants])
-        )
-        white = whitener(signals, offset, in_place=True)
-        r, S, start_S = (part.copy() for part in np.split(white, (1, 1 + k), axis=2))  # each to be forgotten by itself
-        of_run = run, channels, r[:, :, 0], S, start_S, start
-        if path is None:
-            return RunEvidence(*of_run, simulated.results, driven, measured, whitener, offset)
-        alone = self._simulated(run, values, self._without_swing(start, path, given, values, len(pushes)))
-        return RunEvidence(*of_run, *alone, measured, whitener, offset, path, added, driven)
-
-    def _without_swing(
-        self, start: Mapping[str, float], path: np.ndarray, given: np.ndarray, values: Mapping[str, float], pushes: int
-    ) -> dict[str, float]:
-        """The start of a run on which no body swings. A run that begins in the middle of a stroke begins at a speed that the
-        body's momentum takes off, and gives back before the stroke is over: without, it begins at the speed of both."""
-        as_push = self._unknown(pushes, given, values).as_push
-        momentum = as_push[:2, SWINGS].sum(axis=0) @ (np.array(SWUNG) * path[0, SWINGS])
-        return {**start, "start.u": start["start.u"] + float(momentum) / self.chair(values)[MASS]}
 
     def _as_before(
         self, filter_: Whitener, given: np.ndarray, values: Mapping[str, float], path: np.ndarray, by: tuple[str, ...]
@@ -558,21 +539,21 @@ class Likelihood:
     def _which(self, run: Run) -> list[int]:
         return [self.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in run.channels]
 
+    def _set(self, run: Run, values: Mapping[str, float]) -> dict[str, float]:
+        """Parameters by name; what the run itself sets stands."""
+        return {**self.variant.values, **self.known(run), **values, **run.set}
+
+    def _vector(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> np.ndarray:
+        return self.variant.vector({**self._set(run, values), **{n: start.get(n, 0.0) for n in self.start_names}})
+
     def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
-        """Parameters (np,) and inputs (n, nw) of a run; what the run itself sets stands."""
-        given = {
-            **self.variant.values,
-            **self.known(run),
-            **values,
-            **run.set,
-            **{n: start.get(n, 0.0) for n in self.start_names},
-        }
-        return self.variant.vector(given), self.inputs(self.on_time(run, values, start))
+        """Parameters (np,) and inputs (n, nw) of a run."""
+        return self._vector(run, values, start), self.inputs(self.on_time(run, values, start))
 
     def on_time(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> Run:
         """The run with its pushes as and when the chair felt them: a record that is early is read that much later, and what
         `start` has of clocks and baselines is taken out."""
-        given = {**self.variant.values, **self.known(run), **values, **run.set}
+        given = self._set(run, values)
         delay = sum(given.get(d, 0.0) for d in self._delays)
         inputs = felt(run, start)
         late = [n for n in inputs if n not in BODY] if delay else []
@@ -587,29 +568,21 @@ class Likelihood:
             w[:, names.index(name)] = values
         return w
 
-    def _fill_columns(
-        self,
-        out: np.ndarray,
-        run: Run,
-        simulated: Linearised,
-        pushed: np.ndarray,
-        by: Sequence[str],
-        columns: Sequence[str],
-        which: Sequence[int],
-        whitener: Whitener,
-    ) -> None:
-        """Unwhitened sensitivities into zeros (n, nz, len(by) + m). `pushed` (n, nq) are the recorded pushes."""
-        names = (*by, *self.start_names)
-        free = [j for j, name in enumerate(names) if name not in run.set]
-        derived = [j for j in free if names[j] in columns]
-        at = [columns.index(names[j]) for j in derived]
-        out[:, :, derived] = simulated.by_parameter[:, np.array(which)[:, None], at]
+    def _fill_columns(self, out: np.ndarray, run: Run, found: Evaluation, w: np.ndarray, by: Sequence[str]) -> None:
+        """Unwhitened sensitivities into zeros (n, nz, len(by)). `w` (n, nw) are the inputs as the chair felt them."""
+        columns = [n for n in by if n not in self._delays and n not in self.offsets]
+        free = [j for j, name in enumerate(by) if name not in run.set]
+        derived = [j for j in free if by[j] in columns]
+        at = [columns.index(by[j]) for j in derived]
+        out[:, :, derived] = found.by_parameter[:, np.array(self._which(run))[:, None], at]
         for j in free:
-            if names[j] in self.offsets:
-                out[:, :, j] = [c == self.offsets[names[j]] for c in self._channels(run)]
-            elif names[j] in self._delays:  # every push changes by −F' per second of it
-                by_hands = np.where([n in BODY for n in pushes_of(run)], 0.0, rate_of(run.time, pushed))
-                out[:, :, j] = whitener.response(-by_hands)
+            if by[j] in self.offsets:
+                out[:, :, j] = [c == self.offsets[by[j]] for c in self._channels(run)]
+            elif by[j] in self._delays:  # every push changes by −F' per second of it
+                pushes = pushes_of(run)
+                pushed = w[:, [self._inputs.index(n) for n in pushes]]
+                by_hands = np.where([n in BODY for n in pushes], 0.0, rate_of(run.time, pushed))
+                out[:, :, j] = found.whitener.response(-by_hands)
 
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
         """The same likelihood with other noise; starts found so far are kept."""
@@ -624,6 +597,20 @@ class Likelihood:
         other.campaign, other.leads, other.paths = campaign, True, {}
         other.starts = {r.name: other._prior(r) for r in campaign.runs}
         return other
+
+
+def constant(local: Local, channels: Sequence[str], inputs: Sequence[str], n: int) -> Constant:
+    """What is uncertain of one run only, as the evaluation has it."""
+    if isinstance(local, BaselineError):
+        shape = local.baseline.independent[:, local.column]
+        own = np.array([name == local.baseline.input for name in inputs])
+        return Constant("baseline", local.sd, own, np.zeros(len(channels), bool), shape)
+    assert isinstance(local, ClockError)
+    stamped = (
+        np.array([name in some for name in all_])
+        for all_, some in ((inputs, local.clock.inputs), (channels, local.clock.channels))
+    )
+    return Constant("clock", local.sd, *stamped)
 
 
 def noise_of(
@@ -666,11 +653,6 @@ def followed(e: RunEvidence) -> np.ndarray:
     assert isinstance(e.whitener, Marginal)
     filter_ = e.whitener.whitener
     return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])
-
-
-def _path(e: RunEvidence) -> np.ndarray:
-    """The forces (n, 4) along which a run is linearised."""
-    return np.zeros((len(e.run.time), 4)) if e.path is None else e.path
 
 
 def offsets_of(campaign: Campaign) -> dict[str, str]:

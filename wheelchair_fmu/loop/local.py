@@ -114,20 +114,6 @@ def rate_of(time: np.ndarray, pushed: np.ndarray) -> np.ndarray:
     return (ahead - behind) / (2 * STROKE)
 
 
-def slope(
-    local: Local, run: Run, channels: Sequence[str], predicted: np.ndarray, pushes: Sequence[str], whitener: Whitener
-) -> np.ndarray:
-    """What one unit of a constant would add to the readings (n, nz), to first order."""
-    little = 1e-3 * local.sd
-    after, before = (local.read(run.time, channels, predicted, side * little) for side in (1, -1))
-    more, less = (local.felt(run.time, run.inputs, side * STROKE) for side in (1, -1))
-    change = np.zeros((len(run.time), len(pushes)))
-    for q, name in enumerate(pushes):
-        if name in run.inputs:
-            change[:, q] = (more[name] - less[name]) / (2 * STROKE)
-    return (after - before) / (2 * little) + whitener.response(change)
-
-
 class Marginal:
     """A run's filter with constants L (n, nz, l), in units of their standard deviations, taken out by their covariance.
 

@@ -515,11 +515,13 @@ int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int
     if (states(s) + s->noise.nq + s->noise.nd + s->noise.nz > WC_MOST || uncertain(s) > WC_MOST) return WC_TOO_MANY;
     int status = linearise(s, v, e);
     if (status == WC_OK && rounds) status = s->leads ? lead(s, v, e) : tune(s, v, e, rounds);
-    if (status != WC_OK) return status;
+    return status;
+}
+
+void wc_find_spread(const wc_recording *s, wc_evaluation *e) {
     filter certain = e->f;
     certain.start_cov = e->none;
     wc_spread(&certain, s->n, e->spread);
-    return WC_OK;
 }
 
 /* Moves readings from e's start to another one, to first order. */

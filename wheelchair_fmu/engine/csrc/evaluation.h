@@ -109,6 +109,9 @@ void wc_expected(const wc_recording *s, wc_evaluation *e);
  * led goes where forces lead it, unless that is 0. On failure e->reached says how far it came. */
 int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds);
 
+/* Fills in e->spread, of an evaluation that is the last in its place of work. */
+void wc_find_spread(const wc_recording *s, wc_evaluation *e);
+
 /* The same run at other values by the filter of e, a better start to first order. `kept`: its start is kept, and what the forces
  * add. x: n x states. */
 int wc_again(const wc_recording *s, const wc_values *v, wc_evaluation *e, int kept, double *x, wc_simulated *to);

@@ -45,7 +45,9 @@ long EXPORT(wc_page_again_room)(const wc_recording *s, wc_simulated *to, double 
 
 int EXPORT(wc_page_evaluate)(const wc_recording *s, const wc_values *v, wc_evaluation *e, int expected, int rounds) {
     if (expected) wc_expected(s, e);
-    return wc_evaluate(s, v, e, rounds);
+    int status = wc_evaluate(s, v, e, rounds);
+    if (status == WC_OK) wc_find_spread(s, e);
+    return status;
 }
 
 int EXPORT(wc_page_again)(const wc_recording *s, const wc_values *v, wc_evaluation *e, int kept, wc_simulated *to) {
