@@ -110,6 +110,14 @@ INSIDE = """async ({last, held}) => {
 }"""
 
 
+# of what a run gives by the filter of an exact evaluation and of that itself, at the same values, in standard deviations
+OFF = """async ask => {
+    const [exact, quick] = [await report.pool.later({...ask, exact: true}), await report.pool.later({...ask, exact: false})];
+    return Math.max(...Object.entries(exact.predicted).flatMap(([channel, series]) =>
+        [...series].map((v, i) => Math.abs(v - quick.predicted[channel][i]) / exact.sd[channel][i])));
+}"""
+
+
 @pytest.mark.nightly
 def test_the_pages_errors_are_those_of_the_search_and_its_bands_hold(found, browser, tmp_path):  # noqa: F811
     """Where nobody recorded all forces, clocks are unsure and rims have baselines: bands of 95 % hold 90 to 98 % of the samples
@@ -123,5 +131,6 @@ def test_the_pages_errors_are_those_of_the_search_and_its_bands_hold(found, brow
     reader.set(last)
     assert reader.page.evaluate("report.now.heldout") == pytest.approx(told["ladder"][-1]["heldout"], abs=0.02)
     held = [i for i, role in enumerate(reader.page.evaluate("report.campaign.runs.map(r => r.role)")) if role == "holdout"]
+    assert reader.page.evaluate(OFF, {"values": last, "run": held[0]}) < 0.01
     assert 0.90 <= reader.page.evaluate(INSIDE, {"last": last, "held": held}) <= 0.98
     reader.close()

@@ -23,7 +23,9 @@ from .tangent import PUSHES, noisy, tangent
 
 FORCES, TORQUES = 2, ("push.M_rl", "push.M_rr")  # the hands' forces carry noise; torques and a body do where they move
 STACK = 1 << 20  # bytes; the filter's matrices take the most
-BESIDE = 1 << 21  # bytes: where in a model's memory that begins which evaluates its runs, behind the model's own stack and data
+# bytes: where in a model's memory the data of what evaluates its runs begin. Stacks grow down: the model's from STACK, above which
+# are its data; that of the evaluation from here, so that neither reaches the other's.
+BESIDE = 3 * STACK
 FLAGS = (
     "-target",
     "wasm32-wasi",
@@ -37,7 +39,6 @@ FLAGS = (
     "-ffp-contract=off",
     "-fno-sanitize=all",
     "-fvisibility=hidden",
-    f"-Wl,-z,stack-size={STACK}",
 )
 
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
@@ -74,15 +75,19 @@ def modules(
 def evaluation(moving: Collection[str] = ()) -> bytes:
     """The module that evaluates runs of such models, `csrc/page_evaluation.c`, in the memory of one of them."""
     pushes = _noisy(moving)
-    words = "\n".join((cache.sources(), str(FLAGS), str(pushes), version("ziglang")))
+    words = "\n".join((cache.sources(), str(FLAGS), str(BESIDE), str(pushes), version("ziglang")))
     name = f"evaluation-{hashlib.sha256(words.encode()).hexdigest()[:24]}"
     return kept(name, ".wasm", partial(_compile_evaluation, pushes)).read_bytes()
 
 
 def _compile_evaluation(pushes: int, target: Path) -> None:
-    beside = ["-Wl,--import-memory", f"-Wl,--global-base={BESIDE}"]
+    beside = ["-Wl,--import-memory", f"-Wl,--global-base={BESIDE}", _stack(BESIDE)]
     files = [CSRC / name for name in ("innovations.c", "evaluation.c", "page_evaluation.c")]
     compiler.compile_wasm(files, target, [*FLAGS, f"-DWC_PUSHES={pushes}", *beside])
+
+
+def _stack(size: int) -> str:
+    return f"-Wl,-z,stack-size={size}"
 
 
 def _noisy(moving: Collection[str]) -> int:
@@ -93,7 +98,7 @@ def _noisy(moving: Collection[str]) -> int:
 
 def _name(choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], pushes: int) -> str:
     given = map(repr, (choice, list(columns), moving, pushes))
-    words = "\n".join((cache.sources(), str(FLAGS), *given, *map(cache.effect_key, effects)))
+    words = "\n".join((cache.sources(), str(FLAGS), str(STACK), *given, *map(cache.effect_key, effects)))
     return hashlib.sha256(f"{words} {version('ziglang')}".encode()).hexdigest()[:24]
 
 
@@ -102,7 +107,7 @@ def _compile(
 ) -> None:
     files = _written(choice, effects, columns, moving, pushes, target.parent)
     by_hand = [CSRC / name for name in ("tangent.c", "rodas.c", "page.c")]
-    flags = [*FLAGS, f"-DWC_PUSHES={pushes}", f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
+    flags = [*FLAGS, _stack(STACK), f"-DWC_PUSHES={pushes}", f"-I{CSRC}", "-include", str(target.with_name("coefficients.h"))]
     compiler.compile_wasm([*files, *by_hand], target, flags)
 
 
