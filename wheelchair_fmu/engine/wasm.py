@@ -23,8 +23,8 @@ from .tangent import PUSHES, noisy, tangent
 
 FORCES, TORQUES = 2, ("push.M_rl", "push.M_rr")  # the hands' forces carry noise; torques and a body do where they move
 STACK = 1 << 20  # bytes; the filter's matrices take the most
-# bytes: where in a model's memory the data of what evaluates its runs begin. Stacks grow down: the model's from STACK, above which
-# are its data; that of the evaluation from here, so that neither reaches the other's.
+# bytes: where in a model's memory the data of what evaluates its runs begin. Stacks grow down: the model's from STACK, above
+# which are its data; that of the evaluation from here, so that neither reaches the other's.
 BESIDE = 3 * STACK
 FLAGS = (
     "-target",
