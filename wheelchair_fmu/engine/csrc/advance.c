@@ -73,7 +73,7 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
     const double *mass = 0;
     wc_function step = step_between(k, p, s->w0, s->w1);
     double done = 0;
-    long tries = 0, most = wc_most_tries(s->length);
+    double tries = 0, most = wc_most_tries(s->length);
     while (done < s->length) {
         if (++tries > most) return WC_STEP_TOO_SMALL;
         double left = s->length - done;

@@ -44,7 +44,7 @@ typedef struct {
 
 /* Steps that may be tried in a stretch of this length (s). No chair needs as many; without a limit, parameters that ask for
  * steps of a nanosecond would keep whoever called for hours. */
-static inline long wc_most_tries(double length) { return length < 1e6 ? 2000 + (long)(5e5 * length) : 500000000000; }
+static inline double wc_most_tries(double length) { return 2000 + 5e5 * length; }
 
 /* States at the start for parameters p and inputs w, algebraic ones in place. */
 WC_LOCAL wc_status wc_start(const wc_kernel *k, const double *p, const double *w, double *x);

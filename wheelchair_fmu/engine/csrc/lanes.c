@@ -33,7 +33,7 @@ typedef struct {
     long chair;         /* below zero: nobody */
     long from, to, row; /* rows between which the inputs now go straight, and the next one to fill */
     double done, length, h, now; /* of the time between them; the step to try next, and the one that is tried */
-    long tries;         /* steps that were tried there */
+    double tries;       /* steps that were tried there */
     double *rows;       /* states x padded */
 } rider;
 
