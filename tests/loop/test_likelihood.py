@@ -10,10 +10,11 @@ import pytest
 
 from wheelchair_fmu.loop.factory import ModelFactory
 from wheelchair_fmu.loop.fit import fit, prior_of
-from wheelchair_fmu.loop.likelihood import Likelihood
+from wheelchair_fmu.loop.likelihood import Likelihood, pushes_of
 from wheelchair_fmu.loop.score import _long_run_variance
 from wheelchair_fmu.loop.search import Search
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import Choice
 from wheelchair_fmu.studies.measured import PREDICTS
 
 NAMES = ("tyre.C_lambda", "resistance.f_r")
@@ -100,6 +101,23 @@ def test_a_start_that_a_run_sets_stands(short):
         {name.partition(".")[2]: value for name, value in said.items()}
     )
     assert not e.start_S.any() and not e.offset.any()
+
+
+def test_errors_of_pushes_act_as_pushes_do_and_are_no_part_of_what_is_foretold(short):
+    """Where casters may swing round, a run is linearised about them."""
+    run, chair = short.fit[0], Variant(Choice(caster="slipping"))
+    names = pushes_of(run)
+    pushed = 0.5 * np.sin(np.outer(run.time, 1 + np.arange(len(names))))
+    likelihood = Likelihood(short, chair, columns=())
+    (recorded,) = likelihood.evidence([run], {}).runs
+    likelihood.paths[run.name] = pushed
+    (e,) = likelihood.evidence([run], {}).runs
+    true = replace(run, inputs={**run.inputs, **{n: run.inputs[n] + pushed[:, i] for i, n in enumerate(names)}})
+    (felt,) = Likelihood(replace(short, runs=(true,)), chair, columns=()).evidence([true], {}).runs
+    assert np.abs(felt.predicted - recorded.predicted).max() > 0.01
+    np.testing.assert_allclose(e.driven, felt.predicted, atol=1e-12)
+    np.testing.assert_allclose(e.predicted, recorded.predicted, atol=1e-4)  # two simulations, of one tolerance
+    np.testing.assert_allclose(e.foretold, felt.predicted - felt.filter.whitener.response(pushed), atol=1e-12)
 
 
 def test_an_effect_that_a_run_sets_is_on_in_that_run(short):
