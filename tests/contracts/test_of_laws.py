@@ -51,8 +51,8 @@ from . import ideal
 from ..stage import Alternative, Stage
 
 
-def casters(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps):
-    F_xf, F_yf, M_f = ideal.casters.law(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps)
+def casters(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps, v_onset):
+    F_xf, F_yf, M_f = ideal.casters.law(v_xf, v_yf, D_f, d_f, M_w, M_p, rolling, trail, drag_eps, v_onset)
     return -F_xf, F_yf, M_f
 
 

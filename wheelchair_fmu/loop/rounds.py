@@ -69,7 +69,7 @@ class Round:
     @cached_property
     def present(self) -> dict[str, float]:
         """Of each candidate and group, the probability that it is there, large or slight, beside nothing."""
-        return dict(zip((c.effect for c in self.every), map(float, _present(self, self.every)), strict=True))
+        return {c.effect: _present(self, c) for c in self.every}
 
     @property
     def winner(self) -> Candidate | None:
@@ -112,17 +112,11 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
     return {s.effect: _belief(s, w) for s, w in zip(supports, map(float, shares), strict=True)}
 
 
-def _present(r: Round, candidates: Sequence[Candidate]) -> np.ndarray:
-    """(m,) probabilities that each candidate is there at any size, beside nothing, by its standard errors where these say less
-    than the fall of −2 log likelihood does; means as `instead`'s."""
-    if not candidates:
-        return np.empty(0)
-    supports = [c.support for c in candidates]
-    without, *others = _resampled(r, candidates)
-    moved = np.array(others) - without - np.array([c.excess for c in candidates])[:, None]
-    large, slight, left = (np.array([getattr(s, what) for s in supports])[:, None] for what in ("large", "slight", "left"))
-    logs = np.logaddexp(large + moved, slight + (1 - left) * moved) + r.log_prior
-    return np.mean(special.expit(logs), axis=1)
+def _present(r: Round, c: Candidate) -> float:
+    """The probability that a candidate is there at any size, beside nothing; by its standard errors where these say less than
+    the fall of −2 log likelihood does."""
+    large, slight = c.support.large - c.excess, c.support.slight - (1 - c.support.left) * c.excess
+    return float(special.expit(np.logaddexp(large, slight) + r.log_prior))
 
 
 def _belief(s: Support, there: float) -> Belief:

@@ -283,7 +283,7 @@ def _leftover(selection: StepwiseSelection, generic: Mapping[str, Effect]) -> tu
     if found and at_the_floor(base.evidence, held):
         scores = (s.score for s in terms.screen(base, effects, list(generic)))
         return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
-    known = [c for r in rounds if r.effects == effects for c in r.every if c.lawful]
+    known = [c for r in rounds if r.effects == effects for c in r.every if c.possible]
     left = _terms(terms, generic, effects, base, held, HALFWAY * max((c.drop for c in known), default=0.0))
     best = left.winner
     if best is not None and not all(_likelier(best, c, search.policy, len(first.scores)) for c in known):

@@ -194,6 +194,7 @@ class App {
     if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
     const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
     const card = document.querySelectorAll(".card")[1];
+    if (!card) return; // a page may tell of a campaign alone
     card.querySelector(".physical")?.remove();
     card.querySelector("p:not(.lead)")?.after(h("p", { class: "physical" }, words));
   }
