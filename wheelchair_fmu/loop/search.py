@@ -23,6 +23,7 @@ from .screen import AT_THE_FLOOR, BENT, PROMISING, SLIGHTLY, Screen, Screened, s
 from .starts import most_promising, outlook
 from .statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
 
+FAR = 1.1  # mean square innovation of a model that slopes are not to be trusted at
 SHORTLIST = 5  # effects that are refitted in a round, by what slopes and secants promise of them
 HOPELESS = 0.2  # of the leader's fall: an effect that may not hope for more is not refitted,
 BESIDE = 0.5  # unless it may hope for this part of what slopes promised of the leader,
@@ -146,8 +147,9 @@ class Search(Screen):
 
     def _hopeful(self, s: Screened, effects: int, odds: float) -> bool:
         """May a refit find that an effect is there, large or slight, as far as slopes tell, which is nearly all of it where it
-        is linear, or where forces make up for the rest?"""
-        if not (s.linear or self.factory.leads):
+        is linear and the model about right, or where forces make up for the rest?"""
+        far = float(np.mean(s.evidence.r**2)) > FAR
+        if not self.factory.leads and (far or not s.linear):
             return True
         one_sided = np.array([self.records[n].lower == 0 for n in s.score.names])
         told = of_score(s.score, one_sided, self.policy)
