@@ -48,19 +48,23 @@ class Candidate:
         dispersion, correlation = self.beside or (self.dispersion, self.correlation)
         return dispersion * correlation
 
+    @property
+    def fall(self) -> float:
+        """Of −2 log likelihood, in units of `scale`."""
+        return max(self.drop, 0.0) * self.dispersion / self.scale
+
     @cached_property
     def support(self) -> Support:
         """What bears it out, beside the model without it, and however many parameters it has."""
-        fall, ahead = max(self.drop, 0.0) * self.dispersion / self.scale, self.gain[0] / self.scale if self.gain else 0.0
-        covariances = self.covariance, self.between
-        return support_of(self.effect, self.estimate, covariances, self.delta, self.one_sided, fall, ahead, self.policy)
+        covariances, ahead = (self.covariance, self.between), self.gain[0] / self.scale if self.gain else 0.0
+        return support_of(self.effect, self.estimate, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy)
 
     @property
     def excess(self) -> float:
         """Log likelihood that is gained, and that the estimate by its standard errors would not: of a model that is not exact a
         parameter may take up what it did not do."""
         away = squared(self.estimate / self.delta, self.covariance / np.outer(self.delta, self.delta))
-        return 0.5 * max(0.0, max(self.drop, 0.0) * self.dispersion / self.scale - away)
+        return 0.5 * max(0.0, self.fall - away)
 
     @property
     def se(self) -> np.ndarray:

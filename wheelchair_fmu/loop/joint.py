@@ -39,7 +39,7 @@ class Stage:
 
 def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequence[Score]) -> list[Round]:
     """Rounds that put in what a group of effects explains together, one effect each, the most needed first; none if it
-    explains nothing. Each is as small as it is in the last."""
+    explains nothing."""
     for group in kin(search):
         new = tuple(e for e in group if e not in effects)
         found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None

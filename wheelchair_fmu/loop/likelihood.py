@@ -255,31 +255,9 @@ class Evidence:
             good = np.isfinite(e.r)
             yield e, good, slice(at, at := at + int(good.sum()))
 
-    @cached_property
-    def cells(self) -> tuple[np.ndarray, np.ndarray]:
-        """(N,) which channel of which run each innovation belongs to, numbered through, and how many each of these has."""
-        width = max((len(e.channels) for e in self.runs), default=0)
-        numbers = [np.nonzero(good)[1] + width * i for i, (_, good, _) in enumerate(self.parts())]
-        cells = np.concatenate(numbers or [np.empty(0, int)])
-        return cells, np.maximum(np.bincount(cells), 1)
-
-    def cell_rms(self, r: np.ndarray) -> np.ndarray:
-        """RMS of residuals (N,) in each cell; 0 where there are none."""
-        cells, count = self.cells
-        return np.sqrt(np.bincount(cells, r * r) / count)
-
-    @cached_property
-    def own_cell_rms(self) -> np.ndarray:
-        return self.cell_rms(self.r)
-
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
         return {e.run.name: e.rms for e in self.runs}
-
-    def fall_to(self, after: Evidence) -> float:
-        """Of a channel's whitened RMS, in the run where it falls most."""
-        there = after.table()
-        return max(rms - there[run][channel] for run, row in self.table().items() for channel, rms in row.items())
 
     def summary(self) -> Evidence:
         """See `RunEvidence.summary`."""

@@ -35,7 +35,6 @@ class Score:
     p: float
     drop: float  # expected fall of −2 log likelihood
     power: float
-    visible: float  # expected fall of the RMS innovation, in the channel and run where it falls most
     hidden: float  # share of its signature that calibration can imitate
     signature: np.ndarray  # (N,) unit vector of the projected expected change
     delta: np.ndarray
@@ -127,7 +126,7 @@ def score(
     if not seen.any():
         nothing = np.zeros(len(delta))
         unknown, blind = np.full(len(delta), np.inf), BLIND * np.eye(len(delta))
-        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, 0.0, hidden, nothing[:0], delta, blind)
+        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, hidden, nothing[:0], delta, blind)
     V = axes[:, seen]
     s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
     U = s_V.T @ r + strained_V.T @ off.rows
@@ -147,7 +146,6 @@ def score(
         drop = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
-    visible = float((evidence.own_cell_rms - evidence.cell_rms(r - direction)).max(initial=0))
     return Score(
         effect,
         tuple(names),
@@ -156,7 +154,6 @@ def score(
         p,
         drop,
         seen_at_delta,
-        visible,
         hidden,
         direction / length if length > 0 else direction,
         delta,

@@ -104,13 +104,6 @@ def seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return axes[:, seen], spread[seen]
 
 
-def size_seen(size: np.ndarray, covariance: np.ndarray) -> float:
-    """How large an effect of this size, in units of δ, is along the directions that the data can see, beside δ of the one
-    parameter that shows most in these: for camber, of which only the sum shows, sum / δ."""
-    seen = seen_axes(covariance)[0]
-    return float(np.linalg.norm(seen.T @ size) / np.linalg.norm(seen, axis=1).max())
-
-
 def correlation_time(evidence: Evidence) -> float:
     """Samples per independent one: 1 + 2 Σ ρ_k of the innovations until ρ falls below noise, at least 1."""
     time, weight = 0.0, 0
