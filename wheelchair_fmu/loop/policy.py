@@ -1,7 +1,7 @@
 """What the search for missing effects is free to choose: every number by which it decides, with its reason.
 
-All else follows from likelihoods. `python -m benchmarks.policy` decides the rounds of searches again with each number at both
-ends of its range, and counts the answers that change.
+All else follows from likelihoods. `python -m benchmarks.policy` decides the rounds of searches again with those numbers that
+rounds are decided by at both ends of their ranges, and counts the answers that change.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from math import log
 
 
 def _number(value: float, low: float, high: float, reason: str) -> float:
-    """A field with the range in which it was tried, and why it is what it is."""
+    """A field with the range that is reasonable, and why it is what it is."""
     return field(default=value, metadata={"range": (low, high), "reason": reason})
 
 
