@@ -156,3 +156,7 @@ class Models:
     def deltas(self, names: Sequence[str]) -> np.ndarray:
         """Smallest interesting sizes (k,)."""
         return np.array([self.records[n].smallest_interesting for n in names])
+
+    def one_sided(self, names: Sequence[str]) -> np.ndarray:
+        """Which of these may only be positive (k,)."""
+        return np.array([self.records[n].lower == 0 for n in names], bool)

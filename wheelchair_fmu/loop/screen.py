@@ -169,9 +169,8 @@ class Screen(Models):
         return bool(same.any())
 
     def _score(self, evidence: Evidence, off: Projector, effect: str, S: np.ndarray) -> Score:
-        records = [self.records[n] for n in self.factory.parameters(effect)]
-        delta = np.array([r.smallest_interesting for r in records])
-        return score(evidence, off, effect, [r.name for r in records], S, delta, np.array([r.lower == 0 for r in records]))
+        names = self.factory.parameters(effect)
+        return score(evidence, off, effect, names, S, self.deltas(names), self.one_sided(names))
 
     def _secants(self, likelihood: Likelihood, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
         """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:

@@ -151,8 +151,7 @@ class Search(Screen):
         far = float(np.mean(s.evidence.r**2)) > FAR
         if not self.factory.leads and (far or not s.linear):
             return True
-        one_sided = np.array([self.records[n].lower == 0 for n in s.score.names])
-        told = of_score(s.score, one_sided, self.policy)
+        told = of_score(s.score, self.one_sided(s.score.names), self.policy)
         return self.policy.log_prior(effects) + float(np.log(odds)) + max(told.large, told.slight) > -0.25 * self.policy.tied
 
     def judge(
@@ -168,7 +167,7 @@ class Search(Screen):
         """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it."""
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
         lower, upper = (np.array([getattr(self.records[n], side) for n in names]) for side in ("lower", "upper"))
-        one_sided, near = lower == 0, 1e-6 * delta
+        one_sided, near = self.one_sided(names), 1e-6 * delta
         along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
         dispersion = float(np.mean(found.evidence.r**2))
         drop, correlation = (base.misfit - found.misfit) / dispersion, correlation_time(found.evidence)
@@ -198,9 +197,8 @@ class Search(Screen):
         """Is an effect of a fit with sensitivities surely large, rather than slight or nothing?"""
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)
-        one_sided = np.array([self.records[n].lower == 0 for n in names])
         between, fall = _between(found, names, covariance), self.weight(found, effect)
-        told = support_of(effect, estimate, (covariance, between), delta, one_sided, fall, 0.0, self.policy)
+        told = support_of(effect, estimate, (covariance, between), delta, self.one_sided(names), fall, 0.0, self.policy)
         return float(special.expit(told.large - max(0.0, told.slight))) > self.policy.sure
 
     def round(

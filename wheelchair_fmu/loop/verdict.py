@@ -94,8 +94,8 @@ class Diagnosis:
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
         """By effect, which of its parameters (k,) may only be positive."""
-        w, records = self.search.factory, self.search.records
-        return {e: np.array([records[n].lower == 0 for n in w.parameters(e)], bool) for e in w.catalogue}
+        w = self.search.factory
+        return {e: self.search.one_sided(w.parameters(e)) for e in w.catalogue}
 
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
