@@ -74,7 +74,7 @@ def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
 def test_what_is_named_of_what_is_in_a_model(sizes, helping, parts, expected):
     selection = object.__new__(StepwiseSelection)
     selection.__dict__ |= {
-        "search": Some(matters=lambda base, e: sizes[e] > 0.7),
+        "search": Some(surely_large=lambda base, e: sizes[e] > 0.7),
         "effects": ("old", *sizes),
         "already": ("old",),
         "base": None,

@@ -193,7 +193,7 @@ class Search(Screen):
             policy=self.policy,
         )
 
-    def matters(self, found: Fit, effect: str) -> bool:
+    def surely_large(self, found: Fit, effect: str) -> bool:
         """Is an effect of a fit with sensitivities surely large, rather than slight or nothing?"""
         names = self.factory.parameters(effect)
         delta, (estimate, covariance) = self.deltas(names), estimates(found, names)

@@ -78,7 +78,7 @@ class StepwiseSelection:
         """The effects that were found, without those that only help: what is likelier slight, be it of a group, unless all of
         the group are."""
         found = [e for e in self.effects if e not in self.already]
-        large = {e for e in self.helping.union(self.parts).intersection(found) if self.search.matters(self.base, e)}
+        large = {e for e in self.helping.union(self.parts).intersection(found) if self.search.surely_large(self.base, e)}
         helping, parts = self.helping.difference(large), self.parts.difference(large)
         return tuple(e for e in found if e not in helping and (e not in parts or not large.intersection(self.parts)))
 
