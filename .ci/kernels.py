@@ -14,7 +14,7 @@ from rich.progress import track
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine import cache, shipped
 from wheelchair_fmu.fmu.platforms import chosen
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.model.generic import library as terms
 from wheelchair_fmu.resources import EXAMPLES
 

@@ -17,9 +17,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wheelchair_fmu.campaign import Campaign, Run, read
-from wheelchair_fmu.loop.factory import ModelFactory
-from wheelchair_fmu.loop.fit import Fit, fit, start_value
-from wheelchair_fmu.loop.search import Search
+from wheelchair_fmu.inference.estimation.fit import Fit, fit, start_value
+from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.search.search import Search
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.sweep import prepare

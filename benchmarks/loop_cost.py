@@ -22,10 +22,10 @@ from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits
 
 from wheelchair_fmu.campaign import CHANNELS, Campaign, read
-from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
-from wheelchair_fmu.loop.preflight import begin
-from wheelchair_fmu.loop.search import Search
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.inference.search.beginning import begin
+from wheelchair_fmu.inference.search.search import Search
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant

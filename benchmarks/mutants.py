@@ -2,7 +2,7 @@
 
     python -m benchmarks.mutants                        the named faults, each of which has once gone unnoticed
     python -m benchmarks.mutants --sample 30 --seed 2   and as many more, drawn from operators, signs, constants, comparisons
-    python -m benchmarks.mutants --sample 9 --only wheelchair_fmu/loop/score.py --tests tests/loop/test_statistics.py
+    python -m benchmarks.mutants --sample 9 --only wheelchair_fmu/model/chassis.py --tests tests/model
 
 A runner of our own, because mutmut 3 puts all mutants of a file into one text and chooses by an environment variable:
 kernels, which are kept by the model's text, would then be those of whichever mutant came first. cosmic-ray has one command for
@@ -27,8 +27,8 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-FOLDERS = ("loop", "model", "campaign")  # of the package, whose files are changed
-TESTS = {"loop": ("loop",), "model": ("model", "independent", "contracts"), "campaign": ("campaign",)}
+FOLDERS = ("inference", "model", "campaign")  # of the package, whose files are changed
+TESTS = {"inference": ("inference",), "model": ("model", "independent", "contracts"), "campaign": ("campaign",)}
 PATIENCE = 3.0  # times as long as the tests take without a fault, and
 SLACK = 60.0  # s, for a kernel to be compiled
 SWAPS = {
@@ -36,7 +36,7 @@ SWAPS = {
     **{ast.Lt: ("<", ">="), ast.LtE: ("<=", ">"), ast.Gt: (">", "<="), ast.GtE: (">=", "<")},
     **{ast.Eq: ("==", "!="), ast.NotEq: ("!=", "=="), ast.And: ("and", "or"), ast.Or: ("or", "and")},
 }
-L, M = "wheelchair_fmu/loop/", "wheelchair_fmu/model/"
+L, M = "wheelchair_fmu/inference/", "wheelchair_fmu/model/"
 NAMED = (  # file, what stands there once, what stands there instead
     (M + "resistance.py", "F_max * cs.vertcat(brake_rl, brake_rr)", "F_max * cs.vertcat(brake_rr, brake_rl)"),
     (M + "chassis.py", "needed * R / R_rim", "needed * R_rim / R"),
@@ -47,20 +47,24 @@ NAMED = (  # file, what stands there once, what stands there instead
     (M + "caster/swivelling.py", "lateral * forward, -passed * M_w", "lateral * forward, passed * M_w"),
     (M + "chassis.py", "F_rl + M_rl / R, F_rr + M_rr / R", "F_rr + M_rr / R, F_rl + M_rl / R"),
     (M + "chassis.py", "cs.vertcat(-t_r / 2, t_r / 2)", "cs.vertcat(t_r / 2, -t_r / 2)"),
-    (L + "search.py", "p=min(1.0, tests * p)", "p=min(1.0, p)"),
-    (L + "search.py", "(base.misfit - found.misfit) / dispersion", "(base.misfit - found.misfit)"),
-    (L + "search.py", "p /= 2", "p /= 1"),
-    (L + "search.py", "chance_beyond(drop / correlation, len", "chance_beyond(drop, len"),
-    (L + "score.py", "p / 2 if estimate[0] > 0 else 1 - p / 2", "p"),
-    (L + "score.py", "width = min(lags, len(q) // 4) + 1", "width = 1"),
-    (L + "statistics.py", "1 + 2 * sum(rho[:stop])", "1 + sum(rho[:stop])"),
-    (L + "statistics.py", " / np.sqrt(np.maximum(size, ALONE))", ""),
-    (L + "statistics.py", "student(0.95, n - 1)", "student(0.5, n - 1)"),
-    (L + "statistics.py", " * float(np.mean(evidence.r**2))", ""),
-    (L + "statistics.py", "robust_variance(found.evidence, S, r) + found.prior_slopes**2", "S.T @ S + found.prior_slopes**2"),
-    (L + "bootstrap.py", "(0.025, 0.975)", "(0.25, 0.75)"),
-    (L + "interval.py", "student(LEVEL, degrees_between_runs(found, at))", "NORMAL"),
-    (L + "likelihood.py", "np.clip(s, -3 * sd[n], 3 * sd[n])", "np.clip(s, -30 * sd[n], 30 * sd[n])"),
+    (L + "search/search.py", "p=min(1.0, tests * p)", "p=min(1.0, p)"),
+    (L + "search/search.py", "(base.misfit - found.misfit) / dispersion", "(base.misfit - found.misfit)"),
+    (L + "search/search.py", "p /= 2", "p /= 1"),
+    (L + "search/search.py", "chance_beyond(drop / correlation, len", "chance_beyond(drop, len"),
+    (L + "estimation/score.py", "p / 2 if estimate[0] > 0 else 1 - p / 2", "p"),
+    (L + "estimation/score.py", "width = min(lags, len(q) // 4) + 1", "width = 1"),
+    (L + "estimation/statistics.py", "1 + 2 * sum(rho[:stop])", "1 + sum(rho[:stop])"),
+    (L + "estimation/statistics.py", " / np.sqrt(np.maximum(size, ALONE))", ""),
+    (L + "estimation/statistics.py", "student(0.95, n - 1)", "student(0.5, n - 1)"),
+    (L + "estimation/statistics.py", " * float(np.mean(evidence.r**2))", ""),
+    (
+        L + "estimation/statistics.py",
+        "robust_variance(found.evidence, S, r) + found.prior_slopes**2",
+        "S.T @ S + found.prior_slopes**2",
+    ),
+    (L + "decision/bootstrap.py", "(0.025, 0.975)", "(0.25, 0.75)"),
+    (L + "estimation/interval.py", "student(LEVEL, degrees_between_runs(found, at))", "NORMAL"),
+    (L + "evidence/likelihood.py", "np.clip(s, -3 * sd[n], 3 * sd[n])", "np.clip(s, -30 * sd[n], 30 * sd[n])"),
 )
 
 
@@ -188,7 +192,7 @@ def main() -> None:
     parser.add_argument("--sample", type=int, default=0, help="so many mutants drawn at random, besides those that are named")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
-        "--only", default="", metavar="PATH", help="mutants of this file or folder, wheelchair_fmu/loop for one"
+        "--only", default="", metavar="PATH", help="mutants of this file or folder, wheelchair_fmu/inference for one"
     )
     parser.add_argument("--tests", nargs="+", default=(), help="run these test files, not all that name a mutant's module")
     given = parser.parse_args()

@@ -18,7 +18,7 @@ import numpy as np
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.engine.wasm import modules
-from wheelchair_fmu.loop.factory import ModelFactory
+from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.content import STARTS
 

@@ -18,9 +18,9 @@ from rich.progress import track
 from rich.table import Table
 
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.policy import DEFAULT, RANGES
-from wheelchair_fmu.loop.rounds import Round
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.policy import DEFAULT, RANGES
+from wheelchair_fmu.inference.search.rounds import Round
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from wheelchair_fmu.campaign import Campaign, Clock, Run, covered, read
-from wheelchair_fmu.loop.verdict import Diagnosis, diagnose
+from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
 
 SAMPLE = Path(__file__).resolve().parents[1] / "examples" / "sample-campaign"
 RUNS = ("coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom-quick", "random-steps")
@@ -31,7 +31,7 @@ NIGHT = (  # every size with both signs, and every run
     ("slalom-quick", 1.3),
     ("random-steps", -0.05),
 )
-# whose verdict is another one, as some of what told is gone: see tests/loop/test_timing.py
+# whose verdict is another one, as some of what told is gone: see tests/inference/test_timing.py
 TOO_LITTLE = (("steady-right", 1.3), ("slalom-slow", -1.3))
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from wheelchair_fmu.errors import SimulationError
-from wheelchair_fmu.loop.fit import fit
-from wheelchair_fmu.loop.preflight import begin
-from wheelchair_fmu.loop.search import Search
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.search.beginning import begin
+from wheelchair_fmu.inference.search.search import Search
 
 BIC_MARGIN = 10.0  # "very strong" evidence, Kass and Raftery
 CORRELATION = 0.1  # below which nobody would point at anything

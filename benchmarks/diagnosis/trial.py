@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.bootstrap import bootstrap
-from wheelchair_fmu.loop.ranking import as_json
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.bootstrap import bootstrap
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant

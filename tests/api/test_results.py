@@ -18,7 +18,7 @@ from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.api import runs
 from wheelchair_fmu.api.diagnoses import probabilities_in
 from wheelchair_fmu.cli.effects import template
-from wheelchair_fmu.loop.subject import narrowed
+from wheelchair_fmu.inference.subject import narrowed
 from wheelchair_fmu.model import variant as chairs
 from wheelchair_fmu.report import latex
 from wheelchair_fmu.report.estimates_figure import estimates_figure

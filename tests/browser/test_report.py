@@ -18,8 +18,9 @@ from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
 from tests.kit import tracked, with_settings
 from wheelchair_fmu.campaign import Campaign, moving, read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.loop.likelihood import Likelihood, NoiseModel
-from wheelchair_fmu.loop.verdict import FORCES as UNRECORDED
+from wheelchair_fmu.inference.decision.verdict import FORCES as UNRECORDED
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.content import TUNING, noise_told
 from wheelchair_fmu.report.page import page as page_of

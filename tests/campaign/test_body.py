@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from wheelchair_fmu.campaign import body, check, read
-from wheelchair_fmu.loop.subject import known_parameters
+from wheelchair_fmu.inference.subject import known_parameters
 
 RATE, OMEGA, SWING, MASS = 150.0, 2 * np.pi * 1.3, 0.04, 70.0
 TIME = np.arange(0, 6, 1 / RATE)

@@ -15,7 +15,7 @@ from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
 from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.cli.main import app
-from wheelchair_fmu.loop.subject import known_parameters
+from wheelchair_fmu.inference.subject import known_parameters
 
 LATE = {"swl": 0.7, "swr": 0.2, "imu": 0.45}
 

@@ -9,9 +9,9 @@ import pytest
 from tests.browser.conftest import Reader, browser, report_of  # noqa: F401 (which is a fixture)
 from tests.campaign.test_measurements import MEASUREMENTS
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.final import final
-from wheelchair_fmu.loop.story import story
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.final import final
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from tests.kit import with_settings
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
-from wheelchair_fmu.loop.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.independent.campaigns import ROOM_CHANNELS, make
-from tests.loop.conftest import among
+from tests.inference.conftest import among
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.loop.likelihood import Likelihood
-from wheelchair_fmu.loop.verdict import diagnose
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 AXLE = {"marker_offset": {"x": -0.2, "y": 0.05}}

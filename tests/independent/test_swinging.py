@@ -12,9 +12,10 @@ from benchmarks.independent.chair import Chair, Start, simulate
 from benchmarks.independent.manoeuvres import Run, strokes
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.loop.factory import CALIBRATED, ModelFactory
-from wheelchair_fmu.loop.likelihood import CASTERS, Likelihood
-from wheelchair_fmu.loop.models import Models
+from wheelchair_fmu.inference.evidence.initial_state import CASTERS
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 

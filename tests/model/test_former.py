@@ -12,7 +12,7 @@ from tests.campaign.small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
 from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.errors import FormerName, UsageError
 from wheelchair_fmu.faults import WARNING
-from wheelchair_fmu.loop.subject import applied, known_parameters
+from wheelchair_fmu.inference.subject import applied, known_parameters
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.former import renamed, replaced
 from wheelchair_fmu.model.variant import Variant, read_variant

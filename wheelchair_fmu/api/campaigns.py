@@ -12,7 +12,7 @@ import pandas as pd
 from .. import campaign as measured
 from ..contracts.own import catalogue
 from ..errors import unknown
-from ..loop.subject import known_parameters
+from ..inference.subject import known_parameters
 from .frames import framed
 
 if TYPE_CHECKING:

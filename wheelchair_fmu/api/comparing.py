@@ -11,9 +11,9 @@ from typing import TypeVar
 
 from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
-from ..loop.compare import Comparison, RunErrors, errors_of, together
-from ..loop.fit import fit, start_value
-from ..loop.likelihood import Likelihood
+from ..inference.estimation.fit import fit, start_value
+from ..inference.evidence.likelihood import Likelihood
+from ..inference.residual.compare import Comparison, RunErrors, errors_of, together
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..studies import Fmu, fmu_of

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from ..loop import compare as errors
-from ..loop.subject import applied
+from ..inference.residual import compare as errors
+from ..inference.subject import applied
 from ..report.figures import overlay_figure, where_figure
 from .campaigns import UNIT_OF, Campaign
 from .comparing import compared

@@ -14,8 +14,8 @@ import pandas as pd
 
 from .. import campaign as measured
 from ..errors import Failure, unknown
-from ..loop import improve, verdict
-from ..loop.subject import applied, known_parameters, narrowed
+from ..inference.decision import improve, verdict
+from ..inference.subject import applied, known_parameters, narrowed
 from ..model import variant as chairs
 from ..report import latex
 from ..report.estimates_figure import estimates_figure

@@ -10,9 +10,9 @@ from typing import Any
 
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
-from ..loop.final import final
-from ..loop.story import story
-from ..loop.verdict import Diagnosis, diagnose
+from ..inference.decision.final import final
+from ..inference.decision.verdict import Diagnosis, diagnose
+from ..inference.explain.story import story
 from ..model.generic import library
 from ..model.variant import Variant
 from ..report.content import content, noise_told

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..loop.profile import profiles as estimate_profiles
-from ..loop.statistics import finite
-from ..loop.verdict import Diagnosis
+from ..inference.decision.verdict import Diagnosis
+from ..inference.estimation.statistics import finite
+from ..inference.explain.profile import profiles as estimate_profiles
 from ..model.generic import VARIABLES, profiles, terms
 
 

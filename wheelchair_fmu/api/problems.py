@@ -17,9 +17,10 @@ import pandas as pd
 from .. import campaign as measured
 from ..campaign import BY_NAME
 from ..fmu.build import build, with_chosen_effects
-from ..loop.factory import CALIBRATED
-from ..loop.fit import Problem
-from ..loop.likelihood import START, Likelihood, prior_start, start_sd
+from ..inference.estimation.fit import Problem
+from ..inference.evidence.initial_state import START, prior_start, start_sd
+from ..inference.evidence.likelihood import Likelihood
+from ..inference.models.factory import CALIBRATED
 from ..model.variant import Variant
 from ..writing import written
 from .frames import framed, save

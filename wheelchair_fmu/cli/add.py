@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from ..errors import unknown
-from ..loop.improve import add as add_effect
-from ..loop.statistics import standard_errors
+from ..inference.decision.improve import add as add_effect
+from ..inference.estimation.statistics import standard_errors
 from ..report.words import value_text
 from .files import print_json
 from .group import Progress, console, working

@@ -15,7 +15,7 @@ from rich.table import Table
 from ..campaign import CHANNELS, Campaign, Fault, Recorded, judged, read
 from ..contracts.own import catalogue
 from ..faults import ERROR, WARNING
-from ..loop.subject import known_parameters
+from ..inference.subject import known_parameters
 from ..model.choice import Choice
 from ..model.stage import Effect
 from ..report import preview

@@ -13,9 +13,9 @@ from rich.table import Table
 from ..api import campaigns, comparisons
 from ..api.comparing import PIECE, compared
 from ..campaign import Campaign, pieces
-from ..loop.compare import Comparison
-from ..loop.physical import as_json as physical
-from ..loop.statistics import finite
+from ..inference.estimation.statistics import finite
+from ..inference.residual.compare import Comparison
+from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
 from ..writing import written
 from .files import Kind, TableKind, print_json

@@ -13,8 +13,8 @@ from rich.table import Table
 from ..api import diagnoses
 from ..api.diagnosing import searched
 from ..campaign import windows
-from ..loop.bootstrap import Bootstrap, bootstrap
-from ..loop.verdict import Diagnosis, insufficient
+from ..inference.decision.bootstrap import Bootstrap, bootstrap
+from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms
 from ..report.saving import save

@@ -13,7 +13,7 @@ from rich import box
 from rich.table import Table
 
 from ..errors import UsageError, unknown
-from ..loop.subject import chair
+from ..inference.subject import chair
 from ..model.alike import look_alikes
 from ..model.effects import NAME, bundled
 from ..model.signs import Shows

@@ -14,7 +14,7 @@ from rich.table import Table
 from ..chunks import bad, is_done
 from ..errors import UsageError
 from ..fleet import Fleet, folders, long, summary
-from ..loop.subject import chair
+from ..inference.subject import chair
 from ..model.former import current
 from ..model.recipe import Recipe
 from ..writing import written

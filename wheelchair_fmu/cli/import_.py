@@ -35,7 +35,7 @@ from ..campaign.importing import (
 from ..campaign.syncing import find as find_clocks
 from ..errors import UsageError
 from ..faults import ERROR, NOTE, Fault
-from ..loop.subject import known_parameters
+from ..inference.subject import known_parameters
 from ..units import same_dimension
 from ..writing import written
 from .check import MOST, draw

@@ -15,10 +15,10 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from ..contracts.own import load
 from ..handling.experiments import experiments
-from ..loop.improve import after, with_proposal
-from ..loop.ranking import as_json
-from ..loop.staircase import Step
-from ..loop.verdict import diagnose
+from ..inference.decision.improve import after, with_proposal
+from ..inference.decision.verdict import diagnose
+from ..inference.explain.ranking import as_json
+from ..inference.residual.staircase import Step
 from ..model.generic import library
 from .diagnose import show, write_proposal
 from .files import write_json

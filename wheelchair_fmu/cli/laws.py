@@ -12,7 +12,7 @@ from rich.table import Table
 
 from ..contracts.of_laws import law_breaches
 from ..errors import EffectError, UsageError, unknown
-from ..loop.subject import chair
+from ..inference.subject import chair
 from ..model.choice import KINDS, Choice, configured, law, names
 from .files import print_json
 from .group import console

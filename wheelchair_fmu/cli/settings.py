@@ -8,7 +8,7 @@ from pathlib import Path
 from ..campaign import Campaign
 from ..contracts.own import catalogue
 from ..errors import UsageError
-from ..loop.subject import applied, chair
+from ..inference.subject import applied, chair
 from ..model.variant import Variant
 from .check import measurements
 

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from ..errors import SystemStructureError
 from ..fmu import parameter_set
-from ..loop.subject import chair as subject_chair
+from ..inference.subject import chair as subject_chair
 from ..report.course import PLAYED, Course, course_figure, course_frames
 from ..report.saving import save, save_film
 from ..studies.ssp import sources

@@ -12,7 +12,7 @@ from rich.console import JustifyMethod
 from rich.table import Table
 
 from ..contracts.own import text_of
-from ..loop.staircase import Step
+from ..inference.residual.staircase import Step
 from ..model.variant import Variant
 from ..report.figures import staircase_figure
 from ..report.saving import save

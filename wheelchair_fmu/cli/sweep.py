@@ -16,8 +16,8 @@ from ..api.comparing import TUNING
 from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
-from ..loop.likelihood import Likelihood
-from ..loop.subject import known_parameters
+from ..inference.evidence.likelihood import Likelihood
+from ..inference.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
 from ..studies.sweep.indices import indices
 from ..studies.sweep.plan import variant_files

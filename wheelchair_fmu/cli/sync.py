@@ -14,7 +14,7 @@ from ..campaign.reading import judged
 from ..campaign.syncing import RunClocks, find, write
 from ..errors import CampaignError
 from ..faults import ERROR
-from ..loop.subject import known_parameters
+from ..inference.subject import known_parameters
 from ..report.saving import save
 from ..report.sync_figure import sync_figure
 from ..writing import written

@@ -12,19 +12,19 @@ from typing import Any, ClassVar
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from .. import __version__, loop
+from .. import __version__, inference
 from ..campaign import fingerprint, read, windows
 from ..engine.cache import sources
 from ..errors import Failure, FileError, WheelchairError
-from ..loop.subject import applied, known_parameters
-from ..loop.verdict import diagnose
+from ..inference.decision.verdict import diagnose
+from ..inference.subject import applied, known_parameters
 from ..model.generic import library
 from ..model.recipe import Recipe
 from ..model.variant import Variant
 from .rows import KEY, of_diagnosis, schema
 
 FILE = "campaign.toml"
-LOOP = Path(loop.__file__).parent
+INFERENCE = Path(inference.__file__).parent
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Fleet:
     @cached_property
     def keys(self) -> tuple[str, ...]:
         """For each campaign what decides its row: the files' content, the question, and this program."""
-        asked = (__version__, sources(), _loop(), repr(self.settings), repr(self.recipe))
+        asked = (__version__, sources(), _inference(), repr(self.settings), repr(self.recipe))
         return tuple(_hash(*asked, str(place), fingerprint(place)) for place in self.places)
 
     @cached_property
@@ -103,9 +103,9 @@ class Fleet:
             return {**about, "error": str(error)}
 
 
-def _loop() -> str:
+def _inference() -> str:
     """What decides a diagnosis beside the equations."""
-    return _hash(*(f.read_text(encoding="utf-8") for f in sorted(LOOP.glob("*.py"))))
+    return _hash(*(f.read_text(encoding="utf-8") for f in sorted(INFERENCE.rglob("*.py"))))
 
 
 def _hash(*words: str) -> str:

@@ -9,9 +9,9 @@ import pandas as pd
 import pyarrow as pa
 
 from ..chunks import ERROR
-from ..loop.ranking import ranking
-from ..loop.statistics import finite
-from ..loop.verdict import Diagnosis
+from ..inference.decision.verdict import Diagnosis
+from ..inference.estimation.statistics import finite
+from ..inference.explain.ranking import ranking
 from ..model.variant import Variant
 
 WORDS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..loop.ties import grouped
+from ..inference.search.ties import grouped
 from .told import (
     Told,
     actions,

@@ -14,26 +14,15 @@ from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.innovations import steps
 from ..engine.tangent import differentiable, sensed
 from ..engine.wasm import evaluation, modules
-from ..loop.factory import ModelFactory
-from ..loop.landscape import landscape
-from ..loop.likelihood import (
-    BODY,
-    CASTERS,
-    START,
-    TOLERANCE,
-    NoiseModel,
-    disturbance,
-    driven,
-    noise_of,
-    prior_start,
-    pushes_of,
-    start_sd,
-    starts_of,
-)
-from ..loop.local import BaselineError, ClockError, Local, locals_of
-from ..loop.statistics import finite
-from ..loop.timing import Late, retimed
-from ..loop.verdict import FORCES as UNRECORDED
+from ..inference.decision.verdict import FORCES as UNRECORDED
+from ..inference.estimation.statistics import finite
+from ..inference.evidence.initial_state import CASTERS, START, prior_start, start_sd, starts_of
+from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
+from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
+from ..inference.evidence.noise_model import NoiseModel, disturbance, noise_of, pushes_of
+from ..inference.explain.landscape import landscape
+from ..inference.models.factory import ModelFactory
+from ..inference.preflight.timing import Late, retimed
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
@@ -50,7 +39,7 @@ def content(
 ) -> dict[str, Any]:
     """Everything that `page.html` shows, as JSON; series are numbers under the key "f64", null in gaps.
 
-    `diagnosis` is what `loop.story` tells; `fixed` are parameters that the diagnosis did not estimate.
+    `diagnosis` is what `inference.explain.story` tells; `fixed` are parameters that the diagnosis did not estimate.
     """
     leads = any(step["step"] == UNRECORDED for step in diagnosis["ladder"])
     campaign = replace(campaign, runs=tuple(in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))

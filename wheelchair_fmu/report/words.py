@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..loop.policy import DEFAULT
-from ..loop.ties import grouped
+from ..inference.policy import DEFAULT
+from ..inference.search.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each

@@ -26,8 +26,8 @@ from starlette.routing import Route
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
-from ..loop.factory import CALIBRATED
-from ..loop.subject import known_parameters
+from ..inference.models.factory import CALIBRATED
+from ..inference.subject import known_parameters
 from ..model.arithmetic import shown as cut
 from ..model.dimensions import targets, unit_of_q, vocabulary
 from ..model.effects import bundled

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from tests.model.effects.chair import I_Z, MASS, SMOOTH, T_R, TOP, G, run
 from wheelchair_fmu.campaign import Campaign, Run
 from wheelchair_fmu.engine.simulate import Trajectory
-from wheelchair_fmu.loop.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
 
 ALL = (

@@ -1,4 +1,4 @@
-// Errors put together over runs and channels, as loop/compare.py does. 1.0 is the noise floor.
+// Errors put together over runs and channels, as inference/residual/compare.py does. 1.0 is the noise floor.
 
 const BINS = 4;
 

@@ -1,5 +1,5 @@
 // Sizes of what is ticked and the calibrated values, fitted together to the fitted runs: Gauss and Newton, with the priors of
-// loop/fit.py.
+// inference/estimation/fit.py.
 
 const ROUNDS = 8;
 const ENOUGH = 0.5; // fall of the sum of squares that slopes promise, below which nothing more is gained

@@ -241,7 +241,7 @@ function moved(kernel, of, values, place, steps, kept, take) {
 }
 
 /** What one run says of a fit: innovations r and how they go with each of `steps` [[name, step]], as {jtj, jtr, squares}.
- *  The filter is that of the values themselves, as in loop/fit.py. */
+ *  The filter is that of the values themselves, as in inference/estimation/fit.py. */
 function slopes(index, values, steps) {
   const kernel = kernelFor({ ...values, ...Object.fromEntries(steps.map(([name]) => [name, values[name] || 1])) }), of = kernel.recording(index), { wasm } = kernel, k = steps.length;
   const place = evaluated(kernel, of, values, kernel.place(of, false), 0);

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...campaign import BY_NAME
-from ...loop.physical import READ_IN
+from ...inference.residual.physical import READ_IN
 from ..canvas import blank
 from ..figures import BAND, BLACK, BLUE, GREY, ORANGE, tidy
 from .case import EFFECT, OFFSET, Case, interval

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...campaign.channels import PUSH_NAMES
+from ...campaign.channels import PUSH_NAMES, TELLS
 from ...campaign.recorded import PUSHES_CLOCK
-from ...loop.likelihood import CASTER_SD, POSE, POSE_SD, START_SD, TELLS, TOLERANCE
-from ...loop.policy import DEFAULT
-from ...loop.score import RUNS
+from ...inference.estimation.score import RUNS
+from ...inference.evidence.initial_state import CASTER_SD, POSE, POSE_SD, START_SD
+from ...inference.evidence.likelihood import TOLERANCE
+from ...inference.policy import DEFAULT
 from ..words import listed, title_of
 from .case import OFFSET, PROFILE, Case, interval
 from .markup import cite, code, plain

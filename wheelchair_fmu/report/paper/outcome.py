@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...campaign.channels import CHANNEL_NAMES
-from ...loop.calibration import DOUBTED
-from ...loop.policy import DEFAULT
+from ...inference.estimation.calibration import DOUBTED
+from ...inference.policy import DEFAULT
 from ..told import NAMED, Told, near_rivals
 from ..words import listed, sentence, title_of
 from .case import EFFECT, PROFILE, Case, interval

@@ -9,8 +9,9 @@ import numpy as np
 
 from ...campaign import moving
 from ...errors import Failure, SimulationError
-from ...loop.factory import ModelFactory
-from ...loop.likelihood import Evidence, Likelihood
+from ...inference.evidence.evidence import Evidence
+from ...inference.evidence.likelihood import Likelihood
+from ...inference.models.factory import ModelFactory
 from ...model.generic import library
 from ..content import TUNING, in_time, noise_told, used
 from .case import Case

@@ -1,0 +1,54 @@
+"""Campaigns as the model has them, with a force and a moment on the chair that no record has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from wheelchair_fmu.campaign import Campaign, Run
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN
+from wheelchair_fmu.model.variant import Variant
+
+T_R = 0.55
+Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  # of a run and its results without: F, M (n,)
+
+
+def wandering(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
+    """A first-order Gauss–Markov process (n,) that is forgotten over FORGOTTEN seconds."""
+    out, level = np.empty(len(time)), sd * rng.standard_normal()
+    for i, gap in enumerate(np.diff(time, prepend=time[0])):
+        keeps = np.exp(-gap / FORGOTTEN)
+        level = keeps * level + np.sqrt(1 - keeps**2) * sd * rng.standard_normal()
+        out[i] = level
+    return out
+
+
+def swinging(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
+    """A momentum (n,) of second order, p'' + 15 p' + 50 p = white noise, by steps of a tenth of a sample."""
+    out, p, rate, noise = np.empty(len(time)), 0.0, 0.0, sd * np.sqrt(2 * 15 * 50)
+    for i, gap in enumerate(np.diff(time, prepend=time[0] - 5.0)):
+        steps = max(10, round(gap / 1e-3))
+        for shock in noise * np.sqrt(gap / steps) * rng.standard_normal(steps):
+            rate += -(15 * rate + 50 * p) * gap / steps + shock
+            p += rate * gap / steps
+        out[i] = p
+    return out
+
+
+def ridden(campaign: Campaign, rng: np.random.Generator, forces: Forces) -> Campaign:
+    """The campaign's runs, simulated with its own pushes and these forces, and read with its noise."""
+    likelihood, runs = Likelihood(campaign, Variant()), []
+    names = likelihood.sensitivities.results
+    for run in campaign.runs:
+        start = likelihood.starts[run.name]
+        without = dict(zip(names, likelihood._simulated(run, {}, start)[0].T, strict=True))
+        F, M = forces(run, without)
+        felt = {"push.F_rl": run.inputs["push.F_rl"] + F / 2 + M / T_R, "push.F_rr": run.inputs["push.F_rr"] + F / 2 - M / T_R}
+        channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), {}, start)
+        read = {c: v + rng.normal(0, campaign.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
+        record = {n: w + rng.normal(0, 0.4, len(w)) for n, w in run.inputs.items()}
+        runs.append(replace(run, inputs=record, channels=read))
+    return replace(campaign, runs=tuple(runs))

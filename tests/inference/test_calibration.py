@@ -1,0 +1,96 @@
+"""Given values that are wrong: calibrated where that is believable, and said where it is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import pytest
+
+from benchmarks.independent.campaigns import make, truth
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.estimation.calibration import at_bound, calibration, doubts
+from wheelchair_fmu.inference.explain.story import story
+from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.quantities import M, Parameter
+
+
+def fitted(campaign):
+    shop = ModelFactory(campaign, Variant())
+    found, *_ = Models(shop).calibrate()
+    return {c.record.name: c for c in calibration(shop.likelihood(), found)}
+
+
+def test_values_as_given_raise_no_doubts(sample):
+    found = fitted(sample)
+    assert set(MEASURED) < set(found)
+    assert not any(c.beyond for c in found.values())
+    assert found["chair.m"].value == pytest.approx(80, abs=1) and found["chair.m"].prior_sd == pytest.approx(2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sd", "stopped"),
+    [
+        ("chair.a", 0.29, 0.01, True),  # four standard deviations of its prior
+        ("chair.a", 0.289, 0.01, False),
+        ("chair.a", 1.0, inf, True),  # its own bound
+        ("effect.some.a", 0.9, 0.01, False),  # whose prior is no reason to stop
+        ("effect.some.a", 0.0, inf, True),
+    ],
+)
+def test_a_fit_stops_at_bounds_and_where_no_prior_lets_it_go(name, value, sd, stopped):
+    record = Parameter(name, M, default=0.25, lower=0.0, upper=1.0)
+    assert at_bound(record, value, 0.25, sd) is stopped
+
+
+def test_a_mass_that_nobody_weighed_is_said(sample):
+    found = fitted(replace(sample, known={**sample.known, "chair.m": 60.0}))
+    mass = found["chair.m"]
+    assert mass.beyond and mass.at_bound
+    assert mass.value == pytest.approx(66, rel=1e-6) and mass.upper == 66 and mass.lower == 54
+    said = [words for words in doubts(list(found.values())) if words.startswith("chair.m comes out at")]
+    assert len(said) == 1 and "standard deviations from the 60 ± 1.5 kg given" in said[0]
+
+
+def test_errors_of_scales_and_tape_are_no_effect(tmp_path):
+    """The chair is as heavy and as wide as a lab measures it: some per cent and some millimetres off."""
+    campaign = read(make(tmp_path / "c", {}, seed=31, measured=1.5))
+    true = truth({}, seed=31, measured=1.5).chair
+    assert abs(true.a - 0.25) > 0.03 and abs(true.m - 80) > 1.5  # by what was an effect once
+    found = diagnose(campaign)
+    assert found.verdict in ("adequate", "cannot_see")
+    values = {c.record.name: c for c in found.calibration}
+    assert values["chair.m"].value == pytest.approx(true.m, rel=0.005)
+    assert values["chair.t_r"].value == pytest.approx(true.t_r, abs=0.004)
+
+
+def test_a_gyro_is_told_from_a_tread_that_is_a_little_off(tmp_path):
+    """3 % of a gyro's scale is 16 mm of tread, which no tape excludes; but how wheel speeds and slips go together is not."""
+    found = diagnose(read(make(tmp_path / "c", {"gyro_scale": {"k": 0.03}}, seed=1)))
+    assert found.verdict == "missing" and found.effects == ("gyro_scale",)
+    values = {c.record.name: c for c in found.calibration}
+    assert abs(found.rounds[0].fit.values["chair.t_r"] - 0.55) > 0.01 > abs(values["chair.t_r"].value - 0.55)
+
+
+def test_a_tread_that_is_a_little_off_is_no_gyro(tmp_path):
+    """15 mm of tread, which is 2.7 % of a gyro's scale: the tread itself says so, and nothing is missing."""
+    campaign = read(make(tmp_path / "c", {}, seed=1))
+    found = diagnose(replace(campaign, known={**campaign.known, "chair.t_r": 0.565}))
+    assert found.verdict in ("adequate", "cannot_see", "small") and "gyro_scale" not in found.effects
+    values = {c.record.name: c for c in found.calibration}
+    assert values["chair.t_r"].value == pytest.approx(0.55, abs=0.004)
+
+
+def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
+    """In everyday turns another place of the CM does as well as patches that resist being turned. No tape is so far off, and
+    what lets it back is named with its size."""
+    found = diagnose(read(make(tmp_path / "c", {"turn_slip": {"M": 1.5, "M_f": 0.15}}, seed=1)))
+    if found.verdict == "outside":
+        assert "chair.a" in next(c.record.name for c in found.calibration if c.beyond)
+        assert [note for note in found.notes if note.startswith("with turn_slip chair.a comes out at 0.2")]
+        assert story(found)["calibration"]["chair.a"]["beyond"]
+    else:
+        assert "turn_slip" in found.effects

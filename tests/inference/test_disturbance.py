@@ -1,0 +1,137 @@
+"""The strength of forces that nobody recorded: what was put in comes out, and nothing where nothing was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.campaign import moving
+from wheelchair_fmu.campaign.windows import between
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.estimation.statistics import standard_errors
+from wheelchair_fmu.inference.evidence.disturbance import acting, strength
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.noise_model import NoiseModel, disturbance
+from wheelchair_fmu.model.variant import Variant
+
+from .forces import T_R, ridden, swinging, wandering
+
+
+@pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.4), (0.0, 0.0)])
+def test_the_force_that_was_put_in_comes_out(sample, force, moment):
+    rng = np.random.default_rng(5)
+    campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, run.time, moment)))
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    assert found.force == pytest.approx(force, rel=0.15, abs=0.15)
+    assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
+    noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
+    whole = Likelihood(campaign, Variant(), noise).evidence(campaign.runs, {}, ())
+    assert float(np.mean(whole.r**2)) == pytest.approx(1, abs=0.03)
+
+
+def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
+    """It pushes by what its momentum changes, forward as much as backward; a floor leans on the chair for a while."""
+    rng, swings = np.random.default_rng(7), 2.0
+
+    def pushes(run, without):
+        return wandering(rng, run.time, 1.0) - np.gradient(swinging(rng, run.time, swings), run.time), 0 * run.time
+
+    campaign = ridden(sample, rng, pushes)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    assert found.body == pytest.approx(swings, rel=0.25)
+    assert found.force < 2.5 and found.moment < 0.1
+
+
+def test_a_body_pushes_without_a_mean_by_what_its_momentum_changes():
+    """Of p'' + (α + β) p' + α β p = white noise, p' has a standard deviation of √(α β) times that of p, and no mean."""
+    unknown = disturbance(NoiseModel({}, body=3.0), 2, T_R)
+    weights = unknown.as_push[:, 2:].sum(axis=0) * unknown.sd[2:]
+    alpha, beta = 1 / unknown.lasting[2:]
+    assert np.sqrt(weights @ unknown.common[2:, 2:] @ weights) == pytest.approx(3.0 * np.sqrt(alpha * beta))
+    slow = weights * np.sqrt(2 / unknown.lasting[2:]) * unknown.lasting[2:]  # what one noise does to each at rest, added up
+    assert slow.sum() == pytest.approx(0.0, abs=1e-12)
+    assert np.allclose(unknown.as_push[0, 2:], unknown.as_push[1, 2:]), "along the heading"
+
+
+def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
+    """What forces do is known: twice the mass needs twice the force for it."""
+    known = NoiseModel({}, force=2.0, moment=0.5, body=1.0, mass=80.0)
+    light, heavy = (disturbance(known, 2, T_R, mass).as_push for mass in (80.0, 160.0))
+    np.testing.assert_allclose(heavy[:, [0, 2, 3]], 2 * light[:, [0, 2, 3]])
+    np.testing.assert_allclose(heavy[:, 1], light[:, 1])
+
+
+def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
+    """A model that lacks a large force, with that force among the noise: linearised where it leads, and nowhere else."""
+    rng = np.random.default_rng(8)
+    campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 8.0), wandering(rng, run.time, 1.0)))
+    noise = replace(NoiseModel(campaign.noise), force=8.0, moment=1.0)
+    likelihood = Likelihood(campaign, Variant(), noise).led(campaign)
+    first = likelihood.evidence(campaign.fit, {}, ())
+    for e in first.runs:  # from elsewhere
+        likelihood.paths[e.run.name] = 3.0 * rng.standard_normal(4) * np.ones((len(e.run.time), 4))
+    again = likelihood.evidence(campaign.fit, {}, ())
+    assert again.misfit == pytest.approx(first.misfit, abs=5.0)
+    for e, other in zip(first.runs, again.runs, strict=True):
+        np.testing.assert_allclose(e.path, other.path, atol=0.1 * max(noise.force, noise.moment))
+    assert float(np.mean(first.r**2)) == pytest.approx(1, abs=0.03)
+
+
+def test_values_among_unrecorded_forces_are_found_without_bias(sample):
+    """From a seventh off. Slopes that had the path's forces in them leaned by two standard errors in the mass."""
+    names = ("chair.m", "chair.I_z", "tyre.C_lambda", "resistance.f_r")
+    off = []
+    for seed in range(10, 16):
+        rng = np.random.default_rng(seed)
+        campaign = ridden(
+            sample, rng, lambda run, without, rng=rng: (wandering(rng, run.time, 3.0), wandering(rng, run.time, 0.3))
+        )
+        noise = NoiseModel(campaign.noise, force=3.0, moment=0.3, mass=80.0)
+        likelihood = Likelihood(campaign, Variant(), noise).led(moving(campaign))
+        true = likelihood.chair({})
+        found = fit(likelihood, names, {n: true[n] * 1.15 for n in names})
+        errors = standard_errors(found)
+        off.append([(found.values[n] - true[n]) / errors[n] for n in names])
+        assert errors["chair.m"] < 0.5 and errors["chair.I_z"] < 0.06
+    assert np.abs(off).max() < 4 and np.abs(np.mean(off, axis=0)).max() < 3 / np.sqrt(len(off))
+
+
+@pytest.mark.parametrize("f_r", [0.03, 0.05])
+def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks_and_no_more(sample, f_r):
+    """Its drag is some newtons too large. About where it stands no slope leads anywhere, and any force would do."""
+    rng = np.random.default_rng(6)
+    campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 3.0), wandering(rng, run.time, 0.5)))
+    likelihood, wrong = Likelihood(campaign, Variant()), {"resistance.f_r": f_r}
+    found, evidence = acting(likelihood, wrong, T_R)
+    assert 3.0 < found.force < 7.0 and found.moment == pytest.approx(0.5, rel=0.1)
+    assert float(np.sqrt(np.mean(evidence.r**2))) == pytest.approx(1, abs=0.03)
+    assert strength(likelihood.evidence(campaign.fit, wrong, ()), T_R).force > 100, "or nobody would need the way it went"
+
+
+def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_body(sample):
+    """The body has momentum then, which the chair gets back; without that, all that follows would be off by as much."""
+    rng, swings, momenta = np.random.default_rng(9), 6.0, {}
+
+    def pushes(run, without):
+        momenta[run.name] = swinging(rng, run.time, swings)
+        return -np.gradient(momenta[run.name], run.time), 0 * run.time
+
+    campaign = ridden(sample, rng, pushes)
+    begun = []
+    for run in campaign.fit[:4]:
+        early = run.time < run.time[0] + 2.0
+        at = run.time[np.argmax(np.where(early, np.abs(momenta[run.name]), 0.0))]
+        begun.append(between(run, float(at), float(run.time[-1])))
+    cut = replace(campaign, runs=tuple(begun))
+    noise = replace(NoiseModel(cut.noise), body=swings)
+    likelihood = Likelihood(cut, Variant(), noise).led(cut)
+    with_it, without = [], []
+    for e in likelihood.evidence(cut.fit, {}, ()).runs:
+        wheels = [i for i, c in enumerate(e.channels) if c.startswith("wheel_speed")]
+        with_it.append(e.measured[:, wheels] - e.predicted[:, wheels])
+        without.append(e.measured[:, wheels] - likelihood.readings(e.run, {}, e.start)[2][:, wheels])
+    left, naive = (float(np.sqrt(np.mean(np.concatenate(errors) ** 2))) for errors in (with_it, without))
+    swing = swings / likelihood.chair({})["chair.m"]
+    assert left < 1.15 * np.hypot(swing, cut.noise["wheel_speed_l"]) and naive > 1.5 * left

@@ -1,0 +1,50 @@
+"""Which effects a likelihood can switch on, and that likelihoods of one model agree."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
+
+SIGMA, TOE = "effect.relaxation_length.sigma", "effect.toe_misalignment.sum"
+
+
+@pytest.fixture(scope="module")
+def shop(sample):
+    return ModelFactory(sample, Variant(catalogue=bundled()))
+
+
+def test_a_bench_carries_what_was_asked_for_and_light_effects_where_that_costs_no_state(shop):
+    light = set(shop.light)
+    assert set(shop.likelihood().variant.effects) == set(shop.likelihood(["toe_misalignment"]).variant.effects) == light
+    assert shop.likelihood(["relaxation_length"]).variant.effects == ("relaxation_length",)
+    assert set(shop.likelihood(["relaxation_length", "toe_misalignment"]).variant.effects) == light | {"relaxation_length"}
+    assert set(shop.wide(["relaxation_length"]).variant.effects) == light | {"relaxation_length"}
+
+
+def test_benches_of_one_model_agree(shop):
+    values, runs = {SIGMA: 0.1}, shop.campaign.fit[:2]
+    narrow, wide = (
+        likelihood.evidence(runs, values, [SIGMA])
+        for likelihood in (shop.likelihood(["relaxation_length"]), shop.wide(["relaxation_length"]))
+    )
+    assert np.abs(narrow.r - wide.r).max() < 1e-9
+    assert np.abs(narrow.S - wide.S).max() < 1e-9 * np.abs(wide.S).max()
+    again = shop.rerun(["relaxation_length"]).resimulated(wide, {SIGMA: 0.12})
+    assert np.abs(again.r - shop.wide(["relaxation_length"]).resimulated(wide, {SIGMA: 0.12}).r).max() < 1e-9
+
+
+def test_a_bench_without_parameters_to_fit_derives_by_where_runs_start(sample):
+    shop = ModelFactory(sample, Variant(catalogue=bundled()).with_effects(["relaxation_length"]), {*CALIBRATED, SIGMA})
+    evidence = shop.likelihood().evidence(sample.fit[:1], {}, tune_start=1)
+    assert evidence.S.shape[1] == 0 and np.isfinite(evidence.rms)
+
+
+def test_a_variant_s_own_effects_are_on_every_likelihood(sample):
+    shop = ModelFactory(sample, Variant(catalogue=bundled()).with_effects(["relaxation_length"]))
+    for likelihood in (shop.likelihood(), shop.wide(), shop.rerun(["trunk_motion"])):
+        assert "relaxation_length" in likelihood.variant.effects
+    assert TOE in shop.wide().records and TOE not in shop.likelihood().records

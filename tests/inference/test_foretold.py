@@ -1,0 +1,84 @@
+"""Who foretells held-out runs worse than the calibrated model is said, and all models are held against the same readings."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace as Some
+
+import numpy as np
+import pytest
+
+from tests.inference.linear import evidence
+from wheelchair_fmu.errors import SimulationError
+from wheelchair_fmu.inference.decision.foretold import on_led_runs, worsened
+from wheelchair_fmu.inference.residual.physical import ChannelError
+from wheelchair_fmu.inference.residual.staircase import Step
+from wheelchair_fmu.inference.search.selection import StepwiseSelection
+
+
+def step(name: str, **off: float) -> Step:
+    """A step whose model is off by so much (SI), by channel, in each of two held-out runs of other lengths."""
+    runs = {f"run {n}": {c: ChannelError.of(c, np.zeros(n), np.full(n, by)) for c, by in off.items()} for n in (10, 30)}
+    return Step(name, 1.2, 1.1, {}, runs)
+
+
+def test_a_channel_that_the_last_model_foretells_worse_is_said():
+    ladder = [
+        step("nominal", yaw_rate=0.001),
+        step("calibrated", yaw_rate=0.02, u=0.023),
+        step("+drag", yaw_rate=0.01, u=0.028),
+    ]
+    (told,) = worsened(ladder)
+    assert told.startswith("u: ") and "0.028 m/s" in told and "0.023" in told
+
+
+@pytest.mark.parametrize(("after", "said"), [(0.0249, 0), (0.0256, 1), (0.01, 0)])
+def test_a_little_worse_is_not_worse(after, said):
+    assert len(worsened([step("nominal"), step("calibrated", u=0.023), step("+drag", u=after)])) == said
+
+
+def test_where_nothing_was_put_in_or_held_out_nothing_is_said():
+    assert not worsened([step("nominal", u=0.01), step("calibrated", u=0.5)])
+    assert not worsened([Step("nominal", 2.0, np.nan), Step("calibrated", 1.2, np.nan), Step("+drag", 1.0, np.nan)])
+
+
+def led(fails: bool = False) -> Some:
+    """A search among forces whose simulations are off by what its values say."""
+
+    def errors(runs, values):
+        if fails:
+            raise SimulationError("beyond all numbers")
+        return evidence([np.full((5, 1), values["off"])] * len(runs), [np.zeros((5, 1, 0))] * len(runs), ())
+
+    factory = Some(campaign=Some(fit=(1, 2), holdout=(3,)), likelihood=lambda: Some(evidence=errors))
+    return Some(factory=factory)
+
+
+def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
+    before = step("calibrated", yaw_rate=0.5)
+    after = on_led_runs(before, {"off": 0.25}, led())
+    assert (after.name, after.fit, after.heldout) == (before.name, before.fit, before.heldout)
+    assert len(after.fit_errors) == 2 and len(after.heldout_errors) == 1
+    assert on_led_runs(before, {"off": 0.25}, led(fails=True)) is before
+
+
+@pytest.mark.parametrize(
+    ("sizes", "helping", "parts", "expected"),
+    [
+        ({"a": 2.0, "b": 0.6}, (), ("a", "b"), ("a",)),  # of a group, what is large
+        ({"a": 0.6, "b": 0.6}, (), ("a", "b"), ("a", "b")),  # which is large together
+        ({"a": 2.0, "b": 0.6}, (), (), ("a", "b")),  # none of a group: found by itself
+        ({"a": 2.0, "b": 0.6}, ("b",), (), ("a",)),  # slight
+        ({"a": 2.0, "b": 0.8}, ("b",), (), ("a", "b")),  # helped, and is large beside the others
+    ],
+)
+def test_what_is_named_of_what_is_in_a_model(sizes, helping, parts, expected):
+    selection = object.__new__(StepwiseSelection)
+    selection.__dict__ |= {
+        "search": Some(surely_large=lambda base, e: sizes[e] > 0.7),
+        "effects": ("old", *sizes),
+        "already": ("old",),
+        "base": None,
+        "helping": set(helping),
+        "parts": set(parts),
+    }
+    assert selection.named() == expected

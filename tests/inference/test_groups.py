@@ -1,0 +1,151 @@
+"""Effects that show only together: found as one, judged as an effect of several parameters, parted where one does all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace as Some
+
+import casadi as cs
+import numpy as np
+import pytest
+
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.models.factory import ModelFactory, groups_of
+from wheelchair_fmu.inference.search.beginning import begin
+from wheelchair_fmu.inference.search.joint import parted
+from wheelchair_fmu.inference.search.screen import Screen
+from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.stage import Effect, adds
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.quantities import N_S_M, RAD, Parameter
+
+ANGLE = Parameter("angle", RAD, "how far both lean", off=0.0, smallest_interesting=0.02, lower=0.0, upper=0.5, source="chosen")
+DRAG = Parameter(
+    "k", N_S_M, "drag for each radian", off=0.0, smallest_interesting=20.0, lower=0.0, upper=2000.0, source="chosen"
+)
+LEAN = Effect("lean", "wheels that lean", (ANGLE,), (adds("phi", lambda angle: cs.vertcat(angle, angle)),))
+RUBS = Effect(
+    "rubs", "a lean that drags", (DRAG,), (adds("F_x", lambda k, phi, u: -k * cs.sum1(phi) * u / 2),), through=("lean",)
+)
+OTHERS = ("gyro_bias", "floor_cross_slope")
+TOGETHER = "lean+rubs"
+ANGLE_NAME, DRAG_NAME = "effect.lean.angle", "effect.rubs.k"
+SIZES = {ANGLE_NAME: 0.04, DRAG_NAME: 40.0}
+
+
+def chair(rubs: Effect = RUBS) -> Variant:
+    return Variant(catalogue={"lean": LEAN, rubs.id: rubs, **{e: bundled()[e] for e in OTHERS}})
+
+
+def measured(sample, values, rubs: Effect = RUBS):
+    """Five runs of the sample campaign, as a chair with these sizes would have gone, read with its noise. A lean by itself
+    hardly turns it, as its tyres take little camber thrust."""
+    rng, runs = np.random.default_rng(4), []
+    given = replace(sample, known={**sample.known, "tyre.C_phi": 20.0, "tyre.C_m_phi": 0.0})
+    likelihood = Likelihood(given, chair(rubs).with_effects(["lean", rubs.id]))
+    for run in (*given.fit[:4], given.holdout[0]):
+        channels, _, true = likelihood.readings(run, values, likelihood.starts[run.name])
+        read = {c: v + rng.normal(0, given.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
+        runs.append(replace(run, channels=read))
+    return replace(given, runs=tuple(runs))
+
+
+@pytest.fixture(scope="module")
+def leaning(sample):
+    return measured(sample, SIZES)
+
+
+@pytest.fixture(scope="module")
+def search(leaning):
+    return Search(ModelFactory(leaning, chair()))
+
+
+@pytest.fixture(scope="module")
+def first(search):
+    base, held, _ = begin(search, lambda words: None)
+    return search.round((), base, held)
+
+
+def test_groups_are_what_records_say():
+    assert groups_of(bundled()) == {
+        "caster_trail+caster_friction": ("caster_trail", "caster_friction"),
+        "caster_trail+caster_inertia": ("caster_trail", "caster_inertia"),
+    }
+    assert not groups_of({"caster_friction": bundled()["caster_friction"]}), "through nothing that is there"
+
+
+def test_every_effect_that_one_acts_through_is_in_the_catalogue():
+    assert {other for effect in bundled().values() for other in effect.through} <= set(bundled())
+
+
+def test_a_member_is_tried_beside_those_that_it_acts_through():
+    """Of what two sizes do only as a product each is nothing alone; one by one the second does all."""
+    w = np.array([1.0, -2.0, 0.5])
+    screen = object.__new__(Screen)
+    screen.__dict__ |= {
+        "factory": Some(
+            groups={TOGETHER: ("lean", "rubs")},
+            members=lambda e: ("lean", "rubs") if e == TOGETHER else (e,),
+            parameters=lambda e: tuple(n for n in SIZES if e in (TOGETHER, n.split(".")[1])),
+            catalogue={"lean": LEAN, "rubs": RUBS},
+        ),
+        "records": {p.name: p for effect in (LEAN, RUBS) for p in effect.owned},
+    }
+    product = Some(resimulated=lambda known, at: Some(r=-at.get(ANGLE_NAME, 0.0) * at.get(DRAG_NAME, 0.0) * w))
+    known = Some(r=0 * w)
+    (S,) = screen._secants(product, known, {}, TOGETHER)
+    np.testing.assert_allclose(S, np.stack([0 * w, ANGLE.smallest_interesting * w], axis=1))
+    (alone,) = screen._secants(product, known, {}, "rubs")
+    np.testing.assert_allclose(alone, 0)
+
+
+@pytest.mark.nightly
+def test_a_group_has_the_parameters_of_its_members(search):
+    assert search.factory.parameters(TOGETHER) == tuple(SIZES)
+    assert set(SIZES) <= set(search.factory.likelihood([TOGETHER]).records)
+
+
+@pytest.mark.nightly
+def test_a_group_promises_what_no_member_does(search, first):
+    alone, joined = search.screen_groups(first.fit, ())
+    promised = {s.score.effect: s.score.drop for s in (*alone, *joined)}
+    assert [s.score.effect for s in joined] == [TOGETHER]
+    assert promised["rubs"] < 1e-6 and promised[TOGETHER] > 5 * promised["lean"]
+    again, none = search.screen_groups(first.fit, ("lean",))
+    assert not none and "rubs" in {s.score.effect for s in again}, "beside one of them the other is an effect like any"
+
+
+@pytest.mark.nightly
+def test_a_group_is_found_as_an_effect_of_several_parameters(first):
+    (group,) = first.groups
+    assert first.winner is group
+    assert group.found and group.p < 1e-6 and len(group.estimate) == 2
+    assert np.all(np.abs(group.estimate - list(SIZES.values())) < 3 * group.se)
+    assert not any(c.found and c.effect in ("lean", "rubs") for c in first.candidates)
+
+
+@pytest.mark.nightly
+def test_its_members_are_put_in_one_by_one_and_named(leaning):
+    found = diagnose(leaning, chair())
+    assert found.verdict == "missing" and set(found.effects) == {"lean", "rubs"}
+    assert [s.name for s in found.ladder[:2]] == ["nominal", "calibrated"]
+    assert {s.name for s in found.ladder[2:]} == {"+lean", "+rubs"} and found.ladder[-1].left < 1.05
+    assert all(found.beliefs[e].large > 0.9 for e in found.effects)
+
+
+@pytest.mark.nightly
+def test_a_group_of_which_one_does_all_comes_to_that_one(sample):
+    """A drag that needs no lean, found with one."""
+    alone = replace(RUBS, id="rubs_alone", contributions=(adds("F_x", lambda k, u: -k * u / 50),))
+    size = "effect.rubs_alone.k"
+    search = Search(ModelFactory(measured(sample, {size: 40.0}, alone), chair(alone)))
+    base, held, _ = begin(search, lambda words: None)
+    now = search.round((), base, held)
+    group = "lean+rubs_alone"
+    whole = search.refit(("lean", "rubs_alone"), base.values)
+    judged = search.judge(base, held, whole, held, group, search.factory.parameters(group), 1)
+    (r,) = parted(search, replace(now, candidates=()), judged)
+    assert r.effects == () and [c.effect for c in r.candidates] == ["rubs_alone"]
+    assert r.candidates[0].estimate[0] == pytest.approx(40.0, abs=3 * r.candidates[0].se[0])

@@ -1,0 +1,47 @@
+"""A campaign too large to be searched at once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.campaign import pieces, windows
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.residual.compare import Comparison, errors_of, together
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import REGIMES
+
+
+def test_a_diagnosis_by_windows_finds_the_same_and_says_so(sample):
+    """Runs of 11 to 15 s are windows of their own; of these, most."""
+    chosen = windows(sample, most=9000)
+    assert len(chosen.runs) < len(sample.runs)
+    found = diagnose(chosen)
+    assert found.effects[0] == "rolling_resistance_asymmetry" and found.ladder[-1].heldout < 1.05 < found.ladder[1].heldout
+    assert found.notes[0] == chosen.thinned and "too many to search at once" in chosen.thinned
+
+
+def test_a_heading_that_a_run_states_is_where_it_starts(sample):
+    run = replace(sample.runs[0], set={"start.psi": 0.7})
+    likelihood = Likelihood(replace(sample, runs=(run,)), Variant())
+    assert likelihood.starts[run.name]["start.psi"] == 0.7
+
+
+def test_pieces_compared_are_the_run_compared(sample):
+    """Each piece starts anew, so its errors are its own; put together they are those of all pieces."""
+    run = next(r for r in sample.runs if r.name == "slalom-slow")
+    parts = pieces(run, 4.0)
+    likelihood = Likelihood(replace(sample, runs=tuple(parts)), Variant())
+    results = [o.name for o in likelihood.variant.model().outputs]
+    errors = [errors_of(e, None, REGIMES, results) for e in likelihood.evidence(parts, {}, tune_start=1).runs]
+    whole = together(run.name, errors)
+    assert len(parts) == 3 and whole.name == run.name and whole.e.shape == (len(run.time), len(run.channels))
+    squares = sum(float(np.nansum(e.e**2)) for e in errors)
+    assert Comparison((whole,)).rms() == pytest.approx(np.sqrt(squares / np.isfinite(whole.e).sum()), rel=1e-6)
+    assert Comparison((whole,)).rms("fit") == pytest.approx(Comparison(tuple(errors)).rms("fit"), rel=1e-6)
+    for name in REGIMES:
+        assert whole.regime[name] == pytest.approx(np.concatenate([e.regime[name] for e in errors]), rel=1e-6, abs=1e-6)
+    assert together(run.name, errors[:1]) is errors[0]

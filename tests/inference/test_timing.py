@@ -1,0 +1,128 @@
+"""A run whose pushes were recorded early or late is found, named and read in time; one that is right is not, and none is left
+out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.shifts import NIGHT, Case, less, shifted, with_shift
+from tests.inference.conftest import among
+from wheelchair_fmu.campaign import covered
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.evidence import Evidence
+from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.preflight.timing import Late, by_model, by_signals, retimed, unlike_the_others
+from wheelchair_fmu.inference.search.beginning import begin, retime_by_slopes, settle_clocks
+from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.model.variant import Variant
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1), ("holdout-random", 0.3)]
+)
+def test_a_shifted_run_is_read_in_time(sample, name, seconds):
+    search = Search(ModelFactory(with_shift(sample, Case(name, seconds)), Variant()))
+    base, held, _ = begin(search, lambda words: None)
+    settle_clocks(search, base.evidence, held)
+    assert set(search.clocks) == {name}
+    late = search.clocks[name]["pushes"]
+    assert late.seconds == pytest.approx(seconds, abs=0.01)
+    side = "early" if seconds > 0 else "late"
+    assert [n for n in search.notes if n.startswith(f"{name}: ") and f"too {side}" in n]
+    assert [r.name for r in search.factory.campaign.runs] == [r.name for r in sample.runs]
+
+
+def test_a_missing_effect_is_not_taken_for_a_shift(sample):
+    likelihood = ModelFactory(sample, Variant()).likelihood()
+    evidence = likelihood.evidence(sample.runs, {}, ())
+    assert max(e.rms["yaw_rate"] for e in evidence.runs) > 3  # there is something to explain
+    assert by_model(likelihood, evidence, {}) == {} and by_signals(sample) == {}
+
+
+@pytest.mark.parametrize("late", [Late(1.2, 0.1), Late(-1.2, 0.1), Late(0.02, 0.03)])
+def test_no_sample_is_used_whose_push_was_not_recorded(sample, late):
+    for run in sample.runs:
+        used = retimed(run, late)
+        for off in (-late.sd, late.sd):
+            recorded = used.time - late.seconds - off
+            assert recorded[0] > run.time[0] - 1e-6 and recorded[-1] < run.time[-1] + 1e-6
+        assert used.time[-1] - used.time[0] > run.time[-1] - run.time[0] - abs(late.seconds) - 2 * late.sd - 0.02
+
+
+def test_one_run_that_is_unlike_all_others_is_named(sample):
+    evidence = ModelFactory(sample, Variant()).likelihood().evidence(sample.runs, {}, ())
+    quiet = [replace(e, r=e.r / np.sqrt(np.nanmean(e.r**2))) for e in evidence.runs]
+    assert unlike_the_others(Evidence(tuple(quiet), ())) == ()
+    odd = [replace(e, r=2.5 * e.r) if e.run.name == "slalom-slow" else e for e in quiet]
+    (said,) = unlike_the_others(Evidence(tuple(odd[:4]), ()), Evidence(tuple(odd[4:]), ()))
+    assert said.startswith(
+        "slalom-slow: of this run the last model leaves 2.5 times the noise, and of no other one more than 1.00"
+    )
+    assert unlike_the_others(Evidence(tuple(replace(e, r=2 * e.r) for e in odd), ())) == (), "of others much is left as well"
+
+
+def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):
+    """`--fix effect.push_force_delay.tau`."""
+    search = Search(ModelFactory(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
+    base, *_ = search.calibrate()
+    assert not retime_by_slopes(search, (), (), base) and search.retimed == {}
+
+
+def test_a_delay_that_all_runs_share_is_no_clock(sample):
+    """It is the effect `push_force_delay`."""
+    assert by_signals(replace(sample, runs=tuple(shifted(r, 0.05) for r in sample.runs))) == {}
+
+
+def same_verdict(sample, name, seconds, chair=None):
+    """The shift that `diagnose` says, None if none; the verdict is as without it."""
+    found = diagnose(with_shift(sample, Case(name, seconds)), chair)
+    assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)
+    assert set(found.search.clocks) <= {name}
+    return found.search.clocks[name]["pushes"].seconds if found.search.clocks else None
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("name", "seconds"), NIGHT)
+def test_the_verdict_is_the_same_and_the_shift_is_told(sample, name, seconds):
+    """Of 60 cases, which `python -m benchmarks.shifts` makes."""
+    told = same_verdict(sample, name, seconds)
+    assert told == pytest.approx(seconds, abs=0.01) or (told is None and abs(seconds) < 0.05)
+
+
+@pytest.mark.nightly
+def test_a_shift_leaves_the_verdict_that_the_same_run_leaves_without_it_whose_clock_is_as_unsure(sample):
+    """This slalom less 1.3 s of its pushes, with a clock that is known to 6 ms, no longer tells drag from camber: shifted, and
+    as it is. Either loss alone leaves enough."""
+    case = Case("slalom-slow", -1.3)
+    found = diagnose(with_shift(sample, case))
+    assert found.search.clocks[case.run]["pushes"].seconds == pytest.approx(case.seconds, abs=0.01)
+    control = diagnose(less(sample, case, found.search.retimed[case.run].sd))
+    assert (
+        (found.verdict, found.ties)
+        == (control.verdict, control.ties)
+        == ("tie", (("rolling_resistance_asymmetry", "camber_misalignment"),))
+    )
+    assert found.final.values == pytest.approx(control.final.values, rel=0.01)
+
+
+@pytest.mark.nightly
+def test_where_the_push_that_tells_a_shift_was_not_recorded_the_run_is_named(sample):
+    """This turn begins at 1 s. With pushes that begin at 1.3 s they are the same all along, at whatever time they are read:
+    what is left of the run where all of them could have been tells as much as without a shift."""
+    case = Case("steady-right", 1.3)
+    found = diagnose(with_shift(sample, case))
+    assert found.search.clocks == {} and found.effects[:1] == ("rolling_resistance_asymmetry",)
+    assert [n for n in found.notes if n.startswith("steady-right: of this run the last model leaves 2.6 times the noise")]
+    control = with_shift(sample, case)
+    settled = [covered(run, 1.6) if run.name == case.run else run for run in control.runs]
+    assert same_verdict(replace(control, runs=tuple(settled)), "coast-down", 0.0) is None
+
+
+@among("rolling_resistance_asymmetry", "push_force_delay", "gyro_bias", "camber_misalignment")
+@pytest.mark.parametrize(("name", "seconds"), [("straight-strokes", 0.3), ("steady-right", 0.1), ("slalom-quick", 0.02)])
+def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair):
+    """Strokes that are all alike, a turn that hides its shift behind the missing effect, and a slalom whose shift bends C_λ."""
+    assert same_verdict(sample, name, seconds, chair) == pytest.approx(seconds, abs=0.01)

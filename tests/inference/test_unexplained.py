@@ -1,0 +1,114 @@
+"""What orders a force that nobody recorded: what does is told, and where nothing does, nothing is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.residual.strokes import begun, phase
+from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Order, Unexplained, unexplained
+from wheelchair_fmu.model.variant import Variant
+
+from .forces import T_R, ridden, wandering
+
+
+def left_of(campaign):
+    """What the chair of the sample lacks on a campaign, as it is given."""
+    likelihood = Likelihood(campaign, Variant())
+    evidence = likelihood.evidence(campaign.fit, {}, ())
+    needed = strength(evidence, T_R)
+    return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed, evidence)
+
+
+def spring(run, without):
+    return 0 * run.time, -2.0 * (without["caster.fl"] + without["caster.fr"]) / 2
+
+
+def lumpy(run, without):
+    """A flat spot: the drag goes up once a turn of the left wheel."""
+    angle = np.cumsum(without["sensor.wheel_speed_l"] * np.gradient(run.time)) / 0.31
+    return 4 * np.cos(angle), 0 * run.time
+
+
+def swung(run, without):
+    """A body swings once in each stroke, also while no hand pushes."""
+    pushed = run.inputs["push.F_rl"] + run.inputs["push.F_rr"]
+    return 6 * np.nan_to_num(np.sin(2 * np.pi * phase(run.time, pushed) + 1.0)), 0 * run.time
+
+
+def to_one_side(run, without):
+    return 0 * run.time, 0.4 + 0 * run.time
+
+
+@pytest.mark.parametrize(
+    ("forces", "of", "by"),
+    [
+        (spring, "moment", "caster angle"),
+        (lumpy, "force", "left wheel's angle"),
+        (to_one_side, "moment", "constant"),
+        (swung, "force", "stroke"),
+    ],
+)
+def test_what_a_force_goes_with_is_told(sample, forces, of, by):
+    found = left_of(ridden(sample, np.random.default_rng(1), forces))
+    assert found.orders and (found.orders[0].of, found.orders[0].by) == (of, by)
+    assert found.orders[0].share > 0.5
+    assert any(w.startswith(f"The missing {of} ") for w in found.words)
+
+
+def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
+    def hand(run, without):
+        held = (run.time > 3.4) & (run.time < 4.2) & (run.name == "slalom-slow")
+        return -12.0 * held, 1.5 * held
+
+    found = left_of(ridden(sample, np.random.default_rng(2), hand))
+    assert {o.by for o in found.orders} == {"run"}
+    assert all("run slalom-slow from 2." in o.words or "run slalom-slow from 3." in o.words for o in found.orders)
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_floor_is_ordered_by_nothing(sample, seed):
+    rng = np.random.default_rng(seed)
+    found = left_of(ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 2.5), wandering(rng, run.time, 0.4))))
+    assert found.orders == () and found.like_a_floor
+    assert "it is nobody's effect" in found.words[1]
+    shallow = [f"{found.after.force:.2g} N", f"{found.after.moment:.2g} N m"]
+    assert all(figure in found.words[0] for figure in shallow)
+
+
+def strokes(time, beginnings):
+    return sum(60 * np.clip(np.sin(np.pi * (time - t) / 0.4), 0, None) * ((time >= t) & (time < t + 0.4)) for t in beginnings)
+
+
+def test_strokes_begin_where_hands_begin_to_push_and_end_with_the_last():
+    time, beginnings = np.arange(0, 8, 1 / 240), np.array([1.0, 2.1, 3.0, 4.2])
+    noisy = strokes(time, beginnings) + np.random.default_rng(5).normal(0, 1.0, len(time))
+    np.testing.assert_allclose(begun(time, noisy), beginnings, atol=0.1)
+    found = phase(time, noisy)
+    assert np.isnan(found[time < 0.9]).all() and np.isnan(found[time > 5.5]).all()
+    pushing = (time > 1.2) & (time < 5.1)
+    assert np.isfinite(found[pushing]).all() and found[pushing].min() >= 0 and found[pushing].max() <= 1
+
+
+def test_a_coast_has_no_strokes():
+    time = np.arange(0, 4, 0.01)
+    assert begun(time, 0 * time).size == 0 and np.isnan(phase(time, 0 * time)).all()
+
+
+def test_a_body_that_swings_is_told_in_newton_seconds_and_orders_nothing():
+    forces, orders = (object(),), (Order("force", "stroke", 0.6, "the missing force is locked to the stroke"),)
+    swings = Unexplained(Strength(20.0, 1.0, 9.0, 100.0), Strength(2.0, 0.3, 4.2, 50.0), orders, forces, 800.0, 0.2)
+    assert swings.ordered == () and swings.like_a_floor
+    assert "2 N, 0.3 N m and a swing of the rider's body of 4.2 N s" in swings.words[0]
+    assert swings.words[1].startswith("Nothing else orders it")
+    assert swings.as_json()["body"] == 4.2 and swings.as_json()["calibrated"]["body"] == 9.0
+
+
+@pytest.mark.parametrize(("force", "counts"), [(2.0, False), (20.0, True)])
+def test_what_stays_the_same_is_a_floors_where_that_is_flat(force, counts):
+    same = (Order("force", CONSTANT, 0.6, "the missing force stays the same throughout"),)
+    left = Unexplained(Strength(force, 0.1, 0.0, 9.0), Strength(force, 0.1, 0.0, 9.0), same, (object(),), 800.0, 0.2)
+    assert (left.ordered == same) == counts

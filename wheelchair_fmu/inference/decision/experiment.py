@@ -1,0 +1,151 @@
+"""The next experiment: the run that best tells tied models apart, or shows what could not be seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from ...campaign import CHANNELS, Run
+from ...errors import SimulationError
+from ..estimation.fit import Fit, prior_of
+from ..estimation.statistics import decisive
+from ..evidence.likelihood import Likelihood
+from ..evidence.noise_model import NoiseModel
+from ..policy import DEFAULT
+from ..search.search import Search
+
+MOST_REPEATS = 20
+
+
+class Experiment(Protocol):
+    """What the loop needs to know of a run that could be made."""
+
+    words: str
+    time: np.ndarray
+    inputs: Any
+    speed: float
+    heading: float
+    set: Any
+    more: Any
+    sensors: Any
+
+
+def separate(
+    search: Search, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment], beside: Sequence[str] = ()
+) -> dict[str, Any] | None:
+    """The experiment that separates two fitted models, of these effects, with the fewest repeats, or None where none does.
+    `beside` are the effects that both models have.
+
+    The first model says what would be read; what the second cannot imitate, within what the campaign already says of
+    its parameters, is −2 log of the odds that one run gives.
+    """
+    likelihood = search.factory.likelihood([e for e in (*beside, *effects) if e in search.factory.catalogue])
+    needed = decisive(one.evidence)  # as the verdict on a tie has it
+    odds = []
+    for experiment in among:
+        try:
+            run = _imagined(likelihood, experiment, one)
+            evidence = _with_sensors(likelihood, experiment).evidence([run], other.values, other.names)
+        except SimulationError:
+            continue
+        r, S = evidence.r, evidence.S
+        g = S.T @ r
+        known = np.linalg.pinv(other.covariance, hermitian=True)
+        odds.append((float(r @ r - g @ np.linalg.pinv(S.T @ S + known, hermitian=True) @ g), experiment))
+    if not odds:
+        return None
+    gain, best = max(odds, key=lambda o: o[0])
+    repeats = int(np.ceil(needed / max(gain, 1e-9)))
+    if repeats > MOST_REPEATS:
+        return None
+    return {
+        "manoeuvre": best.words,
+        "separates": list(effects),
+        "repeats": repeats,
+        "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; {needed:.0f} decide",
+    }
+
+
+def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
+    """The experiment that would show most of the effects that this campaign could not have shown."""
+    likelihood = search.factory.wide()
+    effects = [e for e in hidden if e in search.factory.light]
+    names = [n for e in effects for n in search.factory.parameters(e)]
+    best: tuple[int, Any, list[str], float] | None = None
+    for experiment in among:
+        try:
+            run = _imagined(likelihood, experiment, base)
+            e = _with_sensors(likelihood, experiment).evidence([run], base.values, [*base.names, *names])
+        except SimulationError:
+            continue
+        shown, weakest = _shown(search, e.S, base, prior_of(likelihood, base.names).slopes, effects, names)
+        if shown and (best is None or len(shown) > best[0]):
+            best = (len(shown), experiment, shown, weakest)
+    if best is None:
+        return None
+    repeats = int(np.ceil(DEFAULT.tied / best[3]))
+    return {
+        "manoeuvre": best[1].words,
+        "separates": best[2],
+        "repeats": max(1, min(repeats, MOST_REPEATS)),
+        "why": f"it would show {best[0]} effects of interesting size that these runs could not",
+    }
+
+
+def _shown(
+    search: Search, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str], names: Sequence[str]
+) -> tuple[list[str], float]:
+    """Effects that one run would show at δ, and the information of the weakest of them."""
+    k = len(base.names)
+    Z, known = S[:, :k], np.linalg.pinv(base.covariance, hermitian=True) + prior**2
+    inverse = np.linalg.pinv(Z.T @ Z + known, hermitian=True)
+    shown, weakest = [], np.inf
+    for effect in effects:
+        own = search.factory.parameters(effect)
+        X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
+        information = X.T @ X - X.T @ Z @ inverse @ Z.T @ X
+        size = float(np.linalg.eigvalsh(information)[-1])
+        if size > DEFAULT.tied:
+            shown.append(effect)
+            weakest = min(weakest, size)
+    return shown, weakest
+
+
+def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> Run:
+    """The run as a fitted model would have it read, without noise."""
+    known = {**likelihood.variant.values, **likelihood.campaign.known}
+    given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
+    measured = {c for r in likelihood.campaign.runs for c in r.channels} | set(experiment.sensors)
+    blank = Run(
+        experiment.words,
+        Path(experiment.words),
+        experiment.words,
+        "fit",
+        experiment.speed,
+        given,
+        experiment.time,
+        dict(experiment.inputs),
+        {},
+    )
+    likelihood.starts[blank.name] = {
+        "start.x": 0.0,
+        "start.y": 0.0,
+        "start.psi": experiment.heading,
+        "start.u": experiment.speed,
+        "start.v": 0.0,
+        "start.psi_dot": 0.0,
+    }
+    w = likelihood.inputs(blank)
+    p = likelihood.variant.vector({**known, **model.values, **given, **likelihood.starts[blank.name]})
+    simulated = likelihood.sensitivities.run(experiment.time, w, p)
+    places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
+    return replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
+
+
+def _with_sensors(likelihood: Likelihood, experiment: Experiment) -> Likelihood:
+    sd = {**experiment.sensors, **likelihood.noise_model.sd}
+    return likelihood.with_noise_model(NoiseModel(sd, likelihood.noise_model.ar))

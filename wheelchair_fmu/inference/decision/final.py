@@ -1,0 +1,84 @@
+"""The model that a diagnosis ends with, as a table of estimates needs it: all that was fitted together, with its covariance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...campaign import Run
+from ...quantities import Parameter
+from ..estimation.calibration import at_bound
+from ..estimation.fit import Fit
+from ..estimation.statistics import finite, sandwich
+from ..evidence.evidence import Evidence
+from .verdict import Diagnosis
+
+
+def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
+    """The key `final` of a diagnosis, in SI units.
+
+    `step` is its place on the staircase and `laws` what the model is made of; `parameters` has a record for each of the k
+    values that were fitted together, `covariance` (k, k) their robust covariance in the same order; `fixed` are values that
+    nobody estimated because the user set them, by name; `runs` says which readings were used (see `_run`). `more` are the
+    records of generic terms, by name, one of which the model may have in it.
+    """
+    found, likelihood = d.top, d.search.factory.likelihood(d.included)
+    records, covariance = {**more, **likelihood.records}, sandwich(found)
+    errors = np.sqrt(np.maximum(np.diag(covariance), 0))
+    priors = _priors(d, found, records)
+    choice = likelihood.variant.choice
+    return {
+        "step": d.ladder[-1].name,
+        "laws": {"tyre": choice.tyre, "caster": choice.caster, "equations": choice.equations},
+        "parameters": [
+            _parameter(records[name], found.values[name], float(se), *priors[name], d.intervals.get(name))
+            for name, se in zip(found.names, errors, strict=True)
+        ],
+        "covariance": ((covariance + covariance.T) / 2).tolist(),  # symmetric to the last digit
+        "fixed": {n: d.search.factory.variant.values.get(n) for n in sorted(d.search.factory.fixed)},
+        "runs": {r.name: _run(r, found.evidence) for r in d.search.factory.campaign.runs},
+    }
+
+
+def _priors(d: Diagnosis, found: Fit, records: Mapping[str, Parameter]) -> dict[str, tuple[float, float]]:
+    """Mean and standard deviation (inf: nothing was known) of each parameter before the fit."""
+    known = {**d.search.factory.variant.values, **d.search.factory.campaign.known}
+    given = {c.record.name: c.prior for c in d.calibration}
+    slopes = abs(np.diag(found.prior_slopes))
+    return {
+        name: (given.get(name, known.get(name, records[name].default)), 1 / slope if slope > 0 else np.inf)
+        for name, slope in zip(found.names, map(float, slopes), strict=True)
+    }
+
+
+def _parameter(
+    record: Parameter, value: float, se: float, prior: float, prior_sd: float, interval: tuple[float, float] | None
+) -> dict[str, Any]:
+    return {
+        "name": record.name,
+        "unit": record.unit.name,
+        "meaning": record.meaning,
+        "estimate": value,
+        "se": finite(se),
+        "interval": list(interval) if interval else None,
+        "prior": prior if np.isfinite(prior_sd) else None,
+        "prior_sd": finite(prior_sd),
+        "smallest_interesting": record.smallest_interesting,
+        "at_bound": at_bound(record, value, prior, prior_sd),
+    }
+
+
+def _run(run: Run, evidence: Evidence) -> dict[str, Any]:
+    """`role`, the times `from` and `to` (s), and by channel how many `readings` there were and, of a fitted run, how many of
+    them the fit `used`: none tells anything of a chair about the moment it comes to rest."""
+    fitted = next((e for e in evidence.runs if e.run.name == run.name), None)
+    counts = {c: int(np.isfinite(series).sum()) for c, series in run.channels.items()}
+    used = {} if fitted is None else {c: int(np.isfinite(fitted.r[:, i]).sum()) for i, c in enumerate(fitted.channels)}
+    return {
+        "role": run.role,
+        "from": float(run.time[0]),
+        "to": float(run.time[-1]),
+        "channels": {c: {"readings": n, "used": used.get(c)} for c, n in counts.items()},
+    }

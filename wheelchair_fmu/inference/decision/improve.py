@@ -1,0 +1,85 @@
+"""Put effects in for good: one that a user names, or all that a diagnosis finds, until nothing is missing or it must stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from ...campaign import Campaign, windows
+from ...errors import Failure
+from ...model.variant import Variant
+from ...quantities import Parameter
+from ..estimation.fit import Fit
+from ..estimation.statistics import standard_errors
+from ..evidence.evidence import Evidence
+from ..models.factory import ModelFactory
+from ..residual.staircase import Step
+from ..search.beginning import begin, settle_clocks
+from ..search.search import Search
+from .verdict import Diagnosis
+
+
+@dataclass(frozen=True)
+class Improved:
+    """A better variant, the fit it comes from, what its numbers are by name, the staircase that led there, and what was found
+    odd in the recordings."""
+
+    variant: Variant
+    fit: Fit
+    records: Mapping[str, Parameter]
+    ladder: tuple[Step, ...]
+    notes: tuple[str, ...]
+
+
+def add(
+    campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = lambda words: None
+) -> Improved:
+    """Refit the chair with one more effect; its own effects are estimated anew.
+
+    Raises Failure where the chair with the effect cannot be simulated on this campaign.
+    """
+    search = Search(ModelFactory(windows(campaign), chair, fixed), progress=say)
+    base, held, ladder = begin(search, say)
+    on: tuple[str, ...] = ()
+    for one in (*(e for e in chair.effects if e != effect and search.factory.parameters(e)), effect):
+        say(f"refitting with {one}")
+        base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
+        on = (*on, one)
+        ladder.append(Step.of(f"+{one}", base.evidence, held))
+    settle_clocks(search, base.evidence, held)
+    notes = (*search.notes, *search.noise_notes)
+    return Improved(improved(chair, on, base, campaign), base, search.factory.likelihood(on).records, tuple(ladder), notes)
+
+
+def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect: str) -> tuple[Fit, Evidence]:
+    screened = search.screen(base, on, [effect])
+    candidate = search.candidate(base, held, on, screened[0], 1) if screened else None
+    if candidate is None:
+        raise Failure(f"the chair with {effect} cannot be simulated on these runs; check its bounds and its law")
+    return search.settled((*on, effect), candidate.fit)
+
+
+def improved(chair: Variant, effects: Sequence[str], found: Fit, campaign: Campaign) -> Variant:
+    """The chair with these effects and the estimates, their standard errors and where they come from."""
+    origin = {"campaign": campaign.name, "fingerprint": campaign.fingerprint}
+    notes = {"standard_errors": standard_errors(found), "origin": origin}
+    values = {n: v for n, v in found.values.items() if not n.startswith("offset.")}
+    return replace(chair.with_effects(effects), values={**chair.values, **campaign.known, **values}, notes=notes)
+
+
+def after(d: Diagnosis, chair: Variant, campaign: Campaign) -> Variant:
+    """The chair with all that a diagnosis found; of effects it cannot tell apart, the likeliest, with its rivals noted."""
+    better = improved(chair, d.included, d.final, campaign)
+    tied = {"tied": [list(group) for group in d.ties]} if d.ties else {}
+    return replace(better, notes={**better.notes, **tied})
+
+
+def with_proposal(d: Diagnosis, chair: Variant, campaign: Campaign, effect: str) -> Variant:
+    """The chair with what was found and the generic term that a diagnosis proposes, now an effect of its own, `effect`."""
+    assert d.proposal is not None
+    old, new = f"effect.{d.proposal.effect}.", f"effect.{effect}."
+    fit = d.proposal.fit
+    renamed = replace(
+        fit, names=tuple(n.replace(old, new) for n in fit.names), values={n.replace(old, new): v for n, v in fit.values.items()}
+    )
+    return improved(chair, (*d.included, effect), renamed, campaign)

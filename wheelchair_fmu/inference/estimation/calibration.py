@@ -1,0 +1,104 @@
+"""What a fit made of the values it was given: each beside its prior, and which of them nobody should believe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...quantities import Parameter
+from ..evidence.likelihood import Likelihood
+from .fit import REACH, Fit, Problem
+from .statistics import finite, standard_errors
+
+DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
+CLOSE = 1e-3  # of a prior's standard deviation, or of a bound: as near as a fit comes to it
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """A value as fitted, with its standard error, beside what was given, `prior` ± `prior_sd` (inf: nothing known).
+
+    A fit goes no further than `lower` and `upper`; it is `at_bound` where it would have gone on, `beyond` where that is as far
+    as a prior lets it go.
+    """
+
+    record: Parameter
+    value: float
+    se: float
+    prior: float
+    prior_sd: float
+    at_bound: bool
+    lower: float = -np.inf
+    upper: float = np.inf
+
+    @property
+    def off(self) -> float:
+        """How far the value is from what was given, in standard deviations of that."""
+        return (self.value - self.prior) / self.prior_sd
+
+    @property
+    def beyond(self) -> bool:
+        """Would it be another chair, rather than one that was measured with an ordinary error?"""
+        return abs(self.off) > REACH - CLOSE
+
+    @property
+    def words(self) -> str:
+        """What there is to say of it; empty where it is as it was given."""
+        unit = self.record.unit.name
+        told = f"{self.record.name} comes out at {self.value:.4g} {unit}"
+        given = f"{abs(self.off):.1f} standard deviations from the {self.prior:.4g} ± {self.prior_sd:.2g} {unit} given"
+        if self.beyond:
+            return (
+                f"{told}, {given}, where the search stops: the value given is wrong, or it stands in for what the model lacks"
+            )
+        if self.at_bound:
+            return f"{told}, at its bound: it stands in for what the model lacks, or the data say little of it"
+        return f"{told}, {given}" if self.bent else ""
+
+    @property
+    def bent(self) -> bool:
+        """Is it further from what was given than a value that was measured well usually is?"""
+        return abs(self.off) > DOUBTED
+
+    def as_json(self) -> dict[str, Any]:
+        """The keys of one value in `calibration`."""
+        return {
+            "value": self.value,
+            "se": self.se,
+            "prior": self.prior,
+            "prior_sd": self.prior_sd if np.isfinite(self.prior_sd) else None,
+            "at_bound": self.at_bound,
+            "beyond": self.beyond,
+            "lower": finite(self.lower),
+            "upper": finite(self.upper),
+        }
+
+
+def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
+    """Every calibrated value of a fit, in the fit's order; effects and offsets of sensors are not among them."""
+    names = [n for n in found.names if not n.startswith(("effect.", "offset."))]
+    problem, errors = Problem(likelihood, names), standard_errors(found)
+    out = []
+    for i, name in enumerate(names):
+        value, sd = found.values[name], float(problem.prior.sd[i])
+        record, mean = likelihood.records[name], float(problem.prior.mean[i])
+        stopped, reach = at_bound(record, value, mean, sd), (float(problem.lower[i]), float(problem.upper[i]))
+        out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach))
+    return out
+
+
+def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:
+    """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?
+    One that is as it was given has not been stopped there."""
+    reach = np.inf if record.name.startswith("effect.") else REACH * prior_sd
+    near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
+    inside = max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
+    return not inside and abs(value - prior) > near
+
+
+def doubts(found: Sequence[Calibrated]) -> list[str]:
+    """A sentence for each value that is at a bound or far from what was given."""
+    return [c.words for c in found if c.words]

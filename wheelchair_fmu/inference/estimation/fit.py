@@ -1,0 +1,280 @@
+"""Fit parameters to the evidence: `scipy.optimize.least_squares` on innovations, with priors as further rows.
+
+Each descent keeps the sensitivities and filters of where it began, so that a trial costs no more than a
+simulation; where it ends everything is linearised anew, until a descent gains nothing that matters. Where that
+leads to nothing more likely, because filters change with the parameters as much as residuals do, a step goes by slopes of the
+likelihood itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ...errors import SimulationError
+from ...quantities import Parameter
+from ..evidence.evidence import Evidence
+from ..evidence.likelihood import Likelihood
+
+STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
+SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
+MOST = 8  # linearisations
+GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
+NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
+WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
+PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
+AT_BOUND = 1e-3  # of a parameter's scale
+LEAST_SHARE = 0.2  # of a step that is tried
+REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Values by name (SI), their covariance (k, k) before any allowance for misfit, and the evidence at them."""
+
+    names: tuple[str, ...]
+    values: Mapping[str, float]
+    covariance: np.ndarray
+    evidence: Evidence
+    misfit: float  # −2 log likelihood and prior
+    prior_slopes: np.ndarray
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What is known of each parameter before the campaign: mean and standard deviation (inf: nothing)."""
+
+    mean: np.ndarray
+    sd: np.ndarray
+
+    def rows(self, theta: np.ndarray) -> np.ndarray:
+        return (self.mean - theta) / self.sd
+
+    @property
+    def slopes(self) -> np.ndarray:
+        """d(mean − θ)/σ, with the sign that sensitivities have."""
+        return np.diag(1 / self.sd)
+
+
+def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
+    """Calibrated values have the campaign's word; effects have none, but that of several parameters which the data
+    cannot tell apart each is taken to be no larger than it must be."""
+    mean = np.array([start_value(likelihood, likelihood.records[n]) for n in names])
+    groups = Counter(n.rpartition(".")[0] for n in names)
+
+    def sd(name: str, mean: float) -> float:
+        if name in likelihood.campaign.priors:
+            return likelihood.campaign.priors[name]
+        if name.startswith("effect."):
+            return GROUPED * likelihood.records[name].delta if groups[name.rpartition(".")[0]] > 1 else np.inf
+        if name in likelihood.offsets:
+            return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
+        return likelihood.records[name].prior_sd(mean)
+
+    return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
+
+
+def start_value(likelihood: Likelihood, record: Parameter) -> float:
+    return likelihood.campaign.known.get(record.name, likelihood.variant.values.get(record.name, record.default))
+
+
+class Problem:
+    """Parameters to fit on a likelihood: their bounds, scale and prior."""
+
+    def __init__(self, likelihood: Likelihood, names: Sequence[str]):
+        records = likelihood.records
+        self.likelihood, self.names, self.prior = likelihood, tuple(names), prior_of(likelihood, names)
+        reach = np.where([n.startswith("effect.") for n in names], np.inf, REACH * self.prior.sd)
+        self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - reach)
+        self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + reach)
+        self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])
+
+    def inside(self, start: Mapping[str, float]) -> np.ndarray:
+        return np.clip([start.get(n, self.likelihood.records[n].default) for n in self.names], self.lower, self.upper)
+
+    def values(self, theta: np.ndarray) -> dict[str, float]:
+        return dict(zip(self.names, map(float, theta), strict=True))
+
+    def linearised(self, theta: np.ndarray) -> Evidence:
+        return self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta), self.names)
+
+    def squares(self, here: Evidence, theta: np.ndarray) -> float:
+        """What a descent makes small: squared innovations, and the prior's."""
+        return float(here.r @ here.r + np.sum(self.prior.rows(theta) ** 2))
+
+    def misfit(self, here: Evidence, theta: np.ndarray) -> float:
+        """−2 log likelihood, with the prior."""
+        return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
+
+    def information(self, here: Evidence) -> np.ndarray:
+        """Sᵀ S (k, k), and the prior's."""
+        return here.S.T @ here.S + self.prior.slopes**2
+
+    def gradient(self, S: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Sᵀ r (k,), and the prior's."""
+        return S.T @ r + self.prior.slopes @ self.prior.rows(theta)
+
+    def whole_gradient(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
+        """−½ the slope of the misfit (k,), by differences of a standard error: `gradient`, and what the filters' own change
+        does."""
+        before, found = self.misfit(here, theta), np.zeros(len(theta))
+        for j, curvature in enumerate(np.diag(self.information(here))):
+            by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
+            trial = theta + by * (np.arange(len(theta)) == j)
+            there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
+            found[j] = (curvature * by - (self.misfit(there, trial) - before) / by) / 2
+        return found
+
+    def expected(self, here: Evidence, theta: np.ndarray) -> float:
+        """How much the squares would fall at most, if slopes held all the way: of what no bound holds."""
+        return float(self.gradient(here.S, here.r, theta) @ self.newton(here, theta))
+
+    def newton(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
+        """The step (k,) to where squares would be least, if slopes held all the way: of what no bound holds."""
+        g, near = self.gradient(here.S, here.r, theta), AT_BOUND * self.scale
+        free = ~((theta < self.lower + near) & (g < 0) | (theta > self.upper - near) & (g > 0))
+        step = np.zeros(len(theta))
+        step[free] = np.linalg.pinv(self.information(here)[np.ix_(free, free)], hermitian=True) @ g[free]
+        return step
+
+    def stepped(self, theta: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """As much of a step as slopes hold for, within bounds."""
+        far = float(np.max(np.abs(step) / self.prior.sd, initial=0.0))
+        return np.clip(theta + step / max(1.0, far), self.lower, self.upper)
+
+    def descend(self, here: Evidence, theta: np.ndarray) -> tuple[np.ndarray, Evidence]:
+        """Where to go from `theta`, and the evidence there with the filters and sensitivities of `here`."""
+        slopes = -np.concatenate([here.S, self.prior.slopes])
+        Q, R = np.linalg.qr(slopes)
+        inside = np.clip(theta, self.lower + 1e-12 * self.scale, self.upper - 1e-12 * self.scale)
+        latest = {inside.tobytes(): here}
+        wall = 10 * float(np.sqrt(here.r @ here.r))
+
+        def residuals(q: np.ndarray) -> np.ndarray:
+            """As long as all innovations and as steep, in few numbers: their part along the slopes, and the rest's size."""
+            if q.tobytes() not in latest:
+                try:
+                    latest[q.tobytes()] = self.likelihood.resimulated(here, self.values(q))
+                except SimulationError:
+                    return np.full(len(q) + 1, wall)  # the search turns back where the model cannot run
+            r = np.concatenate([latest[q.tobytes()].r, self.prior.rows(q)])
+            along = Q.T @ r
+            return np.append(along, np.sqrt(max(0.0, float(r @ r - along @ along))))
+
+        found = least_squares(
+            residuals,
+            inside,
+            jac=lambda q: np.vstack([R, np.zeros(len(q))]),
+            bounds=(self.lower, self.upper),
+            x_scale=self.scale,
+            ftol=1e-7,
+            xtol=1e-6,
+            gtol=1e-10,
+            max_nfev=10,
+        )
+        return found.x, latest[found.x.tobytes()]
+
+
+def fit(
+    likelihood: Likelihood,
+    names: Sequence[str],
+    start: Mapping[str, float],
+    here: Evidence | None = None,
+    rival: float = math.inf,
+    most: int = MOST,
+) -> Fit:
+    """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
+
+    `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
+    how often all is linearised anew.
+    Raises SimulationError where the model cannot be simulated at the start.
+    """
+    problem = Problem(likelihood, names)
+    theta = problem.inside(start)
+    here = here or problem.linearised(theta)
+    if likelihood.leads:
+        return _fit_led(problem, theta, here, most if names else 0)
+    for _ in range(most if names else 0):
+        enough = max(STRAIGHT, SLIGHT * (problem.squares(here, theta) - len(here.r)))
+        if problem.expected(here, theta) < max(enough, (problem.misfit(here, theta) - rival) / MOST):
+            break
+        to, there = problem.descend(here, theta)
+        fall = problem.squares(here, theta) - problem.squares(there, to)
+        behind = problem.misfit(there, to) - rival
+        if fall < max(enough, behind / MOST):
+            theta, here = to, there
+            break
+        shrinks = (1.0, 0.5, 0.25) if fall > WORTH_HALVING else (1.0,)
+        further = _taken(problem, theta, here, to, shrinks) or _by_likelihood(problem, theta, here)
+        if further is None:
+            break
+        theta, here = further
+    return _found(problem, theta, here)
+
+
+def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
+    covariance = np.linalg.pinv(problem.information(here), hermitian=True) if len(theta) else np.zeros((0, 0))
+    return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
+
+
+def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int) -> Fit:
+    """The same where forces that nobody recorded lead the runs: the values at which innovations tell nothing more of them.
+
+    A filter knows what forces do to a chair of this mass, so that the likelihood takes how large innovations are for a
+    measurement of the mass. It is none that anyone would trust: filters weigh the readings and are no evidence themselves
+    (generalised estimating equations; Liang and Zeger 1986), and no step is asked whether it makes the likelihood larger.
+    """
+    promised, share = problem.expected(here, theta), 1.0
+    for _ in range(most):
+        if promised < STRAIGHT:
+            break
+        to = problem.stepped(theta, share * problem.newton(here, theta))
+        try:
+            there = problem.linearised(to)
+            still = problem.expected(there, to)
+        except SimulationError:
+            still = math.inf
+        if still < promised:
+            theta, here, promised, share = to, there, still, 1.0
+        elif share > LEAST_SHARE:
+            share /= 2
+        else:
+            break
+    return _found(problem, theta, here)
+
+
+def _taken(
+    problem: Problem, theta: np.ndarray, here: Evidence, to: np.ndarray, shrinks: Sequence[float] = (1.0, 0.5, 0.25)
+) -> tuple[np.ndarray, Evidence] | None:
+    """The step from `theta`, or as much of it, the first of `shrinks`, that is more likely once all is linearised anew.
+
+    A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
+    """
+    before = problem.misfit(here, theta)
+    for shrink in shrinks:
+        trial = theta + shrink * (to - theta)
+        try:
+            found = problem.linearised(trial)
+        except SimulationError:
+            continue
+        if problem.misfit(found, trial) < before:
+            return trial, found
+    return None
+
+
+def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence] | None:
+    """`_taken` in the direction that the likelihood itself falls in, where that is worth a simulation for each parameter."""
+    if problem.expected(here, theta) < PROMISED or float(np.mean(here.r**2)) > NEAR:
+        return None
+    try:
+        gradient = problem.whole_gradient(here, theta)
+    except SimulationError:
+        return None
+    step = np.linalg.pinv(problem.information(here), hermitian=True) @ gradient
+    found = _taken(problem, theta, here, np.clip(theta + step, problem.lower, problem.upper))
+    return found if found and problem.misfit(here, theta) - problem.misfit(found[1], found[0]) > STRAIGHT else None

@@ -1,0 +1,156 @@
+"""What the evidence is worth: robust variances, independent samples, bootstraps of what was held out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..chance import student
+from ..evidence.evidence import Evidence, block_length
+from ..policy import DEFAULT, SearchPolicy
+from .fit import Fit
+from .score import SEEN, Score, robust_variance
+
+RESAMPLES = 400
+ALONE = 1e-6  # of what a run decides, left to the others: it decides alone
+
+
+def finite(value: float) -> float | None:
+    """A number as JSON has it: None where there is none."""
+    return float(value) if np.isfinite(value) else None
+
+
+def cosines(ones: Sequence[Score], others: Sequence[Score]) -> np.ndarray:
+    """Cosines (m, n) between the signatures of effects, of one model on the same runs; 0 where an effect has none."""
+    length = max((len(s.signature) for s in (*ones, *others)), default=0)
+
+    def signatures(scores: Sequence[Score]) -> np.ndarray:
+        found = np.zeros((len(scores), length))
+        for row, s in zip(found, scores, strict=True):
+            row[: len(s.signature)] = s.signature
+        return found
+
+    return abs(signatures(ones) @ signatures(others).T)
+
+
+def sandwich(found: Fit) -> np.ndarray:
+    """Covariance (k, k) of the estimates that allows for correlated residuals."""
+    S, r = found.evidence.S, found.evidence.r
+    inverse = _inverse(found)
+    return inverse @ (robust_variance(found.evidence, S, r) + found.prior_slopes**2) @ inverse
+
+
+def _inverse(found: Fit) -> np.ndarray:
+    """Of Sᵀ S (k, k), and the prior's."""
+    S = found.evidence.S
+    return np.linalg.pinv(S.T @ S + found.prior_slopes**2, hermitian=True)
+
+
+def standard_errors(found: Fit) -> dict[str, float]:
+    """Of all that a fit estimated, by name, as `sandwich` has them."""
+    return dict(zip(found.names, map(float, np.sqrt(np.diag(sandwich(found)))), strict=True))
+
+
+def between_runs(found: Fit) -> np.ndarray:
+    """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
+    residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
+    r, inverse = found.evidence.r, _inverse(found)
+    total = np.zeros_like(inverse)
+    for part, Q, R, root in _decided(found, inverse):
+        pull = R.T @ root @ (Q.T @ r[part])
+        total += np.outer(pull, pull)
+    return inverse @ total @ inverse
+
+
+def degrees_between_runs(found: Fit, at: int) -> float:
+    """Degrees of freedom of one of these variances, by Satterthwaite: one less than there are runs where all decide alike, and
+    fewer where a few of them decide most (Bell and McCaffrey 2002)."""
+    inverse, squares, pulls = _inverse(found), [], []
+    for _, _, R, root in _decided(found, inverse):
+        weight = root @ (R @ inverse[:, at])  # of the run's residuals in the estimate
+        squares.append(float(weight @ weight))
+        pulls.append(R.T @ weight)
+    G = np.diag(squares) - np.array(pulls) @ inverse @ np.array(pulls).T
+    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G)))
+
+
+def _decided(found: Fit, inverse: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
+    """Of each run its place, the factors Q R of its sensitivities, and what makes up, in Q's directions, for what the run
+    itself decides of the estimates and so takes off its residuals."""
+    for _, _, part in found.evidence.parts():
+        Q, R = np.linalg.qr(found.evidence.S[part])
+        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ inverse @ R.T)  # what the other runs leave it to decide
+        yield part, Q, R, (axes / np.sqrt(np.maximum(size, ALONE))) @ axes.T
+
+
+def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Values (k,) of some of a fit's parameters, and their `sandwich` (k, k)."""
+    at = [found.names.index(n) for n in names]
+    return np.array([found.values[n] for n in names]), sandwich(found)[np.ix_(at, at)]
+
+
+def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sizes and variances, in units of δ, along the directions that the data can see at all (one at least)."""
+    axes, spread = seen_axes(covariance)
+    return axes.T @ size, spread
+
+
+def seen_axes(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The directions (k, m) that the data can see at all, one at least, and the variances along them, in units of δ."""
+    spread, axes = np.linalg.eigh(covariance)
+    spread = np.maximum(spread, 1e-12)
+    seen = (spread < 1 / SEEN) | (spread == spread.min())
+    return axes[:, seen], spread[seen]
+
+
+def correlation_time(evidence: Evidence) -> float:
+    """Samples per independent one: 1 + 2 Σ ρ_k of the innovations until ρ falls below noise, at least 1."""
+    time, weight = 0.0, 0
+    for e in evidence.runs:
+        for i in range(e.r.shape[1]):
+            r = e.r[np.isfinite(e.r[:, i]), i]  # from reading to reading: rows of other loggers are no residuals of zero
+            n = len(r)
+            power = float(r @ r)
+            if power == 0:
+                continue
+            rho = [float(r[k:] @ r[:-k]) / power for k in range(1, min(n // 4, 100))]
+            stop = next((k for k, value in enumerate(rho) if value < 2 / np.sqrt(n)), len(rho))
+            time, weight = time + n * (1 + 2 * sum(rho[:stop])), weight + n
+    return max(1.0, time / max(weight, 1))
+
+
+def decisive(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:
+    """By how much −2 log likelihood has to differ, with residuals as correlated as these, for decisive odds."""
+    return policy.tied * correlation_time(evidence)
+
+
+def margin(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:
+    """The same where residuals are not as large as the noise has it: `decisive`, times their mean square."""
+    return decisive(evidence, policy) * float(np.mean(evidence.r**2))
+
+
+def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
+    """Fall of the summed squared innovations on held-out runs, with a 95 % interval by how far blocks of time differ."""
+    blocks = difference_blocks(before, after)
+    n, fall = len(blocks), float(blocks.sum())
+    if not n:
+        return 0.0, 0.0, 0.0
+    half = student(0.95, n - 1) * float(blocks.std(ddof=1)) * n**0.5 if n > 1 else np.inf
+    return fall, fall - half, fall + half
+
+
+def resampled_totals(blocks: np.ndarray) -> np.ndarray:
+    """Bootstrap totals (RESAMPLES,) of blocks drawn with replacement, the same draws each time."""
+    draws = np.random.default_rng(0).integers(0, len(blocks), (RESAMPLES, len(blocks)))
+    return blocks[draws].sum(axis=1)
+
+
+def difference_blocks(one: Evidence, other: Evidence) -> np.ndarray:
+    """Summed differences of squared innovations, by blocks of time."""
+    out = []
+    for a, b in zip(one.runs, other.runs, strict=True):
+        d = np.nansum(a.r**2 - b.r**2, axis=1)
+        length = block_length(a.run)
+        out += [d[i : i + length].sum() for i in range(0, len(d), length)]
+    return np.array(out)

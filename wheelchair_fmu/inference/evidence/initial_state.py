@@ -1,0 +1,63 @@
+"""Where a run starts: what its first samples, its file and the chair say, and how sure that is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from ...campaign import Run
+from ...campaign.channels import TELLS
+from ...model.frames import to_room, velocity_at
+from .local import locals_of
+
+START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
+CASTERS = ("start.caster_l", "start.caster_r")  # of a model whose casters swing: nobody films them as a rule
+POSE = START[:3]
+START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
+POSE_SD = 0.05
+CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to where it stands
+ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago, where nobody knows how far it has rolled
+TRAIL = 0.05  # m over which a caster that stood aside comes back by e, c δ' = −v δ: a usual trail
+
+
+def starts_of(names: Iterable[str]) -> tuple[str, ...]:
+    """Those of the names, a model's parameters or more, that say where a run starts."""
+    there = set(names)
+    return tuple(n for n in (*START, *CASTERS) if n in there)
+
+
+def uncertain(run: Run, names: Sequence[str] = START) -> dict[str, float]:
+    """Standard deviations of what is estimated of a run for itself: its start, then its clocks and baselines."""
+    return {**start_sd(run, names), **{c.name: c.sd for c in locals_of(run)}}
+
+
+def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = START, rolls: bool = False) -> dict[str, float]:
+    """Where a run is expected to start: as it is set, or else as its first samples and what is known say, and whether the chair
+    `rolls` by then."""
+    found = {name: run.first.get(channel.name, known.get(name, 0.0)) for name, channel in TELLS.items()}
+    found = _of_the_cm(run, found, known)
+    if run.u0 is not None:
+        found["start.u"] = run.u0
+    if rolls:
+        found["start.v"] = known.get("start.v", known.get("chair.b", 0.0) * found["start.psi_dot"])  # the axle hardly slips
+    return {name: run.set.get(name, found.get(name, known.get(name, 0.0))) for name in names}
+
+
+def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) -> dict[str, float]:
+    """The start of the CM, where position and speed were read at another point of the frame."""
+    x, y = (known.get(f"effect.marker_offset.{axis}", 0.0) for axis in "xy")
+    psi, turn = found["start.psi"], found["start.psi_dot"]
+    lever = dict(zip(("start.x", "start.y"), to_room(x, y, psi), strict=True))
+    lever["start.u"], _ = velocity_at(x, y, 0.0, 0.0, turn)
+    return {name: value - lever.get(name, 0.0) * (TELLS[name].name in run.channels) for name, value in found.items()}
+
+
+def start_sd(run: Run, names: Sequence[str] = START) -> dict[str, float]:
+    """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be. Casters may
+    stand as they like where the chair does."""
+    rolled = prior_start(run, {})["start.u"] / ROLLED
+    aside = 1 / (1 + rolled * rolled) if run.way is None else float(np.exp(-run.way / TRAIL))
+    pose = {name: POSE_SD if TELLS[name].name in run.channels else 0.0 for name in POSE}
+    casters = dict.fromkeys(CASTERS, CASTER_SD * aside)
+    return {name: 0.0 if name in run.set else {**pose, **START_SD, **casters}[name] for name in names}

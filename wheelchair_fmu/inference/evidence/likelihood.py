@@ -1,0 +1,474 @@
+"""What a campaign says about a model: whitened residuals and sensitivities, run by run.
+
+Everything the loop decides is decided on these: innovations r (N,), in units of their own uncertainty,
+and S (N, k), what each parameter would add to them. The unknown start of each run is part of the
+uncertainty (see `innovations`); where the simulation is best started is found on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...campaign import BY_NAME, CHANNELS, Campaign, Run
+from ...campaign.channels import BODY_NAMES
+from ...engine.evaluation import Constant, Evaluation, Evaluator, Recording, Values
+from ...engine.innovations import Disturbance, Whitener
+from ...engine.sensitivities import Sensitivities
+from ...errors import SimulationError
+from ...model.variant import Variant
+from ...quantities import Parameter
+from ..parallel import parallel_map
+from .evidence import Evidence, RunEvidence, followed
+from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
+from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
+from .noise_model import NoiseModel, disturbance, noise_of, pushes_of
+
+TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
+BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
+STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where errors of the pushes lead, that are tried,
+MOST_STEPS = 12  # and how many steps are taken at most
+MOMENTS = 8  # up to which readings are asked where a run's pushes led
+HELD = 1.0  # Σ of squares by which innovations may differ where slopes hold: by less than one standard error of anything
+MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
+
+
+def driven(campaign: Campaign) -> frozenset[str]:
+    """The inputs that some run records, by FMU name."""
+    return frozenset(name for run in campaign.runs for name in run.inputs)
+
+
+class Likelihood:
+    """A campaign on the likelihood: simulates its runs with any parameter values and whitens what is left.
+
+    `variant` has every effect that may be asked for, besides those that the campaign gives a size; effects at zero change
+    nothing. `noise_model` is the noise. Sensor offsets
+    that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
+    the parameters that sensitivities may be asked by, all if not given; the start is among them in any case. One that does not
+    derive is compiled without, and only runs evidence `again`. One that `leads` has runs that begin
+    where the chair rolls, each led along the forces that nobody recorded.
+    """
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        variant: Variant,
+        noise_model: NoiseModel | None = None,
+        columns: Sequence[str] | None = None,
+        derives: bool = True,
+        leads: bool = False,
+    ):
+        self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
+        self.start_names = starts_of(p.name for p in self.variant.parameters())
+        wanted = None if columns is None else (*columns, *self.start_names)
+        self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
+        self.noise_model = noise_model or NoiseModel(campaign.noise)
+        self.leads = leads
+        self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
+        self.paths: dict[str, np.ndarray] = {}
+        self.offsets = offsets_of(campaign)
+        offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
+        self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
+        self._inputs = [i.name for i in self.sensitivities.model.inputs]
+        self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
+        self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
+        self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
+
+    def _uncertain(self, run: Run) -> dict[str, float]:
+        return uncertain(run, self.start_names)
+
+    def _prior(self, run: Run) -> dict[str, float]:
+        return prior_start(run, self.known(run), self.start_names, self.leads)
+
+    def known(self, run: Run) -> dict[str, float]:
+        """What the campaign file says of this run's chair."""
+        return {**self.campaign.known, **run.set}
+
+    def chair(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Values (SI) of the chair, as these have them or the campaign says."""
+        given = {p.name: p.default for p in self.variant.parameters()}
+        return {**given, **self.variant.values, **self.campaign.known, **values}
+
+    def evidence(
+        self, runs: Iterable[Run], values: Mapping[str, float], by: Sequence[str] = (), *, tune_start: int = 0
+    ) -> Evidence:
+        """Evidence of these runs at parameter `values` (SI), with sensitivities `by` some of them.
+
+        `tune_start`: how often at most to move the simulated start to where the readings want it.
+        """
+
+        def one(run: Run) -> RunEvidence:
+            try:
+                return self._tuned(run, values, tuple(by), tune_start)
+            except SimulationError as error:
+                raise SimulationError(f"run {run.name}: {error}") from error
+
+        return Evidence(tuple(parallel_map(one, runs, lambda run: len(run.time))), tuple(by))
+
+    def resimulated(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
+        """The same runs at other `values`, at a tenth of the cost: starts, filters and sensitivities are kept."""
+
+        def one(e: RunEvidence) -> RunEvidence:
+            assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
+            there = replace(e, measured=self._measured(e.run, values))
+            if e.path is None:
+                there = self._simulated_again(there, values, e.start)
+            else:  # where other values leave another rest, other forces make up for it
+                there = self._driven_again(there, values, e.path)
+                there = self._driven_again(there, values, followed(there))
+            return replace(there, r=e.whitener((there.measured - there.foretold)[:, :, None], e.offset)[:, :, 0])
+
+        return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+
+    def _driven_again(self, e: RunEvidence, values: Mapping[str, float], path: np.ndarray) -> RunEvidence:
+        """A run at other `values` along a `path`, by the filter that it has."""
+        assert isinstance(e.whitener, Marginal)
+        filter_, given = e.whitener.whitener, self._given(e.run, values, e.start)[0]
+        results, driven = self._simulated(e.run, values, e.start, path)
+        as_push = self._unknown(filter_.recorded, given, values).as_push
+        return replace(e, results=results, driven=driven, path=path, added=filter_.response(path @ as_push.T))
+
+    def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
+        """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
+        for a start that is off; errors, of a simulation that knows no reading, do not."""
+        if self.leads:
+            return evidence  # which starts where forces and readings together have it
+
+        def one(e: RunEvidence) -> RunEvidence:
+            try:
+                return self._simulated_again(e, values, self._better_start(e))
+            except SimulationError:
+                return e  # where it cannot start there, it is judged from where it can
+
+        return Evidence(tuple(parallel_map(one, evidence.runs, lambda e: len(e.run.time))), evidence.by)
+
+    def _simulated_again(self, e: RunEvidence, values: Mapping[str, float], start: Mapping[str, float]) -> RunEvidence:
+        """A run at other `values` or from another `start`, by the filter that it has."""
+        results, predicted = self._simulated(e.run, values, start)
+        there = replace(e, start=start, results=results, predicted=predicted)
+        if e.pushed is None:
+            return there
+        return replace(there, driven=self._simulated(e.run, values, start, pushed=e.pushed)[1])
+
+    def readings(
+        self, run: Run, values: Mapping[str, float], start: Mapping[str, float]
+    ) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+        """The channels of a run, what was measured (n, nz), less the sensors' offsets, and what is simulated (n, nz)."""
+        return self._channels(run), self._measured(run, values), self._simulated(run, values, start)[1]
+
+    def _simulated(
+        self,
+        run: Run,
+        values: Mapping[str, float],
+        start: Mapping[str, float],
+        path: np.ndarray | None = None,
+        pushed: np.ndarray | None = None,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 4) acting, or with
+        pushes larger than their record by `pushed` (n, nq)."""
+        given, w = self._given(run, values, start)
+        if path is not None:
+            w = self._driven(run, given, w, path, values)
+        if pushed is not None:
+            w = self._pushed(run, w, pushed)
+        results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
+        predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
+        return results, read(run, self._channels(run), predicted, start)
+
+    def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
+        """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
+        before, names = self.starts[run.name], tuple(self._uncertain(run))
+        start = {**self._prior(run), **{n: v for n, v in before.items() if n in self.start_names or n not in CASTERS}}
+        path = self.paths.get(run.name) if self.noise_model.disturbed else None
+        at = np.array([start.get(n, 0.0) for n in names])
+        if self.leads:
+            found = self._evaluated(run, values, (), at, path, int(self.noise_model.disturbed))
+            if rounds:
+                self.starts[run.name] = {**start, **dict(zip(names, found.start.tolist(), strict=True))}
+                self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), 4))
+            found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
+        else:
+            found = self._evaluated(run, values, by, at, None, rounds, self._errors_of_pushes(run))
+            if not np.array_equal(found.start, at):
+                self.starts[run.name] = dict(zip(names, found.start.tolist(), strict=True))
+        e = self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
+        return self._about_pushes(e, values, by) if rounds and self._may_flip else e
+
+    @property
+    def _may_flip(self) -> bool:
+        """May casters swing round, on a run that no other forces lead?"""
+        return not self.leads and all(name in self.start_names for name in CASTERS)
+
+    def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
+        """As they were found, (n, nq), for a model whose casters may flip."""
+        found = self.paths.get(run.name)
+        return found if self._may_flip and found is not None and len(found) == len(run.time) else None
+
+    def _about_pushes(self, e: RunEvidence, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
+        """The run along the path to which the errors of its pushes lead, where slopes do not hold as far as that.
+
+        While a chair backs up, its casters stand as pencils on their tips: noise of the pushes decides when they swing round,
+        and so where the chair goes. Slopes about any other path than its own say little of it. So all is linearised about the
+        likeliest errors of the pushes, by Gauss and Newton's steps, as starts are; kept for the next values.
+        """
+        first = e
+        for _ in range(MOST_STEPS):
+            there = self._towards(e, values)
+            if there is None:
+                break
+            e = there
+        if e is first:
+            return e
+        self.starts[e.run.name], self.paths[e.run.name] = dict(e.start), e.pushed if e.pushed is not None else np.empty(0)
+        return self._pushed_by(e, values, by, e.start, e.pushed) if by else e
+
+    def _towards(self, e: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
+        """One step to where readings have the start and the errors of the pushes; None where slopes hold as far as that, or
+        no step makes all together likelier.
+
+        Where a simulation has gone another way than the chair, slopes about it say nothing of what comes after. So besides all
+        readings, those up to each of some moments are asked, and what they say together makes likeliest is taken.
+        """
+        filter_ = e.filter.whitener
+        told = filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0]
+        now = np.zeros((len(told), filter_.recorded)) if e.pushed is None else e.pushed
+        least, best = self._unlikely(e, e.followed, now, e.start), None
+        for until in np.linspace(len(told), 0, MOMENTS, endpoint=False).astype(int):
+            known = np.arange(len(told)) < until
+            step = filter_.smoothed_pushes(np.where(known[:, None], told, 0.0)) - now
+            better = self._better_start(e, known)
+            for share in STEPS:
+                start = {**e.start, **{n: e.start.get(n, 0.0) + share * (v - e.start.get(n, 0.0)) for n, v in better.items()}}
+                pushed = now + share * step
+                try:
+                    driven = self._simulated(e.run, values, start, pushed=pushed)[1]
+                except SimulationError:
+                    continue
+                if until == len(told) and share == 1.0 and self._held(e, start, driven - filter_.response(pushed)):
+                    return None
+                if (found := self._unlikely(e, driven, pushed, start)) < least:
+                    least, best = found, (start, pushed)
+        return None if best is None else self._pushed_by(e, values, (), *best)
+
+    def _held(self, e: RunEvidence, start: Mapping[str, float], foretold: np.ndarray) -> bool:
+        """Do slopes say what is `foretold` from that start? Innovations allow for another start and other pushes, so that to
+        first order they do not depend on these."""
+        r = e.filter((e.measured - foretold)[:, :, None], e.offset)[:, :, 0]
+        r = r + e.start_S @ [v - e.start.get(n, 0.0) for n, v in ((n, start[n]) for n in e.uncertain)]
+        return float(np.nansum((r - e.r) ** 2)) < HELD
+
+    def _unlikely(self, e: RunEvidence, driven: np.ndarray, pushed: np.ndarray, start: Mapping[str, float]) -> float:
+        """−2 log probability of readings, of the pushes' errors and of the start together, but for a constant."""
+        prior = self._prior(e.run)
+        begun = sum(((start.get(n, 0.0) - prior.get(n, 0.0)) / sd) ** 2 for n, sd in e.uncertain.items() if sd > 0)
+        return e.filter.whitener.unlikely(e.measured - driven, pushed) + float(begun)
+
+    def _pushed_by(
+        self,
+        e: RunEvidence,
+        values: Mapping[str, float],
+        by: tuple[str, ...],
+        start: Mapping[str, float],
+        pushed: np.ndarray | None,
+    ) -> RunEvidence:
+        """The run from this start, linearised where its pushes are larger than their record by `pushed` (n, nq)."""
+        at = np.array([start.get(n, 0.0) for n in e.uncertain])
+        return self._told(e.run, values, by, self._evaluated(e.run, values, by, at, None, 0, pushed), start)
+
+    def _evaluated(
+        self,
+        run: Run,
+        values: Mapping[str, float],
+        by: tuple[str, ...],
+        start: np.ndarray,
+        path: np.ndarray | None,
+        rounds: int,
+        pushed: np.ndarray | None = None,
+    ) -> Evaluation:
+        given, chair = self._set(run, values), self.chair(values)
+        offsets = [values.get(f"offset.{c}", 0.0) for c in self._channels(run)]
+        delay = sum(given.get(d, 0.0) for d in self._delays)
+        along = chair[MASS] / self.noise_model.mass if self.noise_model.mass else 1.0
+        p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
+        at = Values(p, np.array(offsets), delay, along, p[self._tread], chair[MASS])
+        columns = [n for n in by if n not in self._delays and n not in self.offsets]
+        return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed)
+
+    def _recording(self, run: Run) -> Recording:
+        channels, pushes = self._channels(run), pushes_of(run)
+        prior, sd = self._prior(run), start_sd(run, self.start_names)
+        constants = [constant(c, channels, self._inputs, len(run.time)) for c in locals_of(run)]
+        return Recording(
+            run.time,
+            self.inputs(run),
+            np.array([n not in BODY for n in self._inputs]),
+            np.stack([run.channels[c] for c in channels], axis=1),
+            self._which(run),
+            np.array([BY_NAME[c].drifts for c in channels]),
+            [self._inputs.index(n) for n in pushes],
+            noise_of(self.noise_model, run, channels, pushes),
+            disturbance(self.noise_model, len(pushes), 1.0, self.noise_model.mass) if self.noise_model.disturbed else None,
+            self.leads,
+            self.start_names,
+            np.array([prior[n] for n in self.start_names]),
+            np.array([sd[n] for n in self.start_names]),
+            np.array([n in run.set for n in self.start_names]),
+            constants,
+        )
+
+    def _told(
+        self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]
+    ) -> RunEvidence:
+        """What was found of a run, with slopes by parameters through its filter."""
+        channels, constants = self._channels(run), locals_of(run)
+        led, m = bool(found.path.any()), len(self.start_names)
+        signals = np.zeros((*found.r.shape, 1 + len(by)))
+        self._fill_columns(signals[:, :, 1:], run, found, self.inputs(self.on_time(run, values, start)), by)
+        if led:
+            signals[:, :, 1:] += self._as_before(found.whitener, self._vector(run, values, start), values, found.path, by)
+        sd = np.array([c.sd for c in constants])
+        whitener = Marginal(found.whitener, found.by_start[:, :, m:] * sd)
+        off = np.concatenate((found.offset, -np.array([start.get(c.name, 0.0) for c in constants]) / sd))
+        S = whitener(signals, np.zeros(len(off)), in_place=True)[:, :, 1:].copy() if by else signals[:, :, 1:]
+        return RunEvidence(
+            run,
+            channels,
+            found.r,
+            S,
+            found.slopes,
+            start,
+            found.results,
+            found.predicted,
+            found.measured,
+            whitener,
+            off,
+            found.path if led else None,
+            *((found.added, found.driven, found.pushed) if led or found.pushed is not None else ()),
+        )
+
+    def _unknown(self, pushes: int, given: np.ndarray, values: Mapping[str, float]) -> Disturbance:
+        return disturbance(self.noise_model, pushes, given[self._tread], self.chair(values)[MASS])
+
+    def _driven(self, run: Run, given: np.ndarray, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
+        """Inputs (n, nw) with forces that nobody recorded, as pushes."""
+        pushes, out = pushes_of(run), w.copy()
+        as_push = self._unknown(len(pushes), given, values).as_push
+        out[:, [self._inputs.index(n) for n in pushes]] += path @ as_push.T
+        return out
+
+    def _pushed(self, run: Run, w: np.ndarray, pushed: np.ndarray) -> np.ndarray:
+        """Inputs (n, nw) with pushes larger than their record by `pushed`."""
+        out = w.copy()
+        out[:, [self._inputs.index(n) for n in pushes_of(run)]] += pushed
+        return out
+
+    def _better_start(self, e: RunEvidence, known: np.ndarray | None = None) -> dict[str, float]:
+        """The start, and what else is uncertain of the run, given all readings, or those in `known` (n,) rows: prior mean +
+        P₀ S₀ᵀ r, to first order."""
+        good = np.isfinite(e.r) if known is None else np.isfinite(e.r) & known[:, None]
+        prior, sd = self._prior(e.run), e.uncertain
+        step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
+        return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
+
+    def _as_before(
+        self, filter_: Whitener, given: np.ndarray, values: Mapping[str, float], path: np.ndarray, by: tuple[str, ...]
+    ) -> np.ndarray:
+        """What has to be added to slopes (n, nz, k) along a path, as its forces do the same to a heavier chair: they grow with
+        its mass. The path is made of the very errors that slopes are held against, and with its forces in the slope by its
+        mass a chair would be found too light."""
+        out = np.zeros((*filter_.present.shape, len(by)))
+        if MASS in by:
+            pushed = path[:, ALONG] @ self._unknown(filter_.recorded, given, values).as_push[:, ALONG].T
+            out[:, :, by.index(MASS)] = filter_.response(pushed) / self.chair(values)[MASS]
+        return out
+
+    def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
+        """What was measured (n, nz), less the sensors' offsets."""
+        return np.stack([run.channels[c] - values.get(f"offset.{c}", 0.0) for c in self._channels(run)], axis=1)
+
+    def _channels(self, run: Run) -> tuple[str, ...]:
+        return tuple(c.name for c in CHANNELS if c.name in run.channels)
+
+    def _which(self, run: Run) -> list[int]:
+        return [self.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in run.channels]
+
+    def _set(self, run: Run, values: Mapping[str, float]) -> dict[str, float]:
+        """Parameters by name; what the run itself sets stands."""
+        return {**self.variant.values, **self.known(run), **values, **run.set}
+
+    def _vector(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> np.ndarray:
+        return self.variant.vector({**self._set(run, values), **{n: start.get(n, 0.0) for n in self.start_names}})
+
+    def _given(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (np,) and inputs (n, nw) of a run."""
+        return self._vector(run, values, start), self.inputs(self.on_time(run, values, start))
+
+    def on_time(self, run: Run, values: Mapping[str, float], start: Mapping[str, float]) -> Run:
+        """The run with its pushes as and when the chair felt them: a record that is early is read that much later, and what
+        `start` has of clocks and baselines is taken out."""
+        given = self._set(run, values)
+        delay = sum(given.get(d, 0.0) for d in self._delays)
+        inputs = felt(run, start)
+        late = [n for n in inputs if n not in BODY] if delay else []
+        inputs = {**inputs, **{n: np.interp(run.time - delay, run.time, inputs[n]) for n in late}}
+        return replace(run, inputs=inputs, set={n: v for n, v in run.set.items() if n not in self._delays})
+
+    def inputs(self, run: Run) -> np.ndarray:
+        """Recorded inputs (n, nw)."""
+        names = self._inputs
+        w = np.tile([i.start for i in self.sensitivities.model.inputs], (len(run.time), 1))
+        for name, values in run.inputs.items():
+            w[:, names.index(name)] = values
+        return w
+
+    def _fill_columns(self, out: np.ndarray, run: Run, found: Evaluation, w: np.ndarray, by: Sequence[str]) -> None:
+        """Unwhitened sensitivities into zeros (n, nz, len(by)). `w` (n, nw) are the inputs as the chair felt them."""
+        columns = [n for n in by if n not in self._delays and n not in self.offsets]
+        free = [j for j, name in enumerate(by) if name not in run.set]
+        derived = [j for j in free if by[j] in columns]
+        at = [columns.index(by[j]) for j in derived]
+        out[:, :, derived] = found.by_parameter[:, np.array(self._which(run))[:, None], at]
+        for j in free:
+            if by[j] in self.offsets:
+                out[:, :, j] = [c == self.offsets[by[j]] for c in self._channels(run)]
+            elif by[j] in self._delays:  # every push changes by −F' per second of it
+                pushes = pushes_of(run)
+                pushed = w[:, [self._inputs.index(n) for n in pushes]]
+                by_hands = np.where([n in BODY for n in pushes], 0.0, rate_of(run.time, pushed))
+                out[:, :, j] = found.whitener.response(-by_hands)
+
+    def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
+        """The same likelihood with other noise; starts found so far are kept."""
+        other = object.__new__(Likelihood)
+        other.__dict__ = {**self.__dict__, "noise_model": noise_model}
+        return other
+
+    def led(self, campaign: Campaign) -> Likelihood:
+        """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
+        path on which forces that nobody recorded lead it, once its start is tuned."""
+        other = self.with_noise_model(self.noise_model)
+        other.campaign, other.leads, other.paths = campaign, True, {}
+        other.starts = {r.name: other._prior(r) for r in campaign.runs}
+        return other
+
+
+def constant(local: Local, channels: Sequence[str], inputs: Sequence[str], n: int) -> Constant:
+    """What is uncertain of one run only, as the evaluation has it."""
+    if isinstance(local, BaselineError):
+        shape = local.baseline.independent[:, local.column]
+        own = np.array([name == local.baseline.input for name in inputs])
+        return Constant("baseline", local.sd, own, np.zeros(len(channels), bool), shape)
+    assert isinstance(local, ClockError)
+    stamped = (
+        np.array([name in some for name in all_])
+        for all_, some in ((inputs, local.clock.inputs), (channels, local.clock.channels))
+    )
+    return Constant("clock", local.sd, *stamped)
+
+
+def offsets_of(campaign: Campaign) -> dict[str, str]:
+    """Names of the sensor offsets that a campaign has for nuisances, and the channels they are added to."""
+    measured = {c for r in campaign.runs for c in r.channels}
+    return {f"offset.{c}": c for c in campaign.nuisance if c in measured}

@@ -1,0 +1,110 @@
+"""The noise of channels and of recorded pushes, and the forces that nobody recorded, as numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...campaign import BY_NAME, Run
+from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
+from ...engine.innovations import Disturbance, Noise
+
+FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
+SCATTER = 1.15  # ratio of two estimates of the same noise
+SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
+FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
+# s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
+SWUNG = (0.1, 0.2)
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """Noise of each channel, and of the recorded pushes: standard deviation (SI) and AR(1) coefficient; and the forces that
+    nobody recorded."""
+
+    sd: Mapping[str, float]
+    ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
+    force: float = 0.0  # N, standard deviation of what pushes the chair along its heading and nobody recorded,
+    moment: float = 0.0  # N m, of what turns it,
+    body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
+    lasting: float = FORGOTTEN  # s over which the moment is forgotten; a force that is forgotten sooner than that is a body's
+    mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
+    by_run: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # times `sd` that a channel's noise is in a run
+
+    def of(self, channel: str, run: str) -> float:
+        """Standard deviation of a channel's noise in a run; in one that nothing is known of, as in the others together."""
+        known = self.by_run.get(run) or {}
+        others = [times[channel] ** 2 for times in self.by_run.values() if channel in times]
+        times = known.get(channel) or (float(np.sqrt(np.mean(others))) if others else 1.0)
+        return self.sd.get(channel, 0.0) * times
+
+    @property
+    def disturbed(self) -> bool:
+        """Do forces act that nobody recorded?"""
+        return max(self.force, self.moment, self.body) > 0
+
+    def differs(self, other: NoiseModel) -> bool:
+        """Is some channel's noise of another size or noise_model, by more than estimates of either scatter?"""
+        sizes = (other.sd[c] / sd for c, sd in self.sd.items() if sd > 0)
+        colours = (abs(self.ar.get(c, 0.0) - other.ar.get(c, 0.0)) for c in {*self.ar, *other.ar})
+        return (
+            any(not 1 / SCATTER < ratio < SCATTER for ratio in sizes)
+            or any(c > 1 - 1 / SCATTER for c in colours)
+            or self._otherwise_disturbed(other)
+            or any(not 1 / SCATTER < ratio < SCATTER for ratio in self._run_by_run(other))
+        )
+
+    def _run_by_run(self, other: NoiseModel) -> Iterator[float]:
+        """Ratios of what both have by run."""
+        for run, times in self.by_run.items():
+            yield from (other.by_run.get(run, {}).get(channel, 1.0) / size for channel, size in times.items())
+
+    def _otherwise_disturbed(self, other: NoiseModel) -> bool:
+        """Do forces act of another size, by more than estimates of it scatter and by more than can be felt?"""
+        pairs = ((self.force, other.force, 0.5), (self.moment, other.moment, 0.1), (self.body, other.body, 0.5))
+        return any(abs(a - b) > max((SCATTER - 1) * max(a, b), felt) for a, b, felt in pairs)
+
+
+def noise_of(
+    noise_model: NoiseModel, run: Run, channels: Sequence[str], pushes: Sequence[str], start: np.ndarray = np.empty((0, 0))
+) -> Noise:
+    """The noise of a run's recorded pushes and of its readings, and the covariance of its start."""
+    usual = float(np.median(np.diff(run.time)))
+    step = np.array([run.input_steps.get(n, usual) for n in pushes])
+    swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
+    sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
+    push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
+    reading_sd, reading_ar = np.array([(noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]).T
+    return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
+
+
+def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0) -> Disturbance:
+    """A force along the heading, a moment, and the two processes by which a rider's body pushes, as changes of the recorded
+    pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
+
+    What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
+    they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride.
+
+    A body whose momentum p against the chair is of second order, p'' + (α + β) p' + α β p = white noise, pushes by −p': two
+    processes of first order, α and β, that one noise drives, and a force without a mean.
+    """
+    alpha, beta = (1 / t for t in SWUNG)
+    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * noise_model.body
+    body = np.sqrt([alpha / 2, beta / 2]) * driven
+    as_push = np.zeros((pushes, 4))
+    along = mass / noise_model.mass if noise_model.mass else 1.0
+    as_push[:2] = [[along / 2, side / t_r, -along / 2, along / 2] for side in (1, -1)]
+    common = np.eye(4)
+    common[2, 3] = common[3, 2] = 2 * np.sqrt(alpha * beta) / (alpha + beta)
+    sd = np.array([noise_model.force, noise_model.moment, *body])
+    return Disturbance(sd, np.array([FORGOTTEN, noise_model.lasting, *SWUNG]), as_push, common)
+
+
+def pushes_of(run: Run) -> tuple[str, ...]:
+    """FMU names of the inputs that a filter has noise for: forces, and torques and the momentum of the rider's body where they
+    were recorded."""
+    names = FORCES if not any(BY_NAME[n].fmu in run.inputs for n in TORQUES) else (*FORCES, *TORQUES)
+    names = (*names, MOMENTUM) if BY_NAME[MOMENTUM].fmu in run.inputs else names
+    return tuple(BY_NAME[n].fmu for n in names)

@@ -1,0 +1,161 @@
+"""A diagnosis as records: for JSON, with the keys that are fixed, and for tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..decision.verdict import Diagnosis
+from ..estimation.score import Score
+from ..estimation.statistics import cosines, estimates, finite
+from ..search.candidate import Candidate
+from ..search.rounds import Round
+
+SIGNIFICANT = 0.05  # level at which a slight effect is said to show
+RIVALS = 4  # that are listed of an effect, if their
+ALIKE_AT_ALL = 0.5  # cosine is larger
+
+
+def as_json(d: Diagnosis) -> dict[str, Any]:
+    """The diagnosis with the keys that are fixed for `diagnose --json`."""
+    return {
+        "campaign": d.campaign,
+        "verdict": d.verdict,
+        "effects": list(d.effects),
+        "ties": [list(t) for t in d.ties],
+        "odds": list(d.odds),
+        "ranking": ranking(d),
+        "groups": groups(d),
+        "ladder": [step.as_json() for step in d.ladder],
+        "leftover": leftover_json(d),
+        "next_experiment": d.next_experiment,
+        "sync": {
+            run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
+            for run, of in d.search.clocks.items()
+        },
+        "baseline": {
+            run: {push: dict(found) for push, found in of.items()} for run, of in d.search.factory.campaign.rims.items()
+        },
+        "physical": d.ladder[-1].physical,
+        "disturbance": d.unexplained.as_json() if d.unexplained else None,
+        "calibration": {c.record.name: c.as_json() for c in d.calibration},
+        "notes": list(d.notes),
+        "seconds": d.seconds,
+    }
+
+
+def ranking(d: Diagnosis) -> list[dict[str, Any]]:
+    """Every effect, the refitted first, as the round in which it did best saw it."""
+    first = d.rounds[0]
+    scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
+    candidates: dict[str, tuple[Candidate, Round]] = {}
+    for r in (*d.rounds, *d.beside):
+        for c in r.candidates:
+            if c.effect not in candidates or c.effect in d.included:
+                candidates[c.effect] = (c, r)
+    order = sorted(
+        scores,
+        key=lambda e: (
+            e not in d.effects,
+            e not in candidates,
+            -(candidates[e][0].support.large if e in candidates else scores[e].drop),
+        ),
+    )
+    rivals = _rivals(first.scores)
+    nobody: tuple[Candidate | None, Round] = (None, first)
+    seen = {e: candidates.get(e, nobody) for e in order}
+    return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, [])) for e in order]
+
+
+def groups(d: Diagnosis) -> list[dict[str, Any]]:
+    """Effects that were refitted together, as they may show only so: `beside` which others, their parameters by full name, and
+    the p and fall of −2 log likelihood of all of them."""
+    return [
+        {
+            "effects": list(c.members),
+            "beside": list(r.effects),
+            "parameters": {n: {"estimate": float(v), "se": finite(e)} for n, v, e in zip(names, c.estimate, c.se, strict=True)},
+            "p": c.p,
+            "lr": c.drop,
+            "found": c.effect == (r.winner.effect if r.winner else None),
+        }
+        for r in d.rounds
+        for c in r.groups
+        if (names := d.search.factory.parameters(c.effect))
+    ]
+
+
+def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
+    records = d.search.records
+    estimate, se = _estimate(d, s, c)
+    parameters = {
+        name.rpartition(".")[2]: {
+            "estimate": float(v),
+            "se": finite(e),
+            "unit": records[name].unit.name,
+            "smallest_interesting": records[name].smallest_interesting,
+            **({"interval": list(d.intervals[name])} if name in d.intervals else {}),
+        }
+        for name, v, e in zip(s.names, estimate, se, strict=True)
+    }
+    before = r.heldout.rms if r.heldout.runs else float("nan")
+    return {
+        "effect": s.effect,
+        "parameters": parameters,
+        "probability": belief.large if (belief := d.beliefs.get(s.effect)) else None,
+        "probability_there": belief.there if belief else None,
+        "p": c.p if c else min(1.0, s.p * len(r.scores)),
+        "power": s.power,
+        "lr": c.drop if c else s.drop,
+        "hidden_in_fit": s.hidden,
+        "heldout_before": finite(before),
+        "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
+        "rivals": rivals,
+        "verdict": _row_verdict(d, s, c),
+    }
+
+
+def _estimate(d: Diagnosis, s: Score, c: Candidate | None) -> tuple[np.ndarray, np.ndarray]:
+    """Of an effect's parameters, with standard errors: in the last model where it is in that, else in its own."""
+    if s.effect in d.included:
+        value, covariance = estimates(d.top, s.names)
+        return value, np.sqrt(np.maximum(np.diag(covariance), 0))
+    return (c.estimate, c.se) if c else (s.estimate, s.se)
+
+
+def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
+    """By effect, those whose signature is most like its own."""
+    found = {}
+    for i, row in enumerate(cosines(scores, scores)):
+        most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
+        found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
+    return found
+
+
+def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
+    if any(s.effect in t for t in d.ties):
+        return "tie"
+    if s.effect in d.effects:
+        return "small" if d.verdict == "small" else "missing"
+    if s.effect in d.included or (c and not c.matters and c.p < SIGNIFICANT):
+        return "small"
+    return "not needed" if s.power >= d.search.policy.power else "cannot_see"
+
+
+def leftover_json(d: Diagnosis) -> dict[str, Any]:
+    """Is anything structured left, and where."""
+    if d.leftover is None:
+        return {"p": None, "where": None}
+    refitted = (d.proposal,) if d.proposal else d.leftover.candidates
+    terms: list[Candidate | Score] = [*refitted, *d.leftover.scores]
+    if not terms:
+        return {"p": 1.0, "where": None}
+    best = terms[0]
+    p = best.p if refitted else min(1.0, best.p * len(d.leftover.scores))
+    worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
+    out = {"p": p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
+    if d.proposal:
+        out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
+    return out

@@ -1,0 +1,104 @@
+"""How far off a model is, in which run and channel, and in which regime the excess lies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..evidence.evidence import RunEvidence
+from .physical import ChannelError, pooled, run_errors
+
+BINS = 4
+
+
+@dataclass(frozen=True)
+class RunErrors:
+    """Errors of one run, e (n, nz), measured less predicted in standard deviations; NaN in gaps. `physical` is what is left of
+    each channel in its own unit."""
+
+    name: str
+    role: str
+    channels: tuple[str, ...]
+    e: np.ndarray
+    predicted: np.ndarray
+    regime: Mapping[str, np.ndarray]  # by name, (n,)
+    physical: Mapping[str, ChannelError]
+
+    def summary(self) -> RunErrors:
+        """The same without predictions, which only figures ask for."""
+        return replace(self, predicted=np.empty((0, len(self.channels))))
+
+    @property
+    def rms(self) -> dict[str, float]:
+        return {c: float(np.sqrt(np.nanmean(self.e[:, i] ** 2, dtype=float))) for i, c in enumerate(self.channels)}
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Whitened errors of a campaign: 1.0 is the noise floor."""
+
+    runs: tuple[RunErrors, ...]
+
+    def physical(self, role: str) -> dict[str, dict[str, ChannelError]]:
+        """By run and channel, of the runs with this role."""
+        return {r.name: dict(r.physical) for r in self.runs if r.role == role}
+
+    def rms(self, role: str | None = None) -> float:
+        """Over all channels of all runs, or of those with this role; NaN where there are none."""
+        e = [r.e for r in self.runs if role in (None, r.role)]
+        count = sum(int(np.isfinite(one).sum()) for one in e)
+        return float(np.sqrt(sum(np.nansum(one**2, dtype=float) for one in e) / count)) if count else float("nan")
+
+    def excess_by(self, name: str) -> list[tuple[float, float, float]]:
+        """(from, to, share of the excess Σ(e² − 1)) over bins of a regime that hold equally many samples."""
+        values = np.concatenate([r.regime[name] for r in self.runs])
+        excess = np.concatenate([np.nansum(r.e**2 - 1, axis=1, dtype=float) for r in self.runs])
+        edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
+        if len(edges) < 2:
+            return []
+        place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+        total = float(excess.sum())
+        return [
+            (float(a), float(b), float(excess[place == i].sum()) / total if total else 0.0)
+            for i, (a, b) in enumerate(pairwise(edges))
+        ]
+
+    def worst(self) -> tuple[str, str, float]:
+        """(run, channel, whitened RMS) where the error is largest."""
+        return max(((r.name, c, v) for r in self.runs for c, v in r.rms.items()), key=lambda row: row[2])
+
+
+def errors_of(
+    evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str], results: Sequence[str]
+) -> RunErrors:
+    """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
+    there = evidence.predicted if predicted is None else evidence.on_rows(predicted)
+    where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
+    pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
+    if pushes:
+        where["push"] = np.sum(pushes, axis=0)
+    e = evidence.errors(there)
+    physical = run_errors(evidence.channels, evidence.measured, there)
+    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where, physical)
+
+
+def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
+    """The pieces of a run, one after the other, as that run; in single precision, for there may be millions of samples."""
+    if len(pieces) == 1:
+        return pieces[0]
+
+    def joined(arrays: Iterable[np.ndarray]) -> np.ndarray:
+        return np.concatenate([array.astype(np.float32) for array in arrays])
+
+    regime = {name: joined(piece.regime[name] for piece in pieces) for name in pieces[0].regime}
+    return replace(
+        pieces[0],
+        name=name,
+        e=joined(p.e for p in pieces),
+        predicted=joined(p.predicted for p in pieces),
+        regime=regime,
+        physical=pooled(p.physical for p in pieces),
+    )

@@ -1,0 +1,1 @@
+"""Screen, refit, hold out, compare rivals: which effects a chair has."""

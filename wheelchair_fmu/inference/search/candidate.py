@@ -1,0 +1,92 @@
+"""A hypothesis that was tried: one effect, or a group of them, beside the model at hand, refitted with all other values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..estimation.fit import Fit
+from ..estimation.marginal import Support, squared, support_of
+from ..evidence.evidence import Evidence
+from ..models.factory import TOGETHER
+from ..policy import DEFAULT, SearchPolicy
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """What it does beside the model without it. Arrays are by parameter (k,)."""
+
+    effect: str  # or the group's name
+    fit: Fit
+    drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
+    estimate: np.ndarray
+    covariance: np.ndarray  # (k, k) of the estimate
+    between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
+    delta: np.ndarray
+    one_sided: np.ndarray  # which of its parameters may only be positive
+    dispersion: float  # mean square innovation
+    correlation: float  # samples per independent one
+    p: float  # of a test without priors, times the number of effects tested
+    gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
+    heldout: Evidence | None
+    lawful: bool  # of a sign that its parameters may have
+    stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
+    beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
+    policy: SearchPolicy = DEFAULT
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The effects that it is of."""
+        return tuple(self.effect.split(TOGETHER))
+
+    @property
+    def scale(self) -> float:
+        """−2 log likelihood that counts as one, with residuals as large and as correlated as the likeliest model leaves."""
+        dispersion, correlation = self.beside or (self.dispersion, self.correlation)
+        return dispersion * correlation
+
+    @property
+    def fall(self) -> float:
+        """Of −2 log likelihood, in units of `scale`."""
+        return max(self.drop, 0.0) * self.dispersion / self.scale
+
+    @cached_property
+    def support(self) -> Support:
+        """What bears it out, beside the model without it, and however many parameters it has."""
+        covariances, ahead = (self.covariance, self.between), self.gain[0] / self.scale if self.gain else 0.0
+        return support_of(self.effect, self.estimate, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy)
+
+    @property
+    def excess(self) -> float:
+        """Log likelihood that is gained, and that the estimate by its standard errors would not: of a model that is not exact a
+        parameter may take up what it did not do."""
+        away = squared(self.estimate / self.delta, self.covariance / np.outer(self.delta, self.delta))
+        return 0.5 * max(0.0, self.fall - away)
+
+    @property
+    def se(self) -> np.ndarray:
+        """Standard errors (k,)."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0))
+
+    @property
+    def possible(self) -> bool:
+        """May a chair have it, at the size that was found?"""
+        return self.lawful and not self.stretched
+
+    @property
+    def matters(self) -> bool:
+        """Is it likelier to be large than to be slight, or nothing, if it is there at all?"""
+        return self.possible and self.support.large > max(0.0, self.support.slight)
+
+
+def ranked(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Candidates of one model, best first: by marginal likelihood, with residuals as the likeliest leaves them."""
+    found = list(candidates)
+    likeliest = max(found, key=lambda c: c.drop * c.dispersion, default=None)
+    if likeliest is None:
+        return []
+    beside = likeliest.dispersion, likeliest.correlation
+    return sorted((replace(c, beside=beside) for c in found), key=lambda c: -c.support.large)

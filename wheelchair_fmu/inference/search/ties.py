@@ -1,0 +1,111 @@
+"""Effects that a campaign cannot tell apart: as likely within odds of a hundred to one, or as good on what was held out; and
+the search again, beside all others that were found, that tells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ...errors import SimulationError
+from ..estimation.fit import Fit
+from ..estimation.statistics import difference_blocks, resampled_totals
+from ..evidence.evidence import Evidence
+from .candidate import Candidate, ranked
+from .rounds import Round
+from .screen import shortlist
+from .search import ALIKE, SHORTLIST, Search
+
+HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
+NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
+
+
+def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
+    """The effects in the order found, each with those it is tied with: groups of one, or of several."""
+    return tuple(dict.fromkeys(tuple(next((group for group in ties if e in group), (e,))) for e in effects))
+
+
+def tied(r: Round, effect: str) -> tuple[str, ...]:
+    """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. What
+    predicts held-out runs better is so much likelier, if it was found. In a search again, beside all that was found,
+    fitted runs alone tell."""
+    leader = _of(r, effect)
+    group = [leader.effect]
+    for c in r.candidates:
+        if c is leader or not c.lawful:
+            continue
+        ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
+        behind = _behind(c, leader)
+        near = behind <= r.policy.tied or (behind - ahead / leader.scale <= r.policy.tied and c.matters)
+        same = abs(ahead) < se and c.matters and c.drop >= NEARLY * leader.drop
+        if near or same:
+            group.append(c.effect)
+    return tuple(group)
+
+
+def beside(
+    search: Search,
+    effect: str,
+    effects: Sequence[str],
+    final: Fit,
+    held: Evidence,
+    before: Round | None,
+    calibrated: float = 0.0,
+) -> Round | None:
+    """One of the `effects` of a `final` model searched for again, beside all the others. `before` is the round that found it,
+    if that knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or
+    where the model cannot run without it."""
+    w, others = search.factory, tuple(e for e in effects if e != effect)
+    try:
+        base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
+        base_held = search.heldout(w.likelihood(others), base.values)
+    except SimulationError:
+        return None
+    base = replace(base, evidence=w.likelihood(others).restarted(base.evidence, base.values))
+    without, without_held = search.rival_of(effect, others, base, base_held)
+    as_known = search.compared(final, effect, without)
+    fall = without.misfit - as_known.misfit
+    if before and _stands(effect, effects, fall, before):
+        return None
+    screened = search.screen(base, others)
+    own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
+    promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
+    tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall) for s in promising)
+    candidates = ranked([own, *(c for c in tried if c)])
+    base = replace(base, evidence=base.evidence.summary())
+    scores = tuple(s.score for s in screened)
+    r = Round(others, base, base_held.summary(), scores, tuple(candidates), again=True, policy=search.policy)
+    return replace(r, explained=calibrated - base.misfit)
+
+
+def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:
+    """Did no other come near an effect in the round that found it, and does it still do most of what it did then? If not, it
+    may have done what others do that were found later, and one that does the rest may not have shown."""
+    then = _of(before, effect)
+    near = {c.effect for c in before.candidates if c.lawful and c.drop >= HALF * then.drop}
+    most = fall >= HALF * (before.fit.misfit - then.fit.misfit)
+    return most and then.matters and near.union(tied(before, effect)) <= set(effects)
+
+
+def _of(r: Round, effect: str) -> Candidate:
+    return next(c for c in r.candidates if c.effect == effect)
+
+
+def overtaker(r: Round, effect: str) -> Candidate | None:
+    """What a search again for one effect of a model found, if it is another, with which that explains more by far."""
+    ahead = r.winner
+    another = r.again and ahead is not None and ahead.effect != effect
+    return ahead if another and ahead and _behind(_of(r, effect), ahead) > r.policy.tied else None
+
+
+def _behind(one: Candidate, other: Candidate) -> float:
+    """How much less likely one is than another by fitted runs, whatever their sizes, in −2 log likelihood."""
+    return 2 * (other.support.fitted - one.support.fitted)
+
+
+def _ahead_on_heldout(one: Candidate, other: Candidate) -> tuple[float, float]:
+    """By how much one predicts the held-out runs better than the other, in −2 log likelihood, and the bootstrap's standard
+    error of that; 0 where none were held out."""
+    if one.heldout is None or other.heldout is None or not one.heldout.runs:
+        return 0.0, 0.0
+    blocks = difference_blocks(other.heldout, one.heldout)
+    return float(blocks.sum()), float(resampled_totals(blocks).std())
