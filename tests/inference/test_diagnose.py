@@ -138,8 +138,14 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
 
 @among("toe_misalignment", "rolling_resistance_asymmetry")
 def test_toe_of_opposite_signs_is_found(tmp_path, chair):
+    """Among all effects a small asymmetry of the drag does as well, of which every chair has some: large toe is named beside
+    it."""
     campaign = read(make(tmp_path / "campaign", {"toe_misalignment": {"sum": -0.003, "difference": -0.027}}, seed=2))
     found = diagnose(campaign, chair)
+    if len(chair.catalogue) > 2:
+        assert found.verdict == "small" and found.effects == ("rolling_resistance_asymmetry",)
+        assert any(note.startswith("toe_misalignment would do as well, and would not be small") for note in found.notes)
+        return
     assert "toe_misalignment" in found.effects and found.ladder[-1].left < 1.05
     toe_in = found.final.values["effect.toe_misalignment.difference"]
     assert toe_in < -0.01 and abs(found.final.values["effect.toe_misalignment.sum"]) < abs(toe_in)

@@ -121,9 +121,9 @@ def test_a_group_promises_what_no_member_does(search, first):
 def test_a_group_is_found_as_an_effect_of_several_parameters(first):
     (group,) = first.groups
     assert first.winner is group
-    assert group.found and group.p < 1e-6 and len(group.estimate) == 2
+    assert group.matters and group.p < 1e-6 and len(group.estimate) == 2
     assert np.all(np.abs(group.estimate - list(SIZES.values())) < 3 * group.se)
-    assert not any(c.found and c.effect in ("lean", "rubs") for c in first.candidates)
+    assert not any(c.matters and c.effect in ("lean", "rubs") for c in first.candidates)
 
 
 @pytest.mark.nightly

@@ -96,6 +96,14 @@ def test_a_group_may_be_what_a_round_finds():
     assert replace(r, groups=(replace(joined, lawful=False),), candidates=()).winner is None
 
 
+def test_what_surely_worsens_held_out_runs_is_never_found():
+    certain = np.array([[0.01]])
+    evidence = Evidence((), ())
+    for gain, found in (((-5.0, -8.0, 1.0), True), ((-5.0, -8.0, -1.0), False)):
+        r = Round((), NONE, evidence, (), (candidate("a", 400.0, np.array([2.0]), certain, gain=gain),))
+        assert (r.winner is not None) == bool(r.slight) == found
+
+
 def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
     certain = 0.16 * np.eye(2)
     lone = candidate("c", 36.0, np.array([2.4]), certain[:1, :1])

@@ -213,7 +213,8 @@ def _searched(
     beyond_limits = beyond(search.factory.likelihood(selection.effects), base.evidence)
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     odd = unlike_the_others(base.evidence, selection.held)
-    notes = (*thinned, *search.notes, *odd, *search.noise_notes, *doubtful, *beyond_limits)
+    large = _instead_of_small(rounds[0]) if verdict == "small" else ()
+    notes = (*thinned, *search.notes, *odd, *search.noise_notes, *doubtful, *beyond_limits, *large)
     return Diagnosis(
         campaign.name,
         verdict,
@@ -401,3 +402,18 @@ def _slight(first: Round) -> tuple[str, ...]:
     that data cannot tell from it."""
     small = [c for c in first.slight if not c.matters and (c.gain is None or c.gain[1] > 0)]
     return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
+
+
+def _instead_of_small(first: Round) -> tuple[str, ...]:
+    """A sentence for each effect that would be large, and that data cannot tell from those that are slight."""
+    likeliest = max((c.support.slight for c in first.slight), default=0.0)
+    near = [
+        c
+        for c in first.candidates
+        if c.matters and not c.worsens and 2 * (likeliest - first.log_prior - c.support.large) < first.policy.tied
+    ]
+    return tuple(
+        f"{c.effect} would do as well, and would not be small: {np.linalg.norm(c.estimate / c.delta):.1f} times what is of "
+        f"interest; the odds are {np.exp(likeliest - first.log_prior - c.support.large):.0f} to 1 against it"
+        for c in near
+    )

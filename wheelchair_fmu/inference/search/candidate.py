@@ -77,6 +77,11 @@ class Candidate:
         return self.lawful and not self.stretched
 
     @property
+    def worsens(self) -> bool:
+        """Are runs that were held out surely foretold worse with it than without?"""
+        return self.gain is not None and self.gain[2] < 0
+
+    @property
     def matters(self) -> bool:
         """Is it likelier to be large than to be slight, or nothing, if it is there at all?"""
         return self.possible and self.support.large > max(0.0, self.support.slight)

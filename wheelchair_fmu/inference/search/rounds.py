@@ -74,15 +74,15 @@ class Round:
     @property
     def winner(self) -> Candidate | None:
         """The best candidate, or group of them, if it is surely there, and it is more probable that some such thing is missing
-        than that all have at most a little of everything."""
-        able = [c for c in self.every if c.possible]
+        than that all have at most a little of everything. What worsens held-out runs is never said to help."""
+        able = [c for c in self.every if c.possible and not c.worsens]
         large = sum(self.beliefs[c.effect].there for c in able) > 0.5
         return able[0] if able and large and self.present[able[0].effect] > self.policy.sure else None
 
     @property
     def slight(self) -> list[Candidate]:
-        """Candidates that are surely there, be they slight, the likeliest first."""
-        sure = (c for c in self.candidates if c.possible and self.present[c.effect] > self.policy.sure)
+        """Candidates that are surely there, be they slight, and do not worsen held-out runs, the likeliest first."""
+        sure = (c for c in self.candidates if c.possible and not c.worsens and self.present[c.effect] > self.policy.sure)
         return sorted(sure, key=lambda c: -c.support.slight)
 
     @property
