@@ -223,9 +223,10 @@ def make(
     chair: Mapping[str, float] | None = None,
     measured: float = 0.0,
     turned: tuple[float, float] = (0.0, 0.0),
+    redraw: int | None = None,
 ) -> Path:
-    """Write a campaign. `chair` changes the chair itself, so both the file and the truth; `seed` fixes all that is random;
-    `measured` is as of `truth`, `turned` as of `record`."""
+    """Write a campaign. `chair` changes the chair itself, so both the file and the truth; `seed` fixes all that is random, but
+    for the noise of what was read, where `redraw` has a seed for that; `measured` is as of `truth`, `turned` as of `record`."""
     unknown = set(channels) - set(NOISE) - {"F_rl", "F_rr"}
     if unknown:
         raise KeyError(f"no channel {', '.join(sorted(unknown))}; there are {', '.join(NOISE)}")
@@ -235,7 +236,9 @@ def make(
     names = ["F_rl", "F_rr", *(c for c in channels if c not in ("F_rl", "F_rr"))]
     (folder / "runs").mkdir(parents=True, exist_ok=True)
     for run in runs:
-        columns = noisy(record(run, true, seed=seed, turned=turned), names, noise, noise_scale, seed)
+        columns = noisy(
+            record(run, true, seed=seed, turned=turned), names, noise, noise_scale, seed if redraw is None else redraw
+        )
         (folder / "runs" / f"{run.name}.csv").write_text(_csv(columns), encoding="utf-8")
     sigmas = {name: float(f"{noise_scale * NOISE[name]:.6g}") for name in names}
     text = _toml(folder.name, told, sigmas, [(run, settings(run, told, true)) for run in runs])
