@@ -1,23 +1,22 @@
 """Effects that are put in together: a group that was found as one, and those that ask for one law.
 
 Where a law has several effects of its own, one alone may leave the model as far off as none: simulations go another way
-altogether until all are about right. So where much is left and nothing is found, their sizes are tried together, and stay if
-they explain most of it.
+altogether until all are about right. So where much is left and nothing is found, their sizes are tried together, and judged as
+any group is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from ...errors import SimulationError
 from ..estimation.fit import Fit
-from ..estimation.score import Score
 from ..estimation.starts import most_promising
-from ..estimation.statistics import decisive, margin
+from ..models.factory import TOGETHER
 from .candidate import Candidate
 from .rounds import Round
 from .search import HALFWAY, Search
@@ -28,27 +27,21 @@ BEGUN = 16  # of these, refits that make one step
 ENDED = 2  # of these, refits that go on to their end
 
 
-@dataclass(frozen=True)
-class Stage:
-    """An effect, the model before it is put in, and the model with it."""
-
-    effect: str
-    without: Fit
-    fit: Fit
-
-
-def together(search: Search, effects: tuple[str, ...], base: Fit, scores: Sequence[Score]) -> list[Round]:
-    """Rounds that put in what a group of effects explains together, one effect each, the most needed first; none if it
-    explains nothing."""
+def together(search: Search, now: Round) -> Candidate | None:
+    """Of the effects that ask for one law, as a group: the first that a round finds, beside the model that it was `now` for."""
+    w, effects, base = search.factory, now.effects, now.fit
     for group in kin(search):
         new = tuple(e for e in group if e not in effects)
         found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
-        if found is not None and found.misfit < base.misfit - decisive(base.evidence) and explains(base, found):
-            try:
-                return _rounds(search, effects, _stages(search, effects, new, found, base), scores)
-            except SimulationError:
-                continue  # with some of these and not the others the model cannot run: nobody can say which are needed
-    return []
+        if found is None:
+            continue
+        likelihood, names = w.likelihood((*effects, *new)), [n for e in new for n in w.parameters(e)]
+        found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
+        held = search.heldout(likelihood, found.values)
+        judged = search.judge(base, now.heldout, found, held, TOGETHER.join(new), names, len(now.scores))
+        if replace(now, candidates=(), groups=(judged,)).winner is not None:
+            return judged
+    return None
 
 
 def parted(search: Search, now: Round, group: Candidate) -> list[Round]:
@@ -69,11 +62,6 @@ def parted(search: Search, now: Round, group: Candidate) -> list[Round]:
         judged = search.judge(without, before, search.compared(found, effect, without), held, effect, names, len(now.scores))
         rounds.append(Round(others, without, before, now.scores, (judged,), contested=contested, policy=search.policy))
     return rounds
-
-
-def explains(base: Fit, found: Fit) -> bool:
-    """Does a model leave less than half of what was left above the noise?"""
-    return found.evidence.rms - 1 < (base.evidence.rms - 1) / 2
 
 
 def kin(search: Search) -> list[tuple[str, ...]]:
@@ -106,32 +94,3 @@ def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], grou
     begun.sort(key=lambda fit: fit.misfit)
     ended = [search.refit(every, fit.values, fit.evidence) for fit in begun[:ENDED]]
     return min(ended, key=lambda fit: fit.misfit, default=None)
-
-
-def _stages(search: Search, effects: tuple[str, ...], new: tuple[str, ...], found: Fit, base: Fit) -> list[Stage]:
-    """The way back from a model with all of `new` to one without, by what is needed least; what is not needed is left out."""
-    stages: list[Stage] = []
-    while new:
-        without = {e: base if len(new) == 1 else _refitted(search, (*effects, *(o for o in new if o != e)), found) for e in new}
-        least = min(without, key=lambda e: without[e].misfit)
-        needed = without[least].misfit - found.misfit > margin(found.evidence)
-        if needed or stages:
-            stages.insert(0, Stage(least, without[least], found))
-        new, found = tuple(e for e in new if e != least), without[least]
-    return stages
-
-
-def _refitted(search: Search, effects: tuple[str, ...], found: Fit) -> Fit:
-    return search.refit(effects, found.values, rival=found.misfit)
-
-
-def _rounds(search: Search, effects: tuple[str, ...], stages: Sequence[Stage], scores: Sequence[Score]) -> list[Round]:
-    w, rounds = search.factory, []
-    for s in stages:
-        more = (*effects, s.effect)
-        before, after = (search.heldout(w.likelihood(e), fit.values) for e, fit in ((effects, s.without), (more, s.fit)))
-        found = replace(s.fit, evidence=w.likelihood(more).restarted(s.fit.evidence, s.fit.values))
-        judged = search.judge(s.without, before, found, after, s.effect, w.parameters(s.effect), len(scores))
-        rounds.append(Round(effects, s.without, before, tuple(scores), (judged,), policy=search.policy))
-        effects = more
-    return rounds

@@ -125,7 +125,10 @@ class StepwiseSelection:
         if best is not None and len(best.members) > 1:
             best = self._parted(now, best) or replace(now, groups=()).winner
         if best is None and self.ladder[-1].left > MUCH and not self._tried_together:
-            best = self._together(now)
+            self.search.say("trying effects of one law together")
+            self._tried_together = True
+            joined = together(self.search, now)
+            best = self._parted(now, joined) if joined else None
         if best is None and self.ladder[-1].fit > AT_THE_FLOOR:
             best = next(iter(now.slight), None)
             self.helping |= {best.effect} if best else set()
@@ -147,18 +150,6 @@ class StepwiseSelection:
             held = self.search.heldout(self.search.factory.likelihood(fewer), fit.values)
             self.ladder.append(Step.of(f"+{effect}", fit.evidence, held))
         return rounds[-1].candidates[0]
-
-    def _together(self, now: Round) -> Candidate | None:
-        """The last of several effects of one law that explain something only together; the others are steps by then."""
-        self.search.say("trying effects of one law together")
-        self._tried_together = True
-        joined = together(self.search, self.effects, self.base, now.scores)
-        if not joined:
-            return None
-        self.ladder += [Step.of(f"+{r.effects[-1]}", r.fit.evidence, r.heldout) for r in joined[1:]]
-        self.helping |= {c.effect for r in joined for c in r.candidates if not c.matters}
-        self.rounds += joined
-        return joined[-1].candidates[0]
 
     def _step(self) -> None:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""
