@@ -127,6 +127,13 @@ def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, fo
     assert replace(r, odds=1e-4).winner is None or size == 4.0
 
 
+def test_a_small_size_that_explains_much_is_slight():
+    """Runs disagree about a fifth of δ by some hundredths, and yet it explains far more than that says: a slight size leaves
+    nothing of it."""
+    known = candidate("a", 1150.0, np.array([0.22]), np.array([[0.06**2]]), gain=(1300.0, 800.0, 1800.0))
+    assert known.support.left < 1e-6 and known.support.slight > known.support.large and not known.matters
+
+
 def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     """A fifth of δ of one effect does what three δ of another nearly do."""
     slight = candidate("a", 100.0, np.array([0.2]), np.array([[0.02**2]]))

@@ -52,6 +52,9 @@ def support(
     by how much −2 log likelihood falls up to the estimate, `ahead` by how much it does so on runs held out."""
     axes, spread = seen_axes(covariance)
     along = axes.T @ size
+    # What the likelihood says of sizes beside the estimate, the fall tells: its curvature is the sharper the more falls.
+    far = along**2 / spread
+    sharp = spread * min(1.0, float(np.sum(far)) / max(fall, LEAST))
     one = float(np.linalg.norm(axes, axis=1).max())  # what δ of the parameter that shows most does along the seen directions
 
     def posterior(sd: float) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +68,7 @@ def support(
         at, scatter = (axes @ mean)[lawful], np.sqrt((axes**2 @ variance)[lawful])
         sides = np.divide(at, scatter, out=np.zeros(len(at)), where=scatter > 0)  # of what nobody sees, either is as likely
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
-        left = float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
+        left = float(np.sum(far * (sharp / (sharp + sd**2)) ** 2)) / max(float(np.sum(far)), LEAST)
         width = spread + sd**2
         paid = float(np.sum(np.log(width / spread) + along**2 / width))
         value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * paid + allowed
