@@ -78,7 +78,7 @@ class Variant:
         """The laws of tyre and casters, and the equations.
 
         >>> wc.Variant({"tyre.law": "dugoff"}).laws
-        {'tyre': 'dugoff', 'caster': 'ideal', 'equations': 'extended'}
+        {'tyre': 'dugoff', 'caster': 'ideal', 'wheel': 'rolling', 'equations': 'extended'}
         """
         return {kind: getattr(self._record.choice, kind) for kind in LAWS}
 
