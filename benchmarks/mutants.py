@@ -38,7 +38,7 @@ SWAPS = {
 }
 L, M = "wheelchair_fmu/inference/", "wheelchair_fmu/model/"
 NAMED = (  # file, what stands there once, what stands there instead
-    (M + "resistance.py", "F_max * cs.vertcat(brake_rl, brake_rr)", "F_max * cs.vertcat(brake_rr, brake_rl)"),
+    (M + "wheel/rolling.py", "F_max * cs.vertcat(brake_rl, brake_rr)", "F_max * cs.vertcat(brake_rr, brake_rl)"),
     (M + "chassis.py", "needed * R / R_rim", "needed * R_rim / R"),
     (M + "caster/swivelling.py", "- c * psi_dot", "+ c * psi_dot"),
     (M + "effects/relaxation_length.py", "slip = -v_yw / magnitude", "slip = v_yw / magnitude"),

@@ -17,6 +17,7 @@ PAIRS = (
     ("cm_lateral_offset", "wheel_radius_error"),
     ("gyro_bias", "aerodynamic_drag"),
 )
+ALONE = (("trunk_motion", "swing"),)  # a body that goes on after the push, of second order where the catalogue's law is linear
 NEAR_TIES = ("aerodynamic_drag", "rolling_resistance_speed")  # on straight runs, where nobody can tell them apart
 
 
@@ -31,10 +32,12 @@ class Case:
     manoeuvres: str = "everyday"
     left_out: tuple[str, ...] = ()
     seed: int = 0
+    only: str = ""  # the one parameter of the effect that is hidden, where not all are
 
     @property
     def name(self) -> str:
         what = "+".join(self.effects) or "none"
+        what += f".{self.only}" if self.only else ""
         return f"{self.kind}-{what}-{self.times:g}-{self.noise}-{self.manoeuvres}-{self.seed}"
 
     @property
@@ -44,6 +47,8 @@ class Case:
 
     @property
     def hidden(self) -> Mapping[str, Mapping[str, float]]:
+        if self.only:
+            return {e: {self.only: self.times * EFFECTS[e].parameters[self.only].delta} for e in self.effects}
         return {e: usual(e, self.times) for e in self.effects}
 
 
@@ -66,6 +71,8 @@ class Plan:
                 self._add("outside", (effect,), (1.0, 3.0), "white", seed)
             for pair in PAIRS:
                 self._add("pair", pair, (3.0,), "white", seed)
+            for effect, parameter in ALONE:
+                self.cases += [Case("rider", (effect,), times, seed=seed, only=parameter) for times in SIZES]
             for effect in NEAR_TIES:
                 self._add("near-tie", (effect,), (2.0,), "white", seed, "straight")
 

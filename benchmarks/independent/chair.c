@@ -17,7 +17,7 @@
 #define EXPORT
 #endif
 
-enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, STATES };
+enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, LEAN, LEAN_RATE, STATES };
 
 #define WAVES 9
 
@@ -28,6 +28,8 @@ static const double TURN_STILL = 0.02;  /* m/s, below which a wheel counts as st
 static const double TURN_LENGTH = 0.6, CASTER_TURN_LENGTH = 0.1; /* m, radius of a path round which a patch half slides */
 static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
+static const double TORSO = 0.3;        /* m, from the hips up to where the upper body's share of the CM turns about them */
+static const double TIRING = 160;       /* N of push, beyond which nobody leans much farther */
 
 typedef struct { double force, deflection_rate; } Tyre;
 
@@ -67,13 +69,24 @@ static void uneven(const double *p, double x, double y, double *slope_x, double 
     *slope_y = p[P_slope_y] + p[P_floor] * 2 / sqrt(WAVES) * sum_y;
 }
 
+/* An upper body that turns about the hips, by an angle from upright, towards one that the push asks for: a spring as of a
+ * pendulum, and a damping that grows with the speed. It goes on swinging once the push is over. Returns the angle's second rate. */
+static double leaning(const double *p, double angle, double rate, double push) {
+    double omega = 2 * 3.14159265358979 * p[P_lean_frequency];
+    double wanted = p[P_lean] / TORSO * push / 80 / sqrt(1 + push * push / (TIRING * TIRING));
+    return -omega * omega * sin(angle - wanted) - (p[P_lean_damping] * omega + p[P_lean_drag] * fabs(rate)) * rate;
+}
+
 /* Rates of all states, and what the instruments need, for the pushes F (right, left) and their slopes dF. */
 static void rates(const double *p, const double *s, const double *F, const double *dF, double *d, double *out) {
     double u = s[U], v = s[V], r = s[R];
-    double shift = s[TRUNK];
+    double angle_rate = p[P_lean] != 0 ? leaning(p, s[LEAN], s[LEAN_RATE], F[0] + F[1]) : 0;
+    double shift = s[TRUNK] + TORSO * sin(s[LEAN]);
     double target = p[P_trunk] * (F[0] + F[1]) / 80;
-    double shift_rate = p[P_trunk] != 0 ? (target - shift) / p[P_trunk_lag] : 0;
-    double shift_acceleration = p[P_trunk] != 0 ? (p[P_trunk] * (dF[0] + dF[1]) / 80 - shift_rate) / p[P_trunk_lag] : 0;
+    double trunk_rate = p[P_trunk] != 0 ? (target - s[TRUNK]) / p[P_trunk_lag] : 0;
+    double shift_rate = trunk_rate + TORSO * cos(s[LEAN]) * s[LEAN_RATE];
+    double shift_acceleration = p[P_trunk] != 0 ? (p[P_trunk] * (dF[0] + dF[1]) / 80 - trunk_rate) / p[P_trunk_lag] : 0;
+    shift_acceleration += TORSO * (cos(s[LEAN]) * angle_rate - sin(s[LEAN]) * s[LEAN_RATE] * s[LEAN_RATE]);
     double a = p[P_a] - shift, b = p[P_b] + shift;
     double carried = a - p[P_patch_load] * p[P_trail] * (cos(s[SWIVEL_R]) + cos(s[SWIVEL_L])) / 2, base = carried + b;
     double frame = u - shift_rate;
@@ -160,18 +173,20 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     d[U] = u_dot;
     d[V] = v_dot;
     d[R] = r_dot;
-    d[TRUNK] = shift_rate;
+    d[TRUNK] = trunk_rate;
+    d[LEAN] = s[LEAN_RATE];
+    d[LEAN_RATE] = angle_rate;
     if (!out) return;
     out[O_wheel_speed_l] = wheel[1];
     out[O_wheel_speed_r] = wheel[0];
     out[O_yaw_rate] = r;
-    out[O_a_x] = felt_x - shift_acceleration; /* the frame carries the accelerometer */
-    out[O_a_y] = felt_y;
+    out[O_a_x] = felt_x - shift_acceleration + shift * r * r; /* the frame carries the accelerometer, behind the CM */
+    out[O_a_y] = felt_y - 2 * shift_rate * r - shift * r_dot;
     out[O_x] = s[X] - shift * c;
     out[O_y] = s[Y] - shift * n;
     out[O_yaw] = s[PSI];
     out[O_u] = frame;
-    out[O_v] = v;
+    out[O_v] = v - shift * r;
     out[O_yaw_acceleration] = r_dot;
     out[O_swivel_r] = s[SWIVEL_R];
     out[O_swivel_l] = s[SWIVEL_L];

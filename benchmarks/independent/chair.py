@@ -37,7 +37,7 @@ OUTPUTS = (
     "swivel_l",
     "energy",
 )
-STATES = 15
+STATES = 17
 STEPS_PER_SAMPLE = 50
 
 
@@ -73,6 +73,9 @@ class Chair:
     swivel_dry: float = 0.002
     swivel_viscous: float = 0.002
     trunk_lag: float = 0.15
+    lean_frequency: float = 1.1
+    lean_damping: float = 0.3
+    lean_drag: float = 0.5
     pressure: float = 1.0
     patch_load: float = 0.0  # 1: the floor carries the casters at their patches, 0: under their pivots, as in the paper
     # Effects, off at zero.
@@ -90,6 +93,7 @@ class Chair:
     h_y: float = 0.0
     y_cm: float = 0.0
     trunk: float = 0.0
+    lean: float = 0.0
     drag_speed: float = 0.0
     drag_difference: float = 0.0
     aero: float = 0.0

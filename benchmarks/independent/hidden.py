@@ -190,7 +190,18 @@ EFFECTS: dict[str, Effect] = {
     "longitudinal_load_transfer": Effect(_one("h", "chair.h_x", "m", 0.3, "CM height: gaining speed loads the rear wheels")),
     "cm_lateral_offset": Effect(_one("y", "chair.y_cm", "m", 0.004, "positive: the CM lies right of the middle plane")),
     "trunk_motion": Effect(
-        _one("amplitude", "chair.trunk", "m", 0.01, "positive: CM goes forward on the frame by this per 80 N, lag 0.15 s")
+        {
+            "amplitude": Parameter(
+                "chair.trunk", "m", 0.01, "positive: CM goes forward on the frame by this per 80 N, lag 0.15 s"
+            ),
+            "swing": Parameter(
+                "chair.lean",
+                "m",
+                0.005,
+                "positive: CM swings forward, by this per 80 N were it slow, and on after",
+                pattern=0.0,
+            ),
+        }
     ),
     "caster_inertia": Effect(
         _one("I", "chair.I_swivel", "kg m2", 0.005, "each caster's; replaces their own 0.003", combine=_at_least), sees="slow"

@@ -24,10 +24,11 @@ CHOICES = [
     Choice("dugoff", "swivelling"),
     Choice("magic_formula"),
     Choice("linear", "slipping"),
+    Choice("dugoff", "swivelling", "spinning"),
 ]
 
 
-@pytest.fixture(scope="module", params=CHOICES, ids=lambda c: f"{c.tyre}-{c.caster}")
+@pytest.fixture(scope="module", params=CHOICES, ids=lambda c: f"{c.tyre}-{c.caster}-{c.wheel}")
 def chair(request) -> Energy:
     """All effects that these laws allow, in one model: those that are not asked of are off."""
     choice = request.param

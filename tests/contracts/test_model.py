@@ -16,7 +16,8 @@ from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 
 EFFECTS = bundled()
-CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS), "slipping"]  # none, one, all; a law of casters
+LAWS = {"slipping": Choice(caster="slipping"), "spinning": Choice(wheel="spinning")}
+CASES = [(), *((e,) for e in EFFECTS), tuple(EFFECTS), *LAWS]  # none, one, all; laws with states
 
 
 def name(case: tuple[str, ...] | str) -> str:
@@ -27,7 +28,7 @@ def name(case: tuple[str, ...] | str) -> str:
 
 @pytest.fixture(params=CASES, ids=name)
 def variant(request) -> Variant:
-    return Variant(Choice(caster=request.param)) if isinstance(request.param, str) else variant_with(*request.param)
+    return Variant(LAWS[request.param]) if isinstance(request.param, str) else variant_with(*request.param)
 
 
 def test_mirror_and_standstill(variant):

@@ -93,8 +93,8 @@ def test_one_that_breaks_a_contract_is_refused_however_trusted(tmp_path):
         ),
         (
             "[own_laws.tyre.brush]",
-            "[own_laws.wheel.brush]",
-            r"own_laws holds tyre and caster laws; write \[own_laws.tyre.my_law\]",
+            "[own_laws.spokes.brush]",
+            r"own_laws holds tyre, caster, wheel laws; write \[own_laws.tyre.my_law\]",
         ),
         ("treads that bend", "treads that break", "the source of brush was changed after it was written"),
         ('tyre = "brush"', 'tyre = "brushes"', "no tyre law 'brushes'; did you mean 'brush'"),

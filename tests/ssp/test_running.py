@@ -140,7 +140,9 @@ def test_values_inside_the_description_are_bound_too(altered):
 
 def test_sets_in_the_archive_go_on_top(slalom, rolled):
     trace = run(slalom, parameters=("deflated-tyres", "carpet"), stop=8.0)
-    assert trace.parameters["Chair.tyre.pressure"] == 2.0 and trace.parameters["Floor.carpet.rolling_factor"] == 1.98
+    assert trace.parameters["Chair.tyre.pressure"] == 2.0 and trace.parameters["Floor.carpet.rolling_factor"] == pytest.approx(
+        1.983, abs=1e-3
+    )
     there = np.searchsorted(rolled.time, 8.0)
     assert trace["Chair.chair.x"][-1] < rolled["Chair.chair.x"][there] - 0.05
 
@@ -260,7 +262,7 @@ def test_a_ramp_and_a_carpet_act_on_the_chair(tmp_path):
     ramp, carpet = (over(name, tmp_path) for name in ("ramp", "carpet"))
     assert np.min(ramp["Floor.floor.slope_x"]) == pytest.approx(-0.05, abs=1e-9)
     assert np.max(ramp["Pusher.push.F_rl"][ramp.time > 3]) > 60  # uphill, well above the level
-    assert np.max(carpet["Floor.floor.rolling_factor"]) == pytest.approx(1.98)
+    assert np.max(carpet["Floor.floor.rolling_factor"]) == pytest.approx(1.983, abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -75,10 +75,10 @@ class Variant:
 
     @property
     def laws(self) -> dict[str, str]:
-        """The laws of tyre and casters, and the equations.
+        """The laws of tyre, casters and rear wheels, and the equations.
 
         >>> wc.Variant({"tyre.law": "dugoff"}).laws
-        {'tyre': 'dugoff', 'caster': 'ideal', 'equations': 'extended'}
+        {'tyre': 'dugoff', 'caster': 'ideal', 'wheel': 'rolling', 'equations': 'extended'}
         """
         return {kind: getattr(self._record.choice, kind) for kind in LAWS}
 

@@ -1,4 +1,4 @@
-"""`wheelchair laws`: tyre laws and caster laws, and whether a user's own keep what every law has to keep."""
+"""`wheelchair laws`: laws of tyres, casters and rear wheels, and whether a user's own keep what every law has to keep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ from .group import console
 from .terminal import announce
 from .trust import variant_option
 
-app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="The tyre laws and caster laws that the chair can have.")
+app = typer.Typer(
+    no_args_is_help=True, rich_markup_mode=None, help="The laws of tyres, casters and rear wheels that the chair can have."
+)
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 In = Annotated[Path | None, variant_option("A variant, for the laws of somebody's own in it.")]
 

@@ -1,4 +1,4 @@
-"""What a tyre law or a caster law has to keep, bundled or a user's own."""
+"""What a tyre law, a caster law or a wheel law has to keep, bundled or a user's own."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MOMENTS = 60  # in which the energy of a chair with a caster law is asked for
 
 
 def law_breaches(kind: str, choice: Choice) -> list[Breach]:
-    """Every contract that the chosen law of this kind ("tyre" or "caster") breaks."""
+    """Every contract that the chosen law of this kind ("tyre", "caster" or "wheel") breaks."""
     chosen = law(kind, choice)
     try:
         with np.errstate(all="ignore"):  # what is not finite is a breach, and no warning beside
@@ -118,4 +118,13 @@ def _of_casters(_: Alternative, subject: Subject) -> list[Breach]:
     return energy.of_casters(np.random.default_rng(21), MOMENTS) or energy.breaches((), np.random.default_rng(20), MOMENTS)
 
 
-OF_KIND: dict[str, Callable[[Alternative, Subject], list[Breach]]] = {"tyre": _of_tyres, "caster": _of_casters}
+def _of_wheels(_: Alternative, subject: Subject) -> list[Breach]:
+    """Without a push the chair and what spins of it only lose energy."""
+    return Energy(subject).breaches((), np.random.default_rng(20), MOMENTS)
+
+
+OF_KIND: dict[str, Callable[[Alternative, Subject], list[Breach]]] = {
+    "tyre": _of_tyres,
+    "caster": _of_casters,
+    "wheel": _of_wheels,
+}

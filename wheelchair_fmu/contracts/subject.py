@@ -22,7 +22,7 @@ class Breach:
     contract: str
     fact: str
     cure: str
-    kind: str = "effect"  # or which law: "tyre law", "caster law"
+    kind: str = "effect"  # or which law: "tyre law", "caster law", "wheel law"
 
     def __str__(self) -> str:
         return f"{self.kind} {self.effect}, {self.contract}: {self.fact}; {self.cure}"

@@ -38,6 +38,7 @@ def files(face: Interface, version: str, results: Mapping[str, bytes]) -> dict[s
         references=literature.listed(literature.keys_in([v.source for v in face.variables], known), known),
         equations=escape(choice.equations),
         caster=escape(choice.caster),
+        wheel=escape(choice.wheel),
         version=__version__,
         fmi=version,
         step=number(1000 * STEP),

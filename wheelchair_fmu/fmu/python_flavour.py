@@ -32,7 +32,12 @@ NAME = "WheelchairPython"
 PACKAGE = Path(__file__).parents[1]
 PLACEHOLDER = "wheelchair_package"  # what slave.py calls the package before it has its name
 NEEDED = ("casadi", "numpy")  # as slave.py asks for them
-PACKAGES = {"laws/tyre": "tyre", "laws/caster": "caster", "channels": "readings"}  # of a user's own files
+PACKAGES = {  # of a user's own files
+    "laws/tyre": "tyre",
+    "laws/caster": "caster",
+    "laws/wheel": "wheel",
+    "channels": "readings",
+}
 NOTHING_OF_THE_HOST_S = '''"""A user's own laws and channels are in this FMU already."""
 
 
@@ -105,7 +110,7 @@ def _interface(face: Interface, token: str) -> dict[str, Any]:
     choice = face.variant.choice
     return {
         "token": token,
-        "choice": {"caster": choice.caster, "equations": choice.equations},
+        "choice": {"caster": choice.caster, "wheel": choice.wheel, "equations": choice.equations},
         "laws": names(choice)["tyre"],
         "effects": [e.id for e in face.model.effects],
         "tolerance": TOLERANCE,

@@ -70,7 +70,7 @@ def own_laws(table: object, path: Path) -> tuple[OwnLaw, ...]:
     """The laws, as text. Raises as `read`."""
     kinds = table.items() if isinstance(table, dict) else ()
     if not isinstance(table, dict) or not all(kind in KINDS and isinstance(entries, dict) for kind, entries in kinds):
-        known = " and ".join(KINDS)
+        known = ", ".join(KINDS)
         raise UsageError(f"{LAWS_TABLE} holds {known} laws; write [{LAWS_TABLE}.tyre.my_law] with sha256 and source below it")
     return tuple(_law(kind, name, entry, path) for kind, entries in kinds for name, entry in entries.items())
 

@@ -13,10 +13,10 @@ from typing import Any
 
 from .. import configuration
 from ..errors import unknown
-from . import caster, lawful, tyre
+from . import caster, lawful, tyre, wheel
 from .stage import Alternative, Program
 
-KINDS: Mapping[str, ModuleType] = {"tyre": tyre, "caster": caster}  # of laws that may be a user's own
+KINDS: Mapping[str, ModuleType] = {"tyre": tyre, "caster": caster, "wheel": wheel}  # of laws that may be a user's own
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,12 @@ class Choice:
 
     tyre: str = "linear"
     caster: str = "ideal"
+    wheel: str = "rolling"
     equations: str = "extended"  # or "paper": (9)–(22) to the letter, forward motion only
     own: tuple[OwnLaw, ...] = ()
 
     def with_laws(self, laws: Mapping[str, str]) -> Choice:
-        """The same with other laws, by what they are for ("tyre", "caster", "equations")."""
+        """The same with other laws, by what they are for ("tyre", "caster", "wheel", "equations")."""
         changed: dict[str, Any] = dict(laws)
         return replace(self, **changed)
 
@@ -79,6 +80,7 @@ def names(choice: Choice = Choice()) -> dict[str, tuple[str, ...]]:
     return {
         "tyre": tuple(laws("tyre", choice)),
         "caster": tuple(name for name in laws("caster", choice) if name != "paper"),
+        "wheel": tuple(name for name in laws("wheel", choice) if name != "paper"),
         "equations": ("extended", "paper"),
     }
 

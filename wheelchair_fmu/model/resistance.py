@@ -1,4 +1,4 @@
-"""Rolling resistance and brakes, (17) and the drag terms of (20)."""
+"""Rolling resistance, (17), and what else drags on wheels; how wheels turn that into forces on the chair is a wheel law's."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import casadi as cs
 
 from ..quantities import FRONT, M_S, N_S_M, ONE, REAR, N, Parameter
 from .chassis import per_wheel
-from .smooth import speed
 from .stage import define, stage
 
 PARAMETERS = (
@@ -64,44 +63,7 @@ PARAMETERS = (
 
 
 LIGHTEST = 1.0  # N; a wheel that carries less is off the ground
-ROUNDED = 1e-12  # keeps what a brake leaves of side force above zero, where rounding could take it below
-
-
-@stage(
-    define("locked", ONE, "0 where a rear wheel rolls, 1 where its brake has locked it", "+swap", REAR),
-    define("braking", N, "friction that the brake of each rear wheel uses, μN where it is locked", "+swap", REAR),
-    define("side", ONE, "share of its side force that braking leaves a rear wheel", "+swap", REAR),
-)
-def brakes(brake_rl, brake_rr, F_max, mu, N_r):
-    """The friction circle: braking and side force together reach μN at most.
-
-    With F the brake's force over μN, a wheel uses β = F / (1 + F⁸)^⅛ of μN and keeps √(1 − β²) of its side force. Beyond F = 1
-    it locks: then it has no side force, and its friction is against the way that its patch slides. Between the two it is some
-    of each, as F⁸ says, so that no force jumps; a light hand on the brake is passed on whole.
-    """
-    limit = mu * cs.fmax(N_r, LIGHTEST)
-    F = F_max * cs.vertcat(brake_rl, brake_rr) / limit
-    F2 = F * F
-    rolling = 1 / (1 + F2 * F2 * F2 * F2)
-    fourth = cs.sqrt(cs.sqrt(rolling))
-    left = cs.sqrt(1 - F2 * (fourth - ROUNDED))  # √(1 − β²)
-    return 1 - rolling, limit * F * cs.sqrt(fourth), rolling * left
-
-
-@stage(
-    define("locked", ONE, "0 where a rear wheel rolls, 1 where its brake has locked it", "+swap", REAR),
-    define("braking", N, "friction that the brake of each rear wheel uses, μN where it is locked", "+swap", REAR),
-    define("side", ONE, "share of its side force that braking leaves a rear wheel", "+swap", REAR),
-)
-def brakes_paper():
-    """There are none in the paper."""
-    return per_wheel(0.0), per_wheel(0.0), per_wheel(1.0)
-
-
-@stage(define("sliding", M_S, "speed over which each rear wheel's dry friction acts", "+swap", REAR))
-def patches(v_xw, v_yw, locked, drag_eps, v_onset):
-    """A wheel that rolls resists along its plane, one that is locked whichever way it slides, and that at once."""
-    return speed(v_xw * v_xw + locked * v_yw * v_yw, drag_eps + (1 - locked) * v_onset)
+ROUNDED = 1e-12  # keeps what friction along a wheel leaves of its side force above zero, where rounding could take it below
 
 
 @stage(
@@ -126,18 +88,6 @@ def dry_drag(D_r):
 def viscous_resistance():
     """None: (17) does not depend on speed."""
     return per_wheel(0.0), per_wheel(0.0)
-
-
-@stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
-def rear_longitudinal(F_t, D_w, d_r, locked, braking, sliding, v_xw):
-    """Traction less what opposes the hub's motion, forward or backward."""
-    return F_t - (((1 - locked) * D_w + braking) / sliding + d_r) * v_xw
-
-
-@stage(define("F_w", N, "force of each rear wheel along its plane", "+swap", REAR))
-def rear_longitudinal_paper(F_t, D_w, d_r, v_xw):
-    """As in (20): always forward, so resistance is constant."""
-    return F_t - D_w - d_r * v_xw
 
 
 @stage(

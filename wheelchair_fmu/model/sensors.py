@@ -48,12 +48,12 @@ class Reading:
     define("read_u", M_S, "speed of the CM along x_m"),
     define("read_v", M_S, "speed of the CM along y_m", "-"),
 )
-def sensors(v_xw, locked, psi_dot, a_x, a_y, g_x, g_y, x, y, psi, u, v, shift, recoil, recoil_rate, M_z, inertia):
-    """Wheels roll without longitudinal slip unless they are locked; an accelerometer does not feel gravity along its axis.
+def sensors(rim, psi_dot, a_x, a_y, g_x, g_y, x, y, psi, u, v, shift, recoil, recoil_rate, M_z, inertia):
+    """An accelerometer does not feel gravity along its axis.
 
     Instruments are on the frame, where the CM is while the rider's body rests: r − shift e_x is the way of that point.
     """
     back_x, back_y = to_room(shift, 0.0, psi)
     felt_x = a_x - g_x + recoil_rate + shift * psi_dot * psi_dot
     felt_y = a_y - g_y + 2 * recoil * psi_dot - shift * M_z / inertia
-    return (1 - locked) * v_xw, psi_dot, felt_x, felt_y, x - back_x, y - back_y, psi, u + recoil, v - shift * psi_dot
+    return rim, psi_dot, felt_x, felt_y, x - back_x, y - back_y, psi, u + recoil, v - shift * psi_dot

@@ -19,7 +19,7 @@ from . import chassis, resistance, sensors
 from .choice import Choice, law, laws, serves
 from .coupling import SPEEDS, uncoupled
 from .readings import READINGS
-from .stage import Effect, Law, Row, Stage, reads
+from .stage import Alternative, Effect, Law, Row, Stage, reads
 from .tyre import common
 
 OUTPUTS = (
@@ -158,8 +158,13 @@ def base_parameters(choice: Choice = Choice()) -> tuple[Parameter, ...]:
     """The parameters of a model without effects."""
     law("tyre", choice)
     tyres = laws("tyre", choice)  # one FMU holds all of them
-    extra = tuple(p for each in (*tyres.values(), law("caster", choice)) for p in each.parameters)
+    extra = tuple(p for each in (*tyres.values(), law("caster", choice), wheel_law(choice)) for p in each.parameters)
     return (*chassis.PARAMETERS, *common.parameters(tuple(tyres)), *resistance.PARAMETERS, *extra)
+
+
+def wheel_law(choice: Choice) -> Alternative:
+    """The chosen one, or the paper's where all else is to the letter as well."""
+    return law("wheel", choice, "paper" if choice.equations == "paper" else choice.wheel)
 
 
 def line(choice: Choice) -> tuple[Stage, ...]:
@@ -167,6 +172,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
     paper = choice.equations == "paper"
     tyre_law = law("tyre", choice)
     caster_law = law("caster", choice, "paper" if paper else choice.caster)
+    *before_tyres, along_wheels = wheel_law(choice).stages
     return (
         chassis.traction,
         chassis.rider,
@@ -181,14 +187,13 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         common.tyres,
         common.slip_paper if paper else common.slip,
         common.followed_slip,
-        resistance.brakes_paper if paper else resistance.brakes,
-        resistance.patches,
+        *before_tyres,
         *tyre_law.stages,
         common.tyre_forces,
         resistance.rolling_resistance,
         resistance.dry_drag,
         resistance.viscous_resistance,
-        resistance.rear_longitudinal_paper if paper else resistance.rear_longitudinal,
+        along_wheels,
         resistance.rear_forces,
         *caster_law.stages,
         chassis.forces,
@@ -215,12 +220,12 @@ class _Assembly:
         for effect in effects:
             self._refuse_misfit(effect)
         self.parameters = base_parameters(choice)
-        caster_law = law("caster", choice)
+        laws_with_states = (law("caster", choice), wheel_law(choice))
         self.rows: list[tuple[Row, Mapping[str, cs.SX]]] = []
         self.foreseen: list[tuple[State, cs.SX]] = []
         self.known = _symbols(self.parameters) | _symbols(chassis.INPUTS)
         self.own = {e.id: _symbols((*e.parameters, *e.constants)) for e in effects}
-        for row in (*chassis.ROWS, *caster_law.rows):
+        for row in (*chassis.ROWS, *(row for each in laws_with_states for row in each.rows)):
             self._add_row(row, self.known)
         for effect in effects:
             for row in effect.rows:
@@ -342,6 +347,7 @@ class _Assembly:
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
         states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
         into = [(law("caster", self.choice).absorbs, self.known, "caster law")]
+        into += [(wheel_law(self.choice).absorbs, self.known, "wheel law")]
         into += [(e.absorbs, self.own[e.id], f"effect {e.id}") for e in self.effects]
         absorbed = sum((self.call(power, own, reader) for power, own, reader in into if power), self.shared)
         extra = self._state_outputs()

@@ -52,7 +52,7 @@ PARAMETERS = (
     Parameter(
         "carpet.rolling_factor",
         ONE,
-        "factor on rolling resistance on the carpet: 1 smooth, about 2 carpet",
+        "factor on rolling resistance on the carpet: 1 smooth, about 2 carpet; `wheelchair surfaces` has more",
         default=1.0,
         lower=0.0,
         upper=100.0,

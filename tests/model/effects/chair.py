@@ -9,6 +9,7 @@ import numpy as np
 from wheelchair_fmu.contracts.places import Place, evaluate
 from wheelchair_fmu.engine.kernel import kernel, rate
 from wheelchair_fmu.engine.simulate import Simulator, Trajectory
+from wheelchair_fmu.model.choice import Choice
 from wheelchair_fmu.model.variant import Variant
 
 G, MASS, I_Z, A, B, T_R, T_F = 9.81, 80.0, 3.08, 0.25, 0.20, 0.55, 0.45  # Table 1
@@ -28,12 +29,13 @@ def run(
     n: int = 501,
     states: Mapping[str, float] | None = None,
     among: tuple[str, ...] = (),
+    choice: Choice = Choice(),
 ) -> Trajectory:
     """Drive for T seconds; `states` are those at the start that no start parameter gives.
 
     `among`: effects to build in besides, at zero, so that several runs share what is compiled.
     """
-    simulator = Simulator(Variant().with_effects(among).with_values(values))
+    simulator = Simulator(Variant(choice).with_effects(among).with_values(values))
     t = np.linspace(0, T, n)
     w = simulator.inputs(n, {name: push(t) if callable(push) else push for name, push in (inputs or {}).items()})
     start = None
@@ -44,13 +46,16 @@ def run(
 
 
 def snapshot(
-    values: Mapping[str, float | str], inputs: Mapping[str, float] | None = None, states: Mapping[str, float] | None = None
+    values: Mapping[str, float | str],
+    inputs: Mapping[str, float] | None = None,
+    states: Mapping[str, float] | None = None,
+    choice: Choice = Choice(),
 ) -> dict:
     """Everything about a chair in one moment.
 
     Outputs go by name, quantities of the equations by symbol, and rates of states by name and prime: `now["psi_dot'"]`.
     """
-    variant = Variant().with_values(values)
+    variant = Variant(choice).with_values(values)
     model = variant.model()
     functions, p = kernel(model).functions, variant.vector()
     w = np.array([(inputs or {}).get(i.name, i.start) for i in model.inputs])

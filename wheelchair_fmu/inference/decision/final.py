@@ -31,7 +31,7 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
     choice = likelihood.variant.choice
     return {
         "step": d.ladder[-1].name,
-        "laws": {"tyre": choice.tyre, "caster": choice.caster, "equations": choice.equations},
+        "laws": {"tyre": choice.tyre, "caster": choice.caster, "wheel": choice.wheel, "equations": choice.equations},
         "parameters": [
             _parameter(records[name], found.values[name], float(se), *priors[name], d.intervals.get(name))
             for name, se in zip(found.names, errors, strict=True)

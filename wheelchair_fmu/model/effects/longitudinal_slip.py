@@ -18,9 +18,8 @@ COMPLIANCE = Parameter(
 )
 
 
-def creep(compliance, F_t, locked, braking, sliding, v_xw, v_eps):
-    traction = F_t - (1 - locked) * braking * v_xw / sliding
-    return compliance * traction * magnitude(v_xw, v_eps)
+def creep(compliance, creeping, v_xw, v_eps):
+    return compliance * creeping * magnitude(v_xw, v_eps)
 
 
 EFFECT = Effect(

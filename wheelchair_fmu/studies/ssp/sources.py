@@ -17,10 +17,12 @@ from ...model.variant import number
 from ...quantities import Parameter
 from ...resources import SYSTEMS
 from ...surroundings import floor, pusher
+from ...surroundings.surfaces import surface
 
 RECORDS: Mapping[str, tuple[Parameter, ...]] = {"Pusher": pusher.PARAMETERS, "Floor": floor.PARAMETERS}
 VERSIONS = {"1": "1.0", "2": "2.0"}
 COMPONENTS = ("Chair", "Pusher", "Floor")
+FLOOR = "carpet.rolling_factor"  # a number, or the name of a surface in its place
 
 
 @dataclass(frozen=True)
@@ -55,13 +57,8 @@ def system(name: str) -> Source:
         if not isinstance(table[key], int | float) or not 0 < table[key] <= 1e6:
             raise Failure(f"{path}: {key} = {table[key]!r} is no time; give seconds above 0")
     values = {c: dict(table.get(c, {})) for c in COMPONENTS}
-    for component, records in RECORDS.items():
-        known = {p.name: p for p in records}
-        for parameter, value in values[component].items():
-            try:
-                number(known, parameter, value)
-            except UsageError as error:
-                raise Failure(f"{path} [{component}]: {error}") from None
+    for component in RECORDS:
+        values[component] = _checked(component, values[component], f"{path} [{component}]")
     return Source(path.stem, str(table["title"]), float(table["stop"]), float(table["step"]), values)
 
 
@@ -77,13 +74,22 @@ def parameter_set(name: str, catalogue: Mapping[str, Effect] | None = None) -> t
         return component, replace(from_variant(variant_in(path, catalogue), path.stem), description=title)
     if component not in RECORDS:
         raise unknown(f"component in {path}", component, COMPONENTS)
+    values = _checked(component, table.get("values", {}), f"{path} [values]")
+    return component, from_values(path.stem, values, RECORDS[component], title)
+
+
+def _checked(component: str, given: Mapping[str, float | str], place: str) -> dict[str, float | str]:
+    """The values, with the factor of a floor that is given by its name. Raises Failure for one that cannot be."""
     known = {p.name: p for p in RECORDS[component]}
+    values = dict(given)
     try:
-        for parameter, value in table.get("values", {}).items():
+        if isinstance(name := values.get(FLOOR), str):
+            values[FLOOR] = surface(name).factor()
+        for parameter, value in values.items():
             number(known, parameter, value)
     except UsageError as error:
-        raise Failure(f"{path} [values]: {error}") from None
-    return component, from_values(path.stem, table.get("values", {}), known.values(), title)
+        raise Failure(f"{place}: {error}") from None
+    return values
 
 
 def version(short: str) -> str:
