@@ -8,14 +8,22 @@ whose roots are all to the left, by Routh, where (d/σ) u² + (d²/I − C c (1 
 shorter than its trail never shimmies; else little damping leaves a range of speeds in which it does. A bearing's dry friction M
 damps small swings more than large ones, as 4 M/(π ω A) of their amplitude A does: it keeps those quiet which that suffices for.
 
+Without damping, and rolled slowly beside σω with ω² = c² C/(I σ), s = i ω + ε gives ε = u (1/c − 1/σ)/2 to first order: a swing
+grows by so much for each metre, whatever stiffness and inertia are. It is the classical condition c > σ of a trailing wheel on a
+string, for a patch without length.
+
 Kauzlarich, Bruning and Thacker (1984, 2000) describe both for wheelchairs; their own formula is not held against this one.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from benchmarks.independent.chair import Chair as Independent
+from benchmarks.independent.chair import Start, simulate
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.handling.linearize import linearize
 from wheelchair_fmu.handling.trim import Chair, trim
@@ -25,6 +33,7 @@ from wheelchair_fmu.model.wheelchair import Choice
 TRAIL, SIGMA, STIFFNESS, INERTIA, DAMPING = 0.05, 0.1, 2500.0, 0.01, 0.25
 STEADY = {"chair.m": 1000.0, "chair.I_z": 1000.0}  # a pivot that hardly moves aside
 SMOOTH = {"resistance.f_r": 0.0, "resistance.f_f": 0.0, "caster.M": 0.0, "caster.mu": 5.0}
+QUIET = {"regularisation.carcass": 1e-4, "regularisation.carcass_speed": 1e-3}  # hardly any damping of a carcass
 CASTERS = {"caster.trail": TRAIL, "caster.sigma": SIGMA, "caster.C_lambda": STIFFNESS, "caster.I": INERTIA, "caster.d": DAMPING}
 
 
@@ -79,6 +88,36 @@ def test_casters_with_a_trail_longer_than_the_relaxation_length_never_shimmy():
     for u in (0.5, 3.0, 10.0, 19.0):
         for d in (0.0, DAMPING):
             assert fastest_growth(u, **{"caster.sigma": 0.8 * TRAIL, "caster.d": d}) < 0
+
+
+@pytest.mark.parametrize(("stiffness", "inertia"), [(2500.0, 0.01), (10000.0, 0.01), (2500.0, 0.003)])
+@pytest.mark.parametrize("sigma", [0.03, TRAIL, 0.15])
+def test_an_undamped_swing_grows_by_the_metre(sigma, stiffness, inertia):
+    """Casters that swing against each other move no pivot; so do those of a chair that is heavy beside C/ω²."""
+    omega = np.sqrt(TRAIL**2 * stiffness / (inertia * sigma))
+    u = 0.03 * sigma * omega
+    values = {"caster.sigma": sigma, "caster.C_lambda": stiffness, "caster.I": inertia, "caster.d": 0.0}
+    found = eigenvalues(u, **values, **QUIET)
+    against = found[np.argmin(np.abs(found - 1j * omega))]
+    per_metre = (1 / TRAIL - 1 / sigma) / 2
+    assert against.real / u == pytest.approx(per_metre, abs=0.02 * (1 / TRAIL + 1 / sigma))
+    assert against.imag == pytest.approx(omega, rel=0.01)
+
+
+@pytest.mark.parametrize("sigma", [0.07, 0.15])
+def test_the_second_implementation_s_swing_grows_as_fast(sigma):
+    """Bristles in place of the string, Runge-Kutta in place of eigenvalues: casters knocked against each other at 3 m/s."""
+    u, knock = 3.0, 1e-4
+    chair = Independent(m=1e3, I_z=1e3, f_r=0.0, f_f=0.0, trail=TRAIL, I_swivel=INERTIA, swivel_dry=0.0, swivel_viscous=0.0)
+    chair = replace(chair, C_caster=STIFFNESS, sigma_caster=sigma)
+    nothing = np.zeros(401)
+    out = simulate(chair, nothing, nothing, Start(u=u, swivel_r=knock, swivel_l=-knock), interval=1e-3, steps=5)
+    swing = np.abs(out["swivel_r"])
+    peaks = np.flatnonzero((swing[1:-1] > swing[:-2]) & (swing[1:-1] > swing[2:])) + 1
+    peaks = peaks[peaks > 50]
+    growth = np.polyfit(peaks * 1e-3, np.log(swing[peaks]), 1)[0]
+    expected = roots(u, sigma, 0.0).real.max()
+    assert expected > 1 and growth == pytest.approx(expected, rel=0.1)
 
 
 @pytest.mark.parametrize(("u", "grows"), [(2.5, False), (5.0, True)])
