@@ -9,8 +9,8 @@ shorter than its trail never shimmies; else little damping leaves a range of spe
 damps small swings more than large ones, as 4 M/(π ω A) of their amplitude A does: it keeps those quiet which that suffices for.
 
 Without damping, and rolled slowly beside σω with ω² = c² C/(I σ), s = i ω + ε gives ε = u (1/c − 1/σ)/2 to first order: a
-swing grows by so much for each metre, whatever stiffness and inertia are. It is the classical condition c > σ of a trailing wheel on
-a string, for a patch without length.
+swing grows by so much for each metre, whatever stiffness and inertia are. It is the classical condition c > σ of a trailing
+wheel on a string, for a patch without length.
 
 Kauzlarich, Bruning and Thacker (1984, 2000) describe both for wheelchairs; their own formula is not held against this one.
 """

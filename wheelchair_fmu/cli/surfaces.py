@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich import box
@@ -26,7 +26,7 @@ def surfaces(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """How hard a chair rolls on floors that were measured, and on soft tyres."""
-    told = [
+    told: list[dict[str, Any]] = [
         {
             "surface": name,
             "adds": each.adds,
