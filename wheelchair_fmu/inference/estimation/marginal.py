@@ -52,9 +52,8 @@ def support(
     by how much −2 log likelihood falls up to the estimate, `ahead` by how much it does so on runs held out."""
     axes, spread = seen_axes(covariance)
     along = axes.T @ size
-    # What the likelihood says of sizes beside the estimate, the fall tells: its curvature is the sharper the more falls.
-    far = along**2 / spread
-    sharp = spread * min(1.0, float(np.sum(far)) / max(fall, LEAST))
+    # How much of a fall belongs to the size: where more falls than standard errors say, most of it is not for them to tell.
+    own = min(1.0, float(np.sum(along**2 / spread)) / max(fall, LEAST))
     one = float(np.linalg.norm(axes, axis=1).max())  # what δ of the parameter that shows most does along the seen directions
 
     def posterior(sd: float) -> tuple[np.ndarray, np.ndarray]:
@@ -68,10 +67,10 @@ def support(
         at, scatter = (axes @ mean)[lawful], np.sqrt((axes**2 @ variance)[lawful])
         sides = np.divide(at, scatter, out=np.zeros(len(at)), where=scatter > 0)  # of what nobody sees, either is as likely
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
-        left = float(np.sum(far * (sharp / (sharp + sd**2)) ** 2)) / max(float(np.sum(far)), LEAST)
+        left = float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
         width = spread + sd**2
         paid = float(np.sum(np.log(width / spread) + along**2 / width))
-        value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * paid + allowed
+        value = 0.5 * (fall + (1 - own * left) * ahead) - 0.5 * paid + allowed
         return value, left
 
     mean, variance = posterior(policy.large)
