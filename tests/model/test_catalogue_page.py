@@ -24,8 +24,8 @@ def test_the_drawings_are_as_the_records_are():
 def test_the_models_page_names_inputs_parameters_and_effects_that_there_are():
     text = (DOCS / "physics.md").read_text(encoding="utf-8")
     model = assemble()
-    casters = assemble(Choice(caster="slipping")).parameters
-    known = {q.name for q in (*model.inputs, *model.parameters, *model.outputs, *casters)} | set(bundled())
+    others = (p for law in ({"caster": "slipping"}, {"wheel": "spinning"}) for p in assemble(Choice(**law)).parameters)
+    known = {q.name for q in (*model.inputs, *model.parameters, *model.outputs, *others)} | set(bundled())
     named = set(re.findall(r"`([a-z]+(?:[._][a-zA-Z_]+)+)(?: = \w+)?`", text)) - {"wheelchair_fmu", "magic_formula"}
     assert len(named) > 12 and named <= known, named - known
     assert {i.name for i in model.inputs} <= set(re.findall(r"`([\w.]+)`", text))

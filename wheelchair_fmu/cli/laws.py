@@ -20,7 +20,7 @@ from .terminal import announce
 from .trust import variant_option
 
 app = typer.Typer(
-    no_args_is_help=True, rich_markup_mode=None, help="The laws of tyres, casters and rear wheels that the chair can have."
+    no_args_is_help=True, rich_markup_mode=None, help="The laws of tyres, casters and rear wheels to choose from."
 )
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 In = Annotated[Path | None, variant_option("A variant, for the laws of somebody's own in it.")]
