@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..estimation.calibration import CLOSE
-from ..estimation.fit import REACH, Fit, Problem, fit, prior_of, start_value
+from ..estimation.fit import Fit, Problem, fit, start_value
 from ..estimation.statistics import estimates, margin
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
@@ -142,14 +141,6 @@ class Models:
             fewer = fit(likelihood, names, base.values)
             self._without[key] = fewer, self.heldout(likelihood, fewer.values)
         return self._without[key]
-
-    def strained(self, found: Fit) -> frozenset[str]:
-        """Given values that a fit has bent as far as it may go."""
-        given = [n for n in found.names if n in self.factory.calibrated]
-        prior, values = prior_of(self.factory.likelihood(), given), np.array([found.values[n] for n in given])
-        known = np.isfinite(prior.sd) & (prior.sd > 0)
-        off = np.divide(np.abs(values - prior.mean), prior.sd, out=np.zeros(len(given)), where=known)
-        return frozenset(n for n, o in zip(given, off, strict=True) if o > REACH - CLOSE)
 
     def linear(self, effect: str) -> bool:
         """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""

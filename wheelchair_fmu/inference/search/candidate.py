@@ -33,8 +33,7 @@ class Candidate:
     gain: tuple[float, float, float] | None  # held-out gain with its 95 % interval, None without held-out runs
     heldout: Evidence | None
     lawful: bool  # of a sign that its parameters may have
-    # to a bound, beyond which no chair is, or with a given value bent as far as it goes: what asks for that is something else
-    stretched: bool = False
+    stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
     policy: SearchPolicy = DEFAULT
 

@@ -170,7 +170,6 @@ class Search(Screen):
         lower, upper = (np.array([getattr(self.records[n], side) for n in names]) for side in ("lower", "upper"))
         one_sided, near = self.one_sided(names), 1e-6 * delta
         along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
-        at_end = np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)
         dispersion = float(np.mean(found.evidence.r**2))
         drop, correlation = (base.misfit - found.misfit) / dispersion, correlation_time(found.evidence)
         p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
@@ -191,7 +190,7 @@ class Search(Screen):
             gain=held_out_gain(base_held, held) if base_held and held and held.runs else None,
             heldout=held.summary() if held is not None else None,
             lawful=not bool(np.all((estimate <= near) & one_sided)),
-            stretched=bool(at_end) or not self.strained(found) <= self.strained(base),
+            stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
             policy=self.policy,
         )
 
