@@ -3,6 +3,7 @@
  * A page's worker has no imports, so this file stands alone. Messages in:
  *   {load: {models, runs, known, forces, …}}   once; see report/content.py
  *   {job, run, values, exact, brief}        simulate one run with parameter values by name (SI); brief: errors' squares alone
+ *   {job, several: [{run, brief}], values, exact}   the same of several: a reply with `more` for each in full, and {job, briefs}
  *   {job, run, values, aside}               the same exactly, without remembering it
  *   {job, run, values, slopes: [[name, step]]}   normal equations of a fit of these parameters
  *   {job, run, values, doubt: {names, covariance}}   how uncertain readings are by values that are
@@ -72,6 +73,16 @@ class Kernel {
   /** A copy of `count` doubles. */
   get(at, count) {
     return new Float64Array(this.wasm.memory.buffer, at, count).slice();
+  }
+
+  /** Copies of the columns of a matrix, by number: (z) => (count,). Good until memory grows. */
+  split(at, count, width) {
+    const all = new Float64Array(this.wasm.memory.buffer, at, count * width);
+    return (z) => {
+      const out = new Float64Array(count);
+      for (let i = 0, k = z; i < count; i++, k += width) out[i] = all[k];
+      return out;
+    };
   }
 
   /** The address that stands in a record. */
@@ -196,30 +207,32 @@ function again(kernel, of, values, place, kept = false) {
 }
 
 /** What the page shows: errors by channel, their squares and those in SI units (`gaps`), readings, and standard deviations of
- *  what is measured about them where values are right. */
-function told(kernel, of, place, simulated, set) {
+ *  what is measured about them where values are right; in `brief` without series. */
+function told(kernel, of, place, simulated, set, brief) {
   const { wasm } = kernel, { n, nz, names } = of, [shown, sd, errors] = ["shown", "sd", "errors"].map((name) => kernel.block(name, n * nz)), sums = kernel.block("sums", 3 * nz);
   wasm.wc_page_tell(of.record, set, place.record, simulated, shown, sd, errors, sums);
-  const columns = (at, count, width) => { const all = kernel.get(at, count * width); return (z) => Float64Array.from({ length: count }, (_, i) => all[i * width + z]); };
-  const by = (make) => Object.fromEntries(names.map((name, z) => [name, make(z)])), total = kernel.get(sums, 3 * nz);
-  const results = columns(kernel.pointer(simulated, WHERE.results), n, kernel.outputs.length), start = kernel.get(kernel.pointer(simulated, WHERE.start), of.uncertain);
-  return {
-    errors: by(columns(errors, n, nz)), predicted: by(columns(shown, n, nz)), sd: by(columns(sd, n, nz)),
+  const by = (make) => Object.fromEntries(names.map((name, z) => [name, make(z)])), total = kernel.get(sums, 3 * nz), start = kernel.get(kernel.pointer(simulated, WHERE.start), of.uncertain);
+  const summed = {
     squares: by((z) => total[3 * z]), counts: by((z) => total[3 * z + 1]), gaps: by((z) => total[3 * z + 2]),
-    results: Object.fromEntries(campaign.shown.map((name) => [name, results(kernel.outputs.indexOf(name))])),
     start: Object.fromEntries(kernel.starts.map((name, c) => [name, start[c]])),
+  };
+  if (brief) return { ...summed, brief };
+  const results = kernel.split(kernel.pointer(simulated, WHERE.results), n, kernel.outputs.length);
+  return {
+    ...summed, errors: by(kernel.split(errors, n, nz)), predicted: by(kernel.split(shown, n, nz)), sd: by(kernel.split(sd, n, nz)),
+    results: Object.fromEntries(campaign.shown.map((name) => [name, results(kernel.outputs.indexOf(name))])),
   };
 }
 
-function evaluate(index, values, exact, aside) {
+function evaluate(index, values, { exact, aside, brief }) {
   const kernel = kernelFor(values), of = kernel.recording(index), place = kernel.place(of, !aside);
   if (!aside && !exact && place.whole && remembered[index] === kernel) {
     const { to, set } = again(kernel, of, values, place);
-    return told(kernel, of, place, to, set);
+    return told(kernel, of, place, to, set, brief);
   }
   if (!aside) remembered[index] = kernel;
   evaluated(kernel, of, values, place);
-  return told(kernel, of, place, place.record, given(kernel, of, values));
+  return told(kernel, of, place, place.record, given(kernel, of, values), brief);
 }
 
 /** What was found at these values already, or is found now. */
@@ -261,8 +274,8 @@ function doubted(index, values, { names, covariance }) {
   const all = moved(kernel, of, values, place, steps, false, ({ to, set }) => { wasm.wc_page_as_read(of.record, set, to, shown); return kernel.get(shown, n * nz); });
   const [sizes, spread] = [Float64Array.from(steps, ([, step]) => step), Float64Array.from(covariance.flat())].map((a, i) => kernel.put(a, `doubt ${i}`));
   wasm.wc_page_doubt(of.record, names.length, base, sizes, all, spread, variance);
-  const whole = kernel.get(variance, n * nz);
-  return { variance: Object.fromEntries(of.names.map((name, z) => [name, Float64Array.from({ length: n }, (_, i) => whole[i * nz + z])])) };
+  const column = kernel.split(variance, n, nz);
+  return { variance: Object.fromEntries(of.names.map((name, z) => [name, column(z)])) };
 }
 
 /** A bare simulation, for comparing this page with another program. */
@@ -283,15 +296,12 @@ function load(given) {
   kernels = given.models.map((record) => new Kernel(record, evaluation));
 }
 
-/** The same without series. */
-const briefly = ({ squares, counts, gaps, start }) => ({ squares, counts, gaps, start, brief: true });
-
 function answer({ load: all, job, run, values, exact, brief, aside, slopes: steps, doubt, trace: wanted }) {
   if (all) return load(all);
   const began = performance.now();
   try {
-    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : doubt ? doubted(run, values, doubt) : evaluate(run, values, exact, aside);
-    return { job, run, ...(brief ? briefly(result) : result), ms: performance.now() - began };
+    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : doubt ? doubted(run, values, doubt) : evaluate(run, values, { exact, aside, brief });
+    return { job, run, ...result, ms: performance.now() - began };
   } catch (error) {
     return { job, run, error: error.message };
   }
@@ -300,7 +310,24 @@ function answer({ load: all, job, run, values, exact, brief, aside, slopes: step
 /** Series go to the page without being copied: nothing here needs them again. */
 const buffers = ({ errors, predicted, sd, results, variance }) => [errors, predicted, sd, results, variance].filter(Boolean).flatMap((all) => Object.values(all).map((a) => a.buffer));
 
+function send(reply) {
+  self.postMessage(reply, buffers(reply));
+}
+
+/** Several runs with the same values: those whose series are wanted one by one, all others in one message, the last, as every
+ *  message keeps the page's thread from drawing. */
+function answerAll({ job, several, values, exact }) {
+  const briefs = [];
+  for (const { run, brief } of several) {
+    const reply = answer({ job, run, values, exact, brief });
+    if (brief) briefs.push(reply);
+    else send({ ...reply, more: true });
+  }
+  send({ job, briefs });
+}
+
 self.onmessage = ({ data }) => {
+  if (data.several) return answerAll(data);
   const reply = answer(data);
-  if (reply) self.postMessage(reply, buffers(reply));
+  if (reply) send(reply);
 };
