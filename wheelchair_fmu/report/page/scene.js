@@ -224,10 +224,10 @@ export class Scene {
     const [force, moment] = [lacking.force?.[i], lacking.moment?.[i]];
     if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
     if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
-    if (!said.length) return;
+    if (!lacking.force && !lacking.moment) return;
     c.font = FONT;
     c.fillStyle = look.ink;
-    c.fillText(said.join(", "), ...this.behind);
+    c.fillText(said.join(", ") || "–", ...this.behind);
   }
 }
 

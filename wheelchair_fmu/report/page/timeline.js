@@ -177,8 +177,8 @@ export class Timeline {
       write(error, significant(this.result.errors[name][k], 2));
     }
     const said = `${(this.at - this.time[0]).toFixed(2)} s`;
+    write(this.clock, said);
     if (this.scrub.valueAsNumber !== this.at) {
-      write(this.clock, said);
       this.scrub.value = this.at;
       this.scrub.setAttribute("aria-valuetext", said);
     }

@@ -31,7 +31,7 @@ const module = (text) => new WebAssembly.Module(Uint8Array.from(atob(text), (c) 
 /** One compiled model, and what evaluates its runs in its memory, in which these and what was found about them are kept. */
 class Kernel {
   constructor(record, evaluation) {
-    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, starts, delays
+    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, starts, flips, delays
     const model = new WebAssembly.Instance(module(record.wasm), {}).exports;
     model.memory.grow(ROOM);
     this.wasm = { ...model, ...new WebAssembly.Instance(evaluation, { model, env: { memory: model.memory } }).exports, memory: model.memory };
@@ -141,31 +141,35 @@ class Kernel {
       +campaign.leads,
     ]);
     const rooms = this.block("rooms", 1), scratch = this.block("record", wasm.wc_page_record());
-    wasm.wc_page_room(record, scratch, 0, 0, rooms);
+    wasm.wc_page_room(record, scratch, 0, 0, rooms, 0);
     const [kept, work] = new Int32Array(wasm.memory.buffer, rooms, 2);
-    return { run, record, names, n, nz, uncertain: this.starts.length + constants.length, kept, work, again: wasm.wc_page_again_room(record, scratch, 0), evaluation: null };
+    return { run, record, names, n, nz, uncertain: this.starts.length + constants.length, kept, work, again: wasm.wc_page_again_room(record, scratch, 0), pushes: n * nq, trials: wasm.wc_page_pushes_room(record), evaluation: null };
   }
 
   /** A place for an evaluation of a recording: its own, which is remembered, or one for all that are not. */
   place(of, own) {
-    if (own) of.evaluation ??= { record: this.doubles(this.wasm.wc_page_record()), kept: this.doubles(of.kept), whole: false };
-    const there = own ? of.evaluation : { record: this.block("aside record", this.wasm.wc_page_record()), kept: this.block("aside", of.kept) };
+    if (own) of.evaluation ??= { record: this.doubles(this.wasm.wc_page_record()), kept: this.doubles(of.kept), errors: this.flips ? this.doubles(of.pushes) : 0, pushed: 0, whole: false };
+    const there = own ? of.evaluation : { record: this.block("aside record", this.wasm.wc_page_record()), kept: this.block("aside", of.kept), errors: this.flips ? this.block("aside errors", of.pushes) : 0, pushed: 0 };
     this.lay(of, there);
     return there;
   }
 
-  /** Start and path of an evaluation, for another to begin with. */
+  /** Start and path of an evaluation, and the errors of its pushes, for another to begin with. */
   follow(of, one, other) {
     this.lay(of, one);
-    const forces = campaign.forces.sd.length * of.n;
+    const forces = (campaign.forces?.sd.length ?? 0) * of.n, memory = () => new Float64Array(this.wasm.memory.buffer);
     for (const [place, count] of [[WHERE.start, of.uncertain], [WHERE.path, forces]]) {
       const from = this.pointer(one.record, place), to = this.pointer(other.record, place);
-      new Float64Array(this.wasm.memory.buffer).copyWithin(to / 8, from / 8, from / 8 + count);
+      memory().copyWithin(to / 8, from / 8, from / 8 + count);
     }
+    if (!one.pushed) return;
+    memory().copyWithin(other.errors / 8, one.errors / 8, one.errors / 8 + of.pushes);
+    other.pushed = other.errors;
+    this.lay(of, other);
   }
 
-  lay(of, { record, kept }) {
-    this.wasm.wc_page_room(of.record, record, kept, this.block("work", of.work), this.block("rooms", 1));
+  lay(of, { record, kept, pushed }) {
+    this.wasm.wc_page_room(of.record, record, kept, this.block("work", of.work), this.block("rooms", 1), pushed);
   }
 }
 
@@ -186,12 +190,15 @@ function given(kernel, { run, names }, values, name = "values") {
   return kernel.words([p, offsets, others], name);
 }
 
-/** An exact evaluation in `place`, from where the run is expected to start; one that is led, from where it was led before. */
-function evaluated(kernel, of, values, place, rounds = campaign.tuning) {
-  const { wasm } = kernel, known = campaign.leads && of.evaluation?.whole;
+/** An evaluation in `place`, from where the run is expected to start; one that is led, from where it was led before, and slopes
+ *  about the errors of pushes that were found before, which are looked for where it is to be exact. */
+function evaluated(kernel, of, values, place, { rounds = campaign.tuning, exact = true } = {}) {
+  const { wasm } = kernel, follows = campaign.leads || (kernel.flips && !rounds), known = follows && of.evaluation?.whole;
+  const set = given(kernel, of, values), work = kernel.flips ? kernel.block("trials", of.trials) : 0;
   if (known && place !== of.evaluation) kernel.follow(of, of.evaluation, place);
   place.whole = false;
-  const status = wasm.wc_page_evaluate(of.record, given(kernel, of, values), place.record, +!known, campaign.leads && !known ? campaign.tuning : rounds);
+  const status = wasm.wc_page_evaluate(of.record, set, place.record, +!known, follows && !known ? campaign.tuning : rounds, exact ? place.errors : 0, work);
+  place.pushed = wasm.wc_page_pushed(place.record);
   kernel.check(status, wasm.wc_page_reached(place.record), of.run.time);
   place.whole = true;
   place.values = values;
@@ -231,7 +238,7 @@ function evaluate(index, values, { exact, aside, brief }) {
     return told(kernel, of, place, to, set, brief);
   }
   if (!aside) remembered[index] = kernel;
-  evaluated(kernel, of, values, place);
+  evaluated(kernel, of, values, place, { exact: exact || aside });
   return told(kernel, of, place, place.record, given(kernel, of, values), brief);
 }
 
@@ -257,7 +264,7 @@ function moved(kernel, of, values, place, steps, kept, take) {
  *  The filter is that of the values themselves, as in inference/estimation/fit.py. */
 function slopes(index, values, steps) {
   const kernel = kernelFor({ ...values, ...Object.fromEntries(steps.map(([name]) => [name, values[name] || 1])) }), of = kernel.recording(index), { wasm } = kernel, k = steps.length;
-  const place = evaluated(kernel, of, values, kernel.place(of, false), 0);
+  const place = evaluated(kernel, of, values, kernel.place(of, false), { rounds: 0 });
   const all = moved(kernel, of, values, place, steps, true, ({ to }) => kernel.get(kernel.pointer(to, WHERE.r), of.n * of.nz));
   const [jtj, jtr, squares] = [k * k, k, 1].map((count, i) => kernel.block(`normal ${i}`, count));
   wasm.wc_page_normal(of.record, place.record, k, kernel.put(Float64Array.from(steps, ([, step]) => step), "steps"), all, jtj, jtr, squares);
