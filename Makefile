@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
+.PHONY: docs/report.png help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -52,6 +52,11 @@ docs: setup
 	$(BIN)/python -m wheelchair_fmu.fmu.variables_page docs/variables.md
 	$(BIN)/wheelchair quantities --page docs/quantities.md
 	$(BIN)/python -m wheelchair_fmu.cli.options_page docs/options.md
+
+# The picture in README.md, by Chromium.
+docs/report.png: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[browser]"
+	$(BIN)/python -m benchmarks.page_picture $@
 
 site: export WHEELCHAIR_CONFIG := /dev/null
 site: setup

@@ -8,20 +8,14 @@ is this page's drawing. Without a report it writes one of the sample campaign.
 from __future__ import annotations
 
 import argparse
-import shutil
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from .loop_cost import SAMPLE
+from .page_open import EXACT, opened
 
-DIAGNOSIS = Path("tests/sample-diagnosis.json")
-OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
 ROUNDS, MOVES, EVERY = 7, 30, 16  # movements of the pointer in each of some rounds, and ms between two
-EXACT = "() => window.report?.settled && document.getElementById('status').dataset.state === 'exact'"
 FRAMES = """() => {
     window.frames_at = [];
     const frame = (now) => { frames_at.push(now); requestAnimationFrame(frame); };
@@ -30,12 +24,9 @@ FRAMES = """() => {
 }"""
 
 
-def measured(page: Any, file: Path) -> dict[str, float]:
+def measured(page: Any) -> dict[str, float]:
     """Milliseconds, and frames a second, by what they are of."""
-    page.goto(file.as_uri())
-    page.wait_for_function(EXACT)
     exact = page.evaluate("report.exactAt")
-    page.wait_for_timeout(3000)  # what is simulated aside comes to its end
     effect = page.evaluate("report.campaign.diagnosis.effects[0]")
     page.check(f"#effect-{effect}")
     page.wait_for_timeout(500)
@@ -84,22 +75,11 @@ def _counted(counts: Any) -> dict[str, float]:
 
 
 def main() -> int:
-    from playwright.sync_api import sync_playwright
-
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("report", type=Path, nargs="?")
-    chosen = parser.parse_args().report
-    chromium = shutil.which("chromium") or shutil.which("google-chrome")
-    with tempfile.TemporaryDirectory() as place, sync_playwright() as running:
-        file = chosen or Path(place) / "report.html"
-        if not chosen:
-            words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "report", str(SAMPLE), "--diagnosis", str(DIAGNOSIS)]
-            subprocess.run([*words, "-o", str(file)], check=True, stdout=subprocess.DEVNULL)
-        browser = running.chromium.launch(executable_path=chromium, args=OPTIONS)
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        for name, value in measured(page, file.resolve()).items():
+    with opened(parser.parse_args().report) as page:
+        for name, value in measured(page).items():
             print(f"{name}: {value:.1f}")
-        browser.close()
     return 0
 
 
