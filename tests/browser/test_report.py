@@ -148,7 +148,7 @@ def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browse
 
 def flipping(folder: Path, chair: Variant, values: dict[str, float]) -> Campaign:
     """Runs in which casters swing round, as this very chair goes, so that its errors are small and every path is plain."""
-    make(folder, {}, manoeuvres=("coast-down", "start-stop", "spin-right", "holdout-spin"))
+    make(folder, {}, manoeuvres=("spin-right", "holdout-spin"))
     slow, simulator, chance = read(folder), Simulator(chair), np.random.default_rng(1)
     for run in slow.runs:
         felt = {n: v + chance.normal(0, slow.noise["F_rl"] * n.startswith("push.F"), len(v)) for n, v in run.inputs.items()}
@@ -176,9 +176,8 @@ def test_where_casters_flip_a_run_goes_where_errors_of_its_pushes_lead(browser, 
     expected = likelihood.evidence(measured.runs, inertia, tune_start=2)
     found = reader.table()
     for e in expected.runs:
-        print(e.run.name, e.pushed is not None)
-        about = 0.1 if "start-stop" in e.run.name else 1e-5  # where casters stand on their tips for long, last digits count
-        assert found[e.run.name] == pytest.approx(e.rms, rel=about), e.run.name
+        assert found[e.run.name] == pytest.approx(e.rms, rel=1e-5), e.run.name
+    assert any(e.pushed is not None for e in expected.runs)
     near = {"effect.caster_inertia.I": 0.0101}
     quickly = "([run, values]) => report.pool.later({run, values, exact: false}).then(r => r.squares)"
     for i, e in enumerate(likelihood.resimulated(expected, near).runs):

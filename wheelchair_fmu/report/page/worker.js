@@ -238,7 +238,7 @@ function evaluate(index, values, { exact, aside, brief }) {
     return told(kernel, of, place, to, set, brief);
   }
   if (!aside) remembered[index] = kernel;
-  evaluated(kernel, of, values, place, { exact: exact || aside });
+  evaluated(kernel, of, values, place, { exact: Boolean(exact || aside) });
   return told(kernel, of, place, place.record, given(kernel, of, values), brief);
 }
 
