@@ -12,6 +12,7 @@ help:
 	@echo "make test    the tests, but for those of make nightly"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md, docs/options.md"
+	@echo "make docs/report.png   the picture of the report in README.md, in Chromium"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
 	@echo "make release     in dist/release, of the commit at hand: wheel, sdist, FMUs for five platforms, list of components, licences, documentation, checksums; a tag v1.2.3 is its version"
 	@echo "make lint    ruff, mypy, import-linter"
