@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
+.PHONY: docs/report.png help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
 
 help:
@@ -12,6 +12,7 @@ help:
 	@echo "make test    the tests, but for those of make nightly"
 	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md, docs/options.md"
+	@echo "make docs/report.png   the picture of the report in README.md, in Chromium"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"
 	@echo "make release     in dist/release, of the commit at hand: wheel, sdist, FMUs for five platforms, list of components, licences, documentation, checksums; a tag v1.2.3 is its version"
 	@echo "make lint    ruff, mypy, import-linter"
@@ -52,6 +53,11 @@ docs: setup
 	$(BIN)/python -m wheelchair_fmu.fmu.variables_page docs/variables.md
 	$(BIN)/wheelchair quantities --page docs/quantities.md
 	$(BIN)/python -m wheelchair_fmu.cli.options_page docs/options.md
+
+# The picture in README.md, by Chromium.
+docs/report.png: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[browser]"
+	$(BIN)/python -m benchmarks.page_picture $@
 
 site: export WHEELCHAIR_CONFIG := /dev/null
 site: setup

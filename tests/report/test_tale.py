@@ -75,6 +75,21 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     assert do["lines"][-1].endswith(f"wheelchair add {DRAG}.")
 
 
+def test_what_is_small_is_told_by_how_sure_it_is_that_it_is_small():
+    small = [{**r, "probability": 0.03} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
+    sure = tale(told("small", [DRAG], ranking=small)).cards[1]
+    assert sure["lead"] == "97 % that it is too small to matter"
+
+
+def test_an_adequate_model_explains_what_it_leaves_only_where_that_is_noise():
+    ends = SAMPLE["ladder"][:2]
+    what, sure, _ = tale(told("adequate", ladder=ends)).cards
+    assert what["lines"] == ["What the model leaves, 1.68 times the noise of the sensors, no effect in the catalogue explains."]
+    assert sure["lines"][0].endswith("the error is 1.68 times what noise alone gives.")
+    what, _, _ = tale(told("adequate", ladder=LEVEL)).cards
+    assert what["lines"] == ["The model explains these runs to within the noise of the sensors."]
+
+
 def test_two_effects_are_a_list_and_a_tie_shows_both_sizes():
     two, tie = tale(CASES["two"]).cards[0], tale(CASES["tie"]).cards
     assert two["lead"] == "Two effects" and len(two["lines"]) == 2

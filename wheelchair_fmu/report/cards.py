@@ -20,6 +20,8 @@ from .told import (
 )
 from .words import listed, probability_words, spoken, strained
 
+EXPLAINED = 1.05  # whitened RMS error that is 1.0 to the digit that one would say
+
 
 def cards(t: Told) -> list[dict[str, Any]]:
     """What, how sure, what to do: [{"head", "lead", "lines"}], some with a "gauge" of bars:
@@ -60,8 +62,15 @@ def _what(t: Told) -> tuple[str, list[str]]:
     if t.verdict == "outside":
         return _outside(t)
     if t.verdict == "adequate":
-        return "Nothing is missing", ["The model explains these runs to within the noise of the sensors."]
+        return "Nothing is missing", [_explained(t)]
     return "Nothing was found", ["The model explains these runs, but they could not have shown most of the effects."]
+
+
+def _explained(t: Told) -> str:
+    left = t.fall[1]
+    if left < EXPLAINED:
+        return "The model explains these runs to within the noise of the sensors."
+    return f"What the model leaves, {left:.2f} times the noise of the sensors, no effect in the catalogue explains."
 
 
 def _outside(t: Told) -> tuple[str, list[str]]:
@@ -89,9 +98,9 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
             together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
         return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
     if t.verdict in ("missing", "small") and t.found:
-        sure = min(exceeds(t.rows[e]) for e in t.found)
-        what = "all are" if len(t.found) > 1 else "it is"
-        return f"{capital(probability_words(sure))} that {what} large enough to matter", [fall, *rivals]
+        large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if len(t.found) > 1 else "it is"
+        sure, size = (1 - max(large), "too small") if t.verdict == "small" else (min(large), "large enough")
+        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals]
     if t.verdict == "outside":
         p = t.diagnosis["leftover"].get("p") if t.diagnosis.get("leftover") else None
         chance = [] if p is None or not t.proposal else [f"Noise alone would give as much with a chance of {_chance(p)}."]

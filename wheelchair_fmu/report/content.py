@@ -62,7 +62,7 @@ def content(
         "forces": _forces(colour),
         "leads": leads,
         "known": {**factory.variant.values, **campaign.known},
-        "models": [_model(v, wasm) for v, wasm in zip(variants, compiled, strict=True)],
+        "models": [_model(v, wasm, leads) for v, wasm in zip(variants, compiled, strict=True)],
         "evaluation": b64encode(evaluation(driven(campaign))).decode(),
         "effects": [_effect(e) for e in factory.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
@@ -119,8 +119,9 @@ def layers(w: ModelFactory, given: Sequence[str], found: Sequence[str]) -> list[
     return list(dict.fromkeys((*w.light, *(e for e in seldom if e in some)) for some in more))
 
 
-def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
+def _model(variant: Variant, wasm: bytes, leads: bool) -> dict[str, Any]:
     model = variant.model()
+    starts = starts_of(p.name for p in model.parameters)
     vector = variant.vector()
     return {
         "effects": list(variant.effects),
@@ -131,7 +132,8 @@ def _model(variant: Variant, wasm: bytes) -> dict[str, Any]:
         "states": model.x.numel(),
         "sensors": [model.outputs[i].name for i in sensed(model)],
         "columns": [p.name for p in differentiable(model, STARTS)],
-        "starts": starts_of(p.name for p in model.parameters),
+        "starts": starts,
+        "flips": not leads and set(CASTERS) <= set(starts),  # see `Likelihood`
         "delays": [p.name for e in model.effects if e.delays_record for p in e.owned],
     }
 

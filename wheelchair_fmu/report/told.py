@@ -118,9 +118,8 @@ def fall_words(t: Told) -> str:
     """How far the error came down, in units of the noise."""
     before, after = t.fall
     if abs(before - after) < STILL:
-        where = (
-            ", before and after" if not t.found else ", as before: what was found shows at few moments, and there it is gone"
-        )
+        unmoved = "" if t.verdict in ("adequate", "cannot_see") else ", before and after"  # nothing was put in
+        where = ", as before: what was found shows at few moments, and there it is gone" if t.found else unmoved
         return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."

@@ -8,9 +8,11 @@
 #define SETTLED 0.01  /* and by which it may be off where readings want it */
 #define STROKE 0.03   /* s, either side: slopes of a recorded push are taken over this, as over a sample they are mostly noise */
 #define LITTLE 1e-3   /* standard deviations of a clock, over which readings' slopes are taken */
-#define MOST_STEPS 12 /* that lead a run along forces, at most, */
+#define MOST_STEPS 12 /* that lead a run along forces, or errors of its pushes, at most, */
 #define FARTHEST 3.0  /* standard deviations of a force over which slopes hold, */
 #define ARRIVED 0.03  /* and of a step that leads nowhere else */
+#define MOMENTS 8     /* up to which readings are asked where errors of the pushes led, */
+#define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
 #define TURNING 1     /* of the forces that nobody recorded, the moment; it acts the more, the narrower the track is, */
 #define SWINGS 2      /* and the first of the two by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
@@ -370,12 +372,13 @@ static void measure(const wc_recording *s, const wc_values *v, double *to) {
 static double prior(const wc_recording *s, int c) { return c < s->starts ? s->start_prior[c] : 0; }
 static double prior_sd(const wc_recording *s, int c) { return c < s->starts ? s->start_sd[c] : s->constant_sd[c - s->starts]; }
 
-/* The start, and the constants, given all readings, to first order: prior mean + P₀ S₀ᵀ r. */
-static void better_start(const wc_recording *s, const wc_evaluation *e, const double *r, double *to) {
+/* The start, and the constants, given the readings of the first `until` rows, to first order: prior mean + P₀ S₀ᵀ r. */
+static void better_start(const wc_recording *s, const wc_evaluation *e, const double *r, long until, double *to) {
     int u = uncertain(s);
+    long told = until * s->noise.nz;
     for (int c = 0; c < u; c++) {
         double sum = 0, sd = prior_sd(s, c);
-        for (long at = 0; at < readings(s); at++) if (!isnan(r[at])) sum += r[at] * e->slopes[at * u + c];
+        for (long at = 0; at < told; at++) if (!isnan(r[at])) sum += r[at] * e->slopes[at * u + c];
         to[c] = prior(s, c) + fmin(fmax(sd * sd * sum, -REACH * sd), REACH * sd);
     }
 }
@@ -466,7 +469,7 @@ static int take(const wc_recording *s, const wc_values *v, wc_evaluation *e, dou
     long length = s->n * s->noise.nd;
     int u = uncertain(s);
     double better[WC_MOST], *path = e->before, *start = e->before + length;
-    better_start(s, e, e->own.r, better);
+    better_start(s, e, e->own.r, s->n, better);
     memcpy(path, e->path, sizeof(double) * (size_t)length);
     memcpy(start, e->own.start, sizeof(double) * (size_t)u);
     for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
@@ -497,7 +500,7 @@ static int tune(const wc_recording *s, const wc_values *v, wc_evaluation *e, int
     for (int k = 0; k < rounds; k++) {
         double better[WC_MOST];
         int settled = 1;
-        better_start(s, e, e->own.r, better);
+        better_start(s, e, e->own.r, s->n, better);
         for (int c = 0; c < uncertain(s); c++) settled &= fabs(better[c] - e->own.start[c]) <= SETTLED * prior_sd(s, c);
         if (settled) break;
         memcpy(e->own.start, better, sizeof(double) * (size_t)uncertain(s));
@@ -518,6 +521,145 @@ int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int
     int status = linearise(s, v, e);
     if (status == WC_OK && rounds) status = s->leads ? lead(s, v, e) : tune(s, v, e, rounds);
     return status;
+}
+
+/* --- errors of the pushes --- */
+
+/* What is tried on the way to errors of the pushes. */
+typedef struct {
+    double *told, *some, *driven; /* n x nz: innovations, those that are asked, readings with the errors tried */
+    double *step, *trial, *best;  /* n x nq */
+} trials;
+
+static long room_of_trials(const wc_recording *s, trials *to, double *block) {
+    space all = {block, 0};
+    double **of_readings[] = {&to->told, &to->some, &to->driven}, **of_pushes[] = {&to->step, &to->trial, &to->best};
+    for (int i = 0; i < 3; i++) *of_readings[i] = next(&all, readings(s));
+    for (int i = 0; i < 3; i++) *of_pushes[i] = next(&all, s->n * s->noise.nq);
+    return all.used;
+}
+
+long wc_pushes_room(const wc_recording *s) {
+    trials none;
+    return room_of_trials(s, &none, 0);
+}
+
+/* The square of what is new in AR(1) noise of unit variance after what was before; 0 in a gap, after which all counts as new. */
+static double fresh(double now, double before, double phi) {
+    double again = isfinite(before) ? phi : 0, size = (now - (again != 0 ? again * before : 0)) / sqrt(1 - again * again);
+    return isnan(size) ? 0 : size * size;
+}
+
+static double off(const wc_recording *s, const wc_evaluation *e, const double *driven, long i, int z) {
+    long at = i * s->noise.nz + z;
+    return e->f.present[at] ? (e->measured[at] - driven[at]) / s->noise.sd[z] : NAN;
+}
+
+/* -2 log probability of readings, of errors of the pushes and of the start together, but for a constant. */
+static double unlikely(const wc_recording *s, const wc_evaluation *e, const double *driven, const double *pushed,
+                       const double *start) {
+    int nz = s->noise.nz, nq = s->noise.nq, all = e->f.nq;
+    double sum = 0;
+    for (int c = 0; c < uncertain(s); c++) {
+        double sd = prior_sd(s, c), apart = start[c] - prior(s, c);
+        if (sd > 0) sum += apart * apart / (sd * sd);
+    }
+    for (long i = 0; i < s->n; i++) {
+        for (int z = 0; z < nz; z++) {
+            sum += fresh(off(s, e, driven, i, z), i ? off(s, e, driven, i - 1, z) : NAN, i ? e->f.phi[(i - 1) * nz + z] : 0);
+        }
+        for (int q = 0; q < nq; q++) {
+            double before = i ? pushed[(i - 1) * nq + q] / e->f.input_sd[(i - 1) * all + q] : NAN;
+            sum += fresh(pushed[i * nq + q] / e->f.input_sd[i * all + q], before, i ? e->f.input_phi[(i - 1) * all + q] : 0);
+        }
+    }
+    return sum;
+}
+
+/* with->driven: readings from this start with pushes larger than their record by with->trial. */
+static int simulate_trial(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *start, trials *with) {
+    int nq = s->noise.nq;
+    felt(s, v, start + s->starts, e->w, e->column);
+    for (long i = 0; i < s->n; i++) {
+        for (int q = 0; q < nq; q++) e->w[i * s->kernel->inputs + s->noise.pushes[q]] += with->trial[i * nq + q];
+    }
+    int status = run(s, v, e, start, e->x, e->y);
+    if (status == WC_OK) read(s, start + s->starts, e->y, with->driven, e->column);
+    return status;
+}
+
+/* Do slopes say what is simulated from that start? Innovations allow for another start and other pushes, so that to first order
+ * they do not depend on these. */
+static int slopes_hold(const wc_recording *s, wc_evaluation *e, const double *start, trials *with) {
+    int u = uncertain(s), nq = s->noise.nq;
+    double sum = 0;
+    memset(e->noise, 0, sizeof(double) * (size_t)(s->n * e->f.nq));
+    for (long i = 0; i < s->n; i++) {
+        for (int q = 0; q < nq; q++) e->noise[i * e->f.nq + q] = with->trial[i * nq + q];
+    }
+    wc_respond(&e->f, s->n, e->noise, with->some);
+    for (long at = 0; at < readings(s); at++) with->some[at] = with->driven[at] - with->some[at];
+    innovate(s, e, e->measured, with->some, with->some);
+    for (long at = 0; at < readings(s); at++) {
+        double apart = with->some[at] - e->own.r[at];
+        for (int c = 0; c < u; c++) apart += e->slopes[at * u + c] * (start[c] - e->own.start[c]);
+        if (!isnan(apart)) sum += apart * apart;
+    }
+    return sum < HELD;
+}
+
+/* with->step: from these errors to those that the first `until` rows of readings want. */
+static void ask(const wc_recording *s, wc_evaluation *e, const double *errors, long until, trials *with) {
+    int nq = s->noise.nq;
+    for (long at = 0; at < readings(s); at++) with->some[at] = at < until * s->noise.nz ? with->told[at] : 0;
+    wc_smooth(&e->f, s->n, e->gain, e->scale, with->some, e->noise);
+    for (long i = 0; i < s->n; i++) {
+        for (int q = 0; q < nq; q++) with->step[i * nq + q] = e->noise[i * e->f.nq + q] - errors[i * nq + q];
+    }
+}
+
+/* One step to where readings have the start and the errors of the pushes; moved: 0 where slopes hold as far as that, or no step
+ * makes all together likelier. Where a simulation has gone another way than the chair, slopes about it say nothing of what comes
+ * after: so besides all readings, those up to each of some moments are asked. */
+static int towards(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *errors, trials *with, int *moved) {
+    int u = uncertain(s);
+    long length = s->n * s->noise.nq;
+    double least = unlikely(s, e, e->driven, errors, e->own.start), better[WC_MOST], start[WC_MOST], best[WC_MOST];
+    for (long at = 0; at < readings(s); at++) with->told[at] = isnan(e->innovations[at]) ? 0 : e->innovations[at];
+    *moved = 0;
+    for (int k = 0; k < MOMENTS; k++) {
+        long until = (long)((double)s->n - k * ((double)s->n / MOMENTS));
+        ask(s, e, errors, until, with);
+        better_start(s, e, e->own.r, until, better);
+        for (size_t j = 0; j < sizeof shares / sizeof *shares; j++) {
+            for (int c = 0; c < u; c++) start[c] = e->own.start[c] + shares[j] * (better[c] - e->own.start[c]);
+            for (long i = 0; i < length; i++) with->trial[i] = errors[i] + shares[j] * with->step[i];
+            if (simulate_trial(s, v, e, start, with) != WC_OK) continue;
+            if (!k && !j && slopes_hold(s, e, start, with)) return WC_OK;
+            double found = unlikely(s, e, with->driven, with->trial, start);
+            if (found >= least) continue;
+            least = found;
+            *moved = 1;
+            memcpy(best, start, sizeof(double) * (size_t)u);
+            memcpy(with->best, with->trial, sizeof(double) * (size_t)length);
+        }
+    }
+    if (!*moved) return WC_OK;
+    memcpy(e->own.start, best, sizeof(double) * (size_t)u);
+    memcpy(errors, with->best, sizeof(double) * (size_t)length);
+    e->pushed = errors;
+    return linearise(s, v, e);
+}
+
+int wc_follow_pushes(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *errors, double *work) {
+    trials with;
+    room_of_trials(s, &with, work);
+    if (!e->pushed) memset(errors, 0, sizeof(double) * (size_t)(s->n * s->noise.nq));
+    for (int k = 0, moved = 1; k < MOST_STEPS && moved; k++) {
+        int status = towards(s, v, e, errors, &with, &moved);
+        if (status != WC_OK) return status;
+    }
+    return WC_OK;
 }
 
 void wc_find_spread(const wc_recording *s, wc_evaluation *e) {
@@ -550,7 +692,7 @@ int wc_again(const wc_recording *s, const wc_values *v, wc_evaluation *e, int ke
     measure(s, v, measured);
     innovate(s, e, measured, to->foretold, to->r);
     memcpy(to->start, e->own.start, sizeof(double) * (size_t)uncertain(s));
-    if (!kept) better_start(s, e, to->r, to->start);
+    if (!kept) better_start(s, e, to->r, s->n, to->start);
     if (led && !kept) status = alone(s, v, e, by, e->own.start, x, to);
     else memcpy(to->predicted, to->foretold, sizeof(double) * (size_t)readings(s));
     shift(s, e, to->start, to->predicted);

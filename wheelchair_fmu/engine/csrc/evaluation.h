@@ -111,6 +111,11 @@ void wc_expected(const wc_recording *s, wc_evaluation *e);
  * led goes where forces lead it, unless that is 0. On failure e->reached says how far it came. */
 int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds);
 
+/* Where casters may swing round, after wc_evaluate(): on to where errors of the pushes lead the run, by as many steps as slopes do
+ * not hold for. errors: n x nq, which e->pushed then is, if any step is taken. work: wc_pushes_room() doubles. */
+int wc_follow_pushes(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *errors, double *work);
+long wc_pushes_room(const wc_recording *s);
+
 /* Fills in e->spread, of an evaluation that is the last in its place of work. */
 void wc_find_spread(const wc_recording *s, wc_evaluation *e);
 

@@ -37,15 +37,25 @@ long wc_tangent_work(const wc_kernel *k, const wc_tangent *g, int active) { retu
 /* How many doubles hold a record. */
 long EXPORT(wc_page_record)(void) { return sizeof(wc_evaluation) / sizeof(double) + 1; }
 
-void EXPORT(wc_page_room)(const wc_recording *s, wc_evaluation *e, double *kept, double *work, long *rooms) {
+/* `pushed`: the errors of the pushes that were found, or 0. */
+void EXPORT(wc_page_room)(const wc_recording *s, wc_evaluation *e, double *kept, double *work, long *rooms, const double *pushed) {
     wc_evaluation_room(s, e, kept, work, rooms);
+    e->pushed = pushed;
 }
+
+long EXPORT(wc_page_pushes_room)(const wc_recording *s) { return wc_pushes_room(s); }
 
 long EXPORT(wc_page_again_room)(const wc_recording *s, wc_simulated *to, double *block) { return wc_simulated_room(s, to, block); }
 
-int EXPORT(wc_page_evaluate)(const wc_recording *s, const wc_values *v, wc_evaluation *e, int expected, int rounds) {
-    if (expected) wc_expected(s, e);
+/* errors, work: see wc_follow_pushes(); 0 where no caster may swing round. */
+int EXPORT(wc_page_evaluate)(const wc_recording *s, const wc_values *v, wc_evaluation *e, int expected, int rounds, double *errors,
+                             double *work) {
+    if (expected) {
+        wc_expected(s, e);
+        e->pushed = 0;
+    }
     int status = wc_evaluate(s, v, e, rounds);
+    if (status == WC_OK && errors && rounds) status = wc_follow_pushes(s, v, e, errors, work);
     if (status == WC_OK) wc_find_spread(s, e);
     return status;
 }
@@ -53,6 +63,8 @@ int EXPORT(wc_page_evaluate)(const wc_recording *s, const wc_values *v, wc_evalu
 int EXPORT(wc_page_again)(const wc_recording *s, const wc_values *v, wc_evaluation *e, int kept, wc_simulated *to) {
     return wc_again(s, v, e, kept, e->x, to);
 }
+
+const double *EXPORT(wc_page_pushed)(const wc_evaluation *e) { return e->pushed; }
 
 long EXPORT(wc_page_reached)(const wc_evaluation *e) { return *e->reached; }
 

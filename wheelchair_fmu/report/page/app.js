@@ -2,7 +2,7 @@
 
 import * as address from "page/address";
 import { Controls, same } from "page/controls";
-import { byId, h, sized, unpacked } from "page/dom";
+import { byId, h, sized, unpacked, write } from "page/dom";
 import { look } from "page/draw";
 import { together } from "page/errors";
 import { evidence } from "page/evidence";
@@ -20,6 +20,7 @@ import { channelOf, runOf, stepOf } from "page/words";
 
 const REST = 180; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
+const AT_ONCE = 100; // ms within which what follows a movement is seen as part of it
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
 const DEEP = 60; // changes that can be undone
@@ -110,8 +111,9 @@ class App {
   ask(exact) {
     const rest = this.campaign.runs.map((_, i) => i).filter((i) => i !== this.shown.run);
     this.pending = false;
-    this.running = { exact, left: new Set([this.shown.run, ...rest]), began: performance.now(), one: null };
-    this.say(exact ? "making the numbers exact …" : "simulating …", "busy");
+    const held = !exact && this.took < AT_ONCE; // then the curve waits for the numbers, and both are of the same values
+    this.running = { exact, held, left: new Set([this.shown.run, ...rest]), began: performance.now(), one: null };
+    this.say(...(exact ? ["making the numbers exact …", "busy"] : held ? ["about, while it moves", "quick"] : ["simulating …", "busy"]));
     this.pool.ask([...this.running.left], this.values, exact, (run) => exact || run === this.shown.run);
   }
 
@@ -122,14 +124,16 @@ class App {
     else this.results[run] = result.brief ? { ...this.results[run], ...result } : result;
     if (run === this.shown.run && !result.error) {
       running.one = performance.now() - running.began;
-      this.want("run");
+      if (!running.held) this.want("run");
     }
     if (!running.left.size) this.complete();
   }
 
   complete() {
-    const { exact, began, one } = this.running;
+    const { exact, began, one, held } = this.running;
     this.running = null;
+    if (held) this.want("run");
+    if (!exact) this.took = performance.now() - began;
     if (this.failed) {
       this.say(this.failed, "failed");
       this.failed = null;
@@ -152,6 +156,7 @@ class App {
 
   /** After the first exact numbers: the largest error is what the reader sees, until it is known what the search gained. */
   firstTime() {
+    this.exactAt = performance.now();
     this.opened = this.opensAtStart ? [...this.results] : [];
     this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
@@ -311,15 +316,15 @@ class App {
 
   /** `rested`: also what takes long to sort. */
   drawAll(rested) {
-    byId("now-fit").textContent = rms(this.now.fit);
-    byId("now-heldout").textContent = rms(this.now.heldout);
+    write(byId("now-fit"), rms(this.now.fit));
+    write(byId("now-heldout"), rms(this.now.heldout));
     this.figures.follow();
     this.story.draw(rested);
     if (!rested) return;
     this.figures.rested();
     this.pins.show({ values: this.values, errors: this.now });
     const spoken = `Error on runs held out ${rms(this.now.heldout)}, on fitted runs ${rms(this.now.fit)}; 1.00 is noise alone.`;
-    if (byId("said").textContent !== spoken) byId("said").textContent = spoken;
+    write(byId("said"), spoken);
   }
 
   /** Settings that are kept: what of them is not known is simulated beside. */
@@ -417,8 +422,8 @@ class App {
 
   say(words, state) {
     const status = byId("status");
-    status.textContent = words;
-    status.dataset.state = state;
+    write(status, words);
+    if (status.dataset.state !== state) status.dataset.state = state;
   }
 
   picker() {

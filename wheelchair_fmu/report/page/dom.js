@@ -34,6 +34,11 @@ export function sized(element) {
   return () => (size ??= [element.clientWidth, element.clientHeight]);
 }
 
+/** Says something else, where that is something else: to say the same again would have the page laid out anew. */
+export function write(element, words) {
+  if (element.textContent !== words) element.textContent = words;
+}
+
 export const byId = (id) => document.getElementById(id);
 
 /** What is packed in base64 of deflated JSON; series come as {f64: [...]}, null in gaps. */

@@ -53,8 +53,8 @@ export function heat(width, look, heads, rows) {
   named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": size }))));
   let y = top;
   for (const row of rows) {
-    const name = broken(row.name, left - 12, look, 12, 400, 2), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, 9.5, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));
-    const high = Math.max(name.length > 1 ? 32 : 24, 24 + 11 * noted - (noted ? 1 : 0));
+    const name = broken(row.name, left - 12, look, 12, 400, 3), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, 9.5, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));
+    const high = Math.max([24, 32, 45][name.length - 1], 24 + 11 * noted - (noted ? 1 : 0));
     name.forEach((t, k) => drawn.push(text(left - 8, y + high / 2 + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end")));
     row.cells.forEach((c, j) => {
       const x = left + wide * j, middle = x + wide / 2;

@@ -19,13 +19,15 @@ export class Pool {
   }
 
   /** Simulate these runs, in this order, with these values; `full(run)` says of which the series are wanted. What was asked
-   *  here before and is not yet begun is dropped. */
+   *  here before and is not yet begun is dropped; so what takes long is asked run by run, what is quick in one message. */
   ask(runs, values, exact, full = () => true) {
     this.newest++;
-    for (const worker of this.workers) worker.queue = [];
-    for (const run of runs)
-      this.workers[run % this.workers.length].queue.push({ job: this.newest, run, values, exact, brief: !full(run) });
-    this.workers.forEach((worker) => this.next(worker));
+    this.workers.forEach((worker, k) => {
+      const own = runs.filter((run) => run % this.workers.length === k).map((run) => ({ run, brief: !full(run) }));
+      if (exact) worker.queue = own.map((one) => ({ job: this.newest, ...one, values, exact }));
+      else worker.queue = own.length ? [{ job: this.newest, several: own, values, exact }] : [];
+      this.next(worker);
+    });
     return this.newest;
   }
 
@@ -52,11 +54,12 @@ export class Pool {
   }
 
   heard(worker, data) {
+    if (data.more) return data.job === this.newest ? this.told(data.run, data) : undefined;
     worker.busy = false;
     const waiting = this.waiting.get(data.job);
     this.waiting.delete(data.job);
     this.next(worker);
     if (waiting) return data.error ? waiting.reject(new Error(data.error)) : waiting.resolve(data);
-    if (data.job === this.newest) this.told(data.run, data);
+    if (data.job === this.newest) for (const one of data.briefs ?? [data]) this.told(one.run, one);
   }
 }

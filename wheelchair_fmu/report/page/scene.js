@@ -7,13 +7,14 @@ import { extent, round, tick } from "page/draw";
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
 const LEGEND = 84; // px
+const FONT = "11.5px system-ui, sans-serif";
 
 export class Scene {
   constructor(place, campaign) {
     this.geometry = campaign.geometry;
     this.canvas = h("canvas", { class: "scene", role: "img" });
-    this.paths = h("canvas"); // the overview, which only changes with the run and the model
-    place.append(this.canvas);
+    this.paths = h("canvas", { "aria-hidden": "true" }); // behind it the overview, which only changes with the run and the model
+    place.append(h("div", { class: "scenery" }, this.paths, this.canvas));
     this.room = sized(place);
   }
 
@@ -34,7 +35,7 @@ export class Scene {
     if (this.width !== width || this.height !== height || this.scale !== scale) {
       Object.assign(this, { width, height, scale });
       for (const c of [this.canvas, this.paths]) [c.width, c.height] = [width * scale, height * scale];
-      this.canvas.style.height = `${height}px`;
+      this.canvas.parentNode.style.height = `${height}px`;
     }
     const inner = height - LEGEND, part = 0.36;
     this.over = this.lying ? { x: 0, y: 0, w: width, h: Math.round(inner * part) } : { x: 0, y: 0, w: Math.round(width * part), h: inner };
@@ -81,6 +82,7 @@ export class Scene {
       c.stroke();
     }
     c.setLineDash([]);
+    this.legend(c);
   }
 
   /** All of it at sample `i`. */
@@ -89,8 +91,6 @@ export class Scene {
     if (!(near.w > 0)) return;
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    const [wide, high] = [this.over.w, this.over.h].map((v) => Math.round(v * this.scale));
-    c.drawImage(this.paths, 0, 0, wide, high, 0, 0, wide, high);
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
     for (const [p, colour] of [[measured, look.measured], [model, look.model]]) {
       if (!p || !Number.isFinite(p.x[i] + p.y[i])) continue;
@@ -108,7 +108,7 @@ export class Scene {
     this.chair(c, i, pose(model), size, look.model, false);
     this.arrows(c, i, pose(model), size);
     c.restore();
-    this.legend(c, i);
+    this.amount(c, i);
   }
 
   /** Tiles that stay on the floor, so that one sees it move. */
@@ -204,19 +204,30 @@ export class Scene {
     c.restore();
   }
 
-  legend(c, i) {
-    const { look, motion: { lacking, measured } } = this, said = [];
-    const [force, moment] = [lacking.force?.[i], lacking.moment?.[i]];
-    if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
-    if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
-    c.font = "11.5px system-ui, sans-serif";
+  /** What is what; how much is missing stands behind its words. */
+  legend(c) {
+    const { look, motion: { lacking, measured } } = this, lacks = lacking.force || lacking.moment;
+    c.font = FONT;
     const rows = [["model", look.model], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", look.measured], ["push", look.good], ["side force of a tyre", look.ink],
-      said.length && [`missing: ${said.join(", ")} (arrow × 10)`, look.error]].filter(Boolean);
+      lacks && ["missing (arrow × 10): ", look.error]].filter(Boolean);
     rows.forEach(([words, colour], k) => {
       const y = this.height - LEGEND + 18 + 15 * k;
       c.fillStyle = colour; c.fillRect(2, y - 8, 9, 9);
       c.fillStyle = look.ink; c.fillText(words, 16, y);
+      this.behind = [16 + c.measureText(words).width, y];
     });
+  }
+
+  /** How much is missing at sample `i`. */
+  amount(c, i) {
+    const { look, motion: { lacking } } = this, said = [];
+    const [force, moment] = [lacking.force?.[i], lacking.moment?.[i]];
+    if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
+    if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
+    if (!lacking.force && !lacking.moment) return;
+    c.font = FONT;
+    c.fillStyle = look.ink;
+    c.fillText(said.join(", ") || "–", ...this.behind);
   }
 }
 

@@ -1,6 +1,6 @@
 // One time for everything that is drawn against it: two charts by uPlot, the scene, and a row of readings for every channel.
 
-import { h } from "page/dom";
+import { h, write } from "page/dom";
 import { look, present } from "page/draw";
 import { display, significant, unitText } from "page/numbers";
 import { channelOf } from "page/words";
@@ -57,11 +57,11 @@ export class Timeline {
     this.at = Math.min(Math.max(kept?.t ?? this.time[0], this.time[0]), this.time.at(-1));
     [this.scrub.min, this.scrub.max] = [this.time[0], this.time.at(-1)];
     const names = Object.keys(run.channels);
-    this.cells = names.map((name) => ({ name, measured: h("td"), model: h("td"), error: h("td") }));
+    this.cells = names.map((name) => ({ name, measured: h("span"), model: h("span"), error: h("span") }));
     this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),
       h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error ÷ noise"].map((t) => h("th", { scope: "col" }, t)))),
       h("tbody", {}, this.cells.map((c) => h("tr", { "data-channel": c.name }, h("th", { scope: "row" },
-        h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), c.measured, c.model, c.error))));
+        h("button", { type: "button", class: "plain", onclick: () => this.choose(c.name) }, channelOf(c.name))), [c.measured, c.model, c.error].map((cell) => h("td", {}, cell))))));
   }
 
   /** Draw `channel` of the run, from `result` and the same `before`; `pinned` is [[label, result], ...], `band` [low, high] about
@@ -172,14 +172,16 @@ export class Timeline {
     for (const { name, measured, model, error } of this.cells) {
       const k = latest(this.run.channels[name], i);
       const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), suffix = unitText(unit);
-      measured.textContent = `${significant(this.run.channels[name][k] * factor, 3)} ${suffix}`;
-      model.textContent = `${significant(this.result.predicted[name][i] * factor, 3)} ${suffix}`;
-      error.textContent = significant(this.result.errors[name][k], 2);
+      write(measured, `${significant(this.run.channels[name][k] * factor, 3)} ${suffix}`);
+      write(model, `${significant(this.result.predicted[name][i] * factor, 3)} ${suffix}`);
+      write(error, significant(this.result.errors[name][k], 2));
     }
     const said = `${(this.at - this.time[0]).toFixed(2)} s`;
-    this.clock.textContent = said;
-    this.scrub.value = this.at;
-    this.scrub.setAttribute("aria-valuetext", said);
+    write(this.clock, said);
+    if (this.scrub.valueAsNumber !== this.at) {
+      this.scrub.value = this.at;
+      this.scrub.setAttribute("aria-valuetext", said);
+    }
     this.scene.draw(i);
   }
 

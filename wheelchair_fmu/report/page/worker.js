@@ -3,6 +3,7 @@
  * A page's worker has no imports, so this file stands alone. Messages in:
  *   {load: {models, runs, known, forces, …}}   once; see report/content.py
  *   {job, run, values, exact, brief}        simulate one run with parameter values by name (SI); brief: errors' squares alone
+ *   {job, several: [{run, brief}], values, exact}   the same of several: a reply with `more` for each in full, and {job, briefs}
  *   {job, run, values, aside}               the same exactly, without remembering it
  *   {job, run, values, slopes: [[name, step]]}   normal equations of a fit of these parameters
  *   {job, run, values, doubt: {names, covariance}}   how uncertain readings are by values that are
@@ -30,7 +31,7 @@ const module = (text) => new WebAssembly.Module(Uint8Array.from(atob(text), (c) 
 /** One compiled model, and what evaluates its runs in its memory, in which these and what was found about them are kept. */
 class Kernel {
   constructor(record, evaluation) {
-    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, starts, delays
+    Object.assign(this, record); // effects, parameters, inputs, outputs, states, sensors, columns, starts, flips, delays
     const model = new WebAssembly.Instance(module(record.wasm), {}).exports;
     model.memory.grow(ROOM);
     this.wasm = { ...model, ...new WebAssembly.Instance(evaluation, { model, env: { memory: model.memory } }).exports, memory: model.memory };
@@ -72,6 +73,16 @@ class Kernel {
   /** A copy of `count` doubles. */
   get(at, count) {
     return new Float64Array(this.wasm.memory.buffer, at, count).slice();
+  }
+
+  /** Copies of the columns of a matrix, by number: (z) => (count,). Good until memory grows. */
+  split(at, count, width) {
+    const all = new Float64Array(this.wasm.memory.buffer, at, count * width);
+    return (z) => {
+      const out = new Float64Array(count);
+      for (let i = 0, k = z; i < count; i++, k += width) out[i] = all[k];
+      return out;
+    };
   }
 
   /** The address that stands in a record. */
@@ -130,31 +141,35 @@ class Kernel {
       +campaign.leads,
     ]);
     const rooms = this.block("rooms", 1), scratch = this.block("record", wasm.wc_page_record());
-    wasm.wc_page_room(record, scratch, 0, 0, rooms);
+    wasm.wc_page_room(record, scratch, 0, 0, rooms, 0);
     const [kept, work] = new Int32Array(wasm.memory.buffer, rooms, 2);
-    return { run, record, names, n, nz, uncertain: this.starts.length + constants.length, kept, work, again: wasm.wc_page_again_room(record, scratch, 0), evaluation: null };
+    return { run, record, names, n, nz, uncertain: this.starts.length + constants.length, kept, work, again: wasm.wc_page_again_room(record, scratch, 0), pushes: n * nq, trials: wasm.wc_page_pushes_room(record), evaluation: null };
   }
 
   /** A place for an evaluation of a recording: its own, which is remembered, or one for all that are not. */
   place(of, own) {
-    if (own) of.evaluation ??= { record: this.doubles(this.wasm.wc_page_record()), kept: this.doubles(of.kept), whole: false };
-    const there = own ? of.evaluation : { record: this.block("aside record", this.wasm.wc_page_record()), kept: this.block("aside", of.kept) };
+    if (own) of.evaluation ??= { record: this.doubles(this.wasm.wc_page_record()), kept: this.doubles(of.kept), errors: this.flips ? this.doubles(of.pushes) : 0, pushed: 0, whole: false };
+    const there = own ? of.evaluation : { record: this.block("aside record", this.wasm.wc_page_record()), kept: this.block("aside", of.kept), errors: this.flips ? this.block("aside errors", of.pushes) : 0, pushed: 0 };
     this.lay(of, there);
     return there;
   }
 
-  /** Start and path of an evaluation, for another to begin with. */
+  /** Start and path of an evaluation, and the errors of its pushes, for another to begin with. */
   follow(of, one, other) {
     this.lay(of, one);
-    const forces = campaign.forces.sd.length * of.n;
+    const forces = (campaign.forces?.sd.length ?? 0) * of.n, memory = () => new Float64Array(this.wasm.memory.buffer);
     for (const [place, count] of [[WHERE.start, of.uncertain], [WHERE.path, forces]]) {
       const from = this.pointer(one.record, place), to = this.pointer(other.record, place);
-      new Float64Array(this.wasm.memory.buffer).copyWithin(to / 8, from / 8, from / 8 + count);
+      memory().copyWithin(to / 8, from / 8, from / 8 + count);
     }
+    if (!one.pushed) return;
+    memory().copyWithin(other.errors / 8, one.errors / 8, one.errors / 8 + of.pushes);
+    other.pushed = other.errors;
+    this.lay(of, other);
   }
 
-  lay(of, { record, kept }) {
-    this.wasm.wc_page_room(of.record, record, kept, this.block("work", of.work), this.block("rooms", 1));
+  lay(of, { record, kept, pushed }) {
+    this.wasm.wc_page_room(of.record, record, kept, this.block("work", of.work), this.block("rooms", 1), pushed);
   }
 }
 
@@ -175,12 +190,15 @@ function given(kernel, { run, names }, values, name = "values") {
   return kernel.words([p, offsets, others], name);
 }
 
-/** An exact evaluation in `place`, from where the run is expected to start; one that is led, from where it was led before. */
-function evaluated(kernel, of, values, place, rounds = campaign.tuning) {
-  const { wasm } = kernel, known = campaign.leads && of.evaluation?.whole;
+/** An evaluation in `place`, from where the run is expected to start; one that is led, from where it was led before, and slopes
+ *  about the errors of pushes that were found before, which are looked for where it is to be exact. */
+function evaluated(kernel, of, values, place, { rounds = campaign.tuning, exact = true } = {}) {
+  const { wasm } = kernel, follows = campaign.leads || (kernel.flips && !rounds), known = follows && of.evaluation?.whole;
+  const set = given(kernel, of, values), work = kernel.flips ? kernel.block("trials", of.trials) : 0;
   if (known && place !== of.evaluation) kernel.follow(of, of.evaluation, place);
   place.whole = false;
-  const status = wasm.wc_page_evaluate(of.record, given(kernel, of, values), place.record, +!known, campaign.leads && !known ? campaign.tuning : rounds);
+  const status = wasm.wc_page_evaluate(of.record, set, place.record, +!known, follows && !known ? campaign.tuning : rounds, exact ? place.errors : 0, work);
+  place.pushed = wasm.wc_page_pushed(place.record);
   kernel.check(status, wasm.wc_page_reached(place.record), of.run.time);
   place.whole = true;
   place.values = values;
@@ -196,30 +214,32 @@ function again(kernel, of, values, place, kept = false) {
 }
 
 /** What the page shows: errors by channel, their squares and those in SI units (`gaps`), readings, and standard deviations of
- *  what is measured about them where values are right. */
-function told(kernel, of, place, simulated, set) {
+ *  what is measured about them where values are right; in `brief` without series. */
+function told(kernel, of, place, simulated, set, brief) {
   const { wasm } = kernel, { n, nz, names } = of, [shown, sd, errors] = ["shown", "sd", "errors"].map((name) => kernel.block(name, n * nz)), sums = kernel.block("sums", 3 * nz);
   wasm.wc_page_tell(of.record, set, place.record, simulated, shown, sd, errors, sums);
-  const columns = (at, count, width) => { const all = kernel.get(at, count * width); return (z) => Float64Array.from({ length: count }, (_, i) => all[i * width + z]); };
-  const by = (make) => Object.fromEntries(names.map((name, z) => [name, make(z)])), total = kernel.get(sums, 3 * nz);
-  const results = columns(kernel.pointer(simulated, WHERE.results), n, kernel.outputs.length), start = kernel.get(kernel.pointer(simulated, WHERE.start), of.uncertain);
-  return {
-    errors: by(columns(errors, n, nz)), predicted: by(columns(shown, n, nz)), sd: by(columns(sd, n, nz)),
+  const by = (make) => Object.fromEntries(names.map((name, z) => [name, make(z)])), total = kernel.get(sums, 3 * nz), start = kernel.get(kernel.pointer(simulated, WHERE.start), of.uncertain);
+  const summed = {
     squares: by((z) => total[3 * z]), counts: by((z) => total[3 * z + 1]), gaps: by((z) => total[3 * z + 2]),
-    results: Object.fromEntries(campaign.shown.map((name) => [name, results(kernel.outputs.indexOf(name))])),
     start: Object.fromEntries(kernel.starts.map((name, c) => [name, start[c]])),
+  };
+  if (brief) return { ...summed, brief };
+  const results = kernel.split(kernel.pointer(simulated, WHERE.results), n, kernel.outputs.length);
+  return {
+    ...summed, errors: by(kernel.split(errors, n, nz)), predicted: by(kernel.split(shown, n, nz)), sd: by(kernel.split(sd, n, nz)),
+    results: Object.fromEntries(campaign.shown.map((name) => [name, results(kernel.outputs.indexOf(name))])),
   };
 }
 
-function evaluate(index, values, exact, aside) {
+function evaluate(index, values, { exact, aside, brief }) {
   const kernel = kernelFor(values), of = kernel.recording(index), place = kernel.place(of, !aside);
   if (!aside && !exact && place.whole && remembered[index] === kernel) {
     const { to, set } = again(kernel, of, values, place);
-    return told(kernel, of, place, to, set);
+    return told(kernel, of, place, to, set, brief);
   }
   if (!aside) remembered[index] = kernel;
-  evaluated(kernel, of, values, place);
-  return told(kernel, of, place, place.record, given(kernel, of, values));
+  evaluated(kernel, of, values, place, { exact: Boolean(exact || aside) });
+  return told(kernel, of, place, place.record, given(kernel, of, values), brief);
 }
 
 /** What was found at these values already, or is found now. */
@@ -244,7 +264,7 @@ function moved(kernel, of, values, place, steps, kept, take) {
  *  The filter is that of the values themselves, as in inference/estimation/fit.py. */
 function slopes(index, values, steps) {
   const kernel = kernelFor({ ...values, ...Object.fromEntries(steps.map(([name]) => [name, values[name] || 1])) }), of = kernel.recording(index), { wasm } = kernel, k = steps.length;
-  const place = evaluated(kernel, of, values, kernel.place(of, false), 0);
+  const place = evaluated(kernel, of, values, kernel.place(of, false), { rounds: 0 });
   const all = moved(kernel, of, values, place, steps, true, ({ to }) => kernel.get(kernel.pointer(to, WHERE.r), of.n * of.nz));
   const [jtj, jtr, squares] = [k * k, k, 1].map((count, i) => kernel.block(`normal ${i}`, count));
   wasm.wc_page_normal(of.record, place.record, k, kernel.put(Float64Array.from(steps, ([, step]) => step), "steps"), all, jtj, jtr, squares);
@@ -261,8 +281,8 @@ function doubted(index, values, { names, covariance }) {
   const all = moved(kernel, of, values, place, steps, false, ({ to, set }) => { wasm.wc_page_as_read(of.record, set, to, shown); return kernel.get(shown, n * nz); });
   const [sizes, spread] = [Float64Array.from(steps, ([, step]) => step), Float64Array.from(covariance.flat())].map((a, i) => kernel.put(a, `doubt ${i}`));
   wasm.wc_page_doubt(of.record, names.length, base, sizes, all, spread, variance);
-  const whole = kernel.get(variance, n * nz);
-  return { variance: Object.fromEntries(of.names.map((name, z) => [name, Float64Array.from({ length: n }, (_, i) => whole[i * nz + z])])) };
+  const column = kernel.split(variance, n, nz);
+  return { variance: Object.fromEntries(of.names.map((name, z) => [name, column(z)])) };
 }
 
 /** A bare simulation, for comparing this page with another program. */
@@ -283,15 +303,12 @@ function load(given) {
   kernels = given.models.map((record) => new Kernel(record, evaluation));
 }
 
-/** The same without series. */
-const briefly = ({ squares, counts, gaps, start }) => ({ squares, counts, gaps, start, brief: true });
-
 function answer({ load: all, job, run, values, exact, brief, aside, slopes: steps, doubt, trace: wanted }) {
   if (all) return load(all);
   const began = performance.now();
   try {
-    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : doubt ? doubted(run, values, doubt) : evaluate(run, values, exact, aside);
-    return { job, run, ...(brief ? briefly(result) : result), ms: performance.now() - began };
+    const result = wanted ? trace(wanted) : steps ? slopes(run, values, steps) : doubt ? doubted(run, values, doubt) : evaluate(run, values, { exact, aside, brief });
+    return { job, run, ...result, ms: performance.now() - began };
   } catch (error) {
     return { job, run, error: error.message };
   }
@@ -300,7 +317,24 @@ function answer({ load: all, job, run, values, exact, brief, aside, slopes: step
 /** Series go to the page without being copied: nothing here needs them again. */
 const buffers = ({ errors, predicted, sd, results, variance }) => [errors, predicted, sd, results, variance].filter(Boolean).flatMap((all) => Object.values(all).map((a) => a.buffer));
 
+function send(reply) {
+  self.postMessage(reply, buffers(reply));
+}
+
+/** Several runs with the same values: those whose series are wanted one by one, all others in one message, the last, as every
+ *  message keeps the page's thread from drawing. */
+function answerAll({ job, several, values, exact }) {
+  const briefs = [];
+  for (const { run, brief } of several) {
+    const reply = answer({ job, run, values, exact, brief });
+    if (brief) briefs.push(reply);
+    else send({ ...reply, more: true });
+  }
+  send({ job, briefs });
+}
+
 self.onmessage = ({ data }) => {
+  if (data.several) return answerAll(data);
   const reply = answer(data);
-  if (reply) self.postMessage(reply, buffers(reply));
+  if (reply) send(reply);
 };
