@@ -273,6 +273,20 @@ def test_on_a_phone_a_tick_and_its_effect_are_on_one_screen(browser, report_file
     reader.close()
 
 
+def test_on_a_phone_pictures_of_the_story_are_drawn_for_it(browser, report_file):
+    """None is drawn for a wider place and shrunk, which nobody could read."""
+    reader = Reader(browser, report_file, width=390)
+    for i in range(5):
+        reader.page.click(f".tab >> nth={i}")
+        if i == 1:
+            reader.page.click(".choice >> nth=0")
+            reader.page.wait_for_selector(".screen:visible .curve svg")
+        drawn = reader.page.evaluate("""[...document.querySelectorAll(".screen:not([hidden]) .stage svg")].map(
+            (s) => s.getBoundingClientRect().width / s.viewBox.baseVal.width)""")
+        assert all(scale > 0.95 for scale in drawn) and (drawn or i == 4), i
+    reader.close()
+
+
 def test_names_of_any_length_and_character(browser, report_file, tmp_path):
     content = unpacked(report_file.read_text(encoding="utf-8"))
     story = Story([{"head": "What", "lead": "ß" * 300, "lines": []}], content["story"]["screens"])

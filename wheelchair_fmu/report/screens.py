@@ -120,7 +120,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             }
         return {
             "title": "Put one in and watch the error fall",
-            "lines": [f"With {each}, the error on {whose} falls to about {after:.2f}."],
+            "lines": [f"With {each}, the error on {whose} falls to {_comes(t)}."],
         }
     them = "it" if len(t.found) == 1 else "them"
     watch = "and watch the error fall" if t.falls else "and look where the two curves part"
@@ -128,6 +128,13 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
         "title": f"Put {them} in {watch}",
         "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
     }
+
+
+def _comes(t: Told) -> str:
+    """What the error comes to with each of a tie."""
+    errors = [error for e in t.found if (error := t.error(e)) is not None] or [t.fall[1]]
+    least, most = f"{min(errors):.2f}", f"{max(errors):.2f}"
+    return least if least == most else f"between {least} and {most}"
 
 
 def _helping(t: Told) -> str:

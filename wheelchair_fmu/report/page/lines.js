@@ -2,6 +2,7 @@
 
 import { canvas, course, extent, line, long, present, round, svg, text, tick, ticks } from "page/draw";
 import { display, unitText } from "page/numbers";
+import { channelOf } from "page/words";
 
 const LEFT = 54, RIGHT = 8;
 const MOST = 1500; // points of a curve
@@ -74,4 +75,4 @@ export function path(width, look, motion) {
 }
 
 /** A channel's name with its unit. */
-export const labelled = (record) => `${record.name.replaceAll("_", " ")} [${unitText(display(record).unit) || "1"}]`;
+export const labelled = (record) => `${channelOf(record.name)} [${unitText(display(record).unit) || "1"}]`;

@@ -112,7 +112,7 @@ export class Story {
     if (kind === "rivals") {
       const rows = this.told("rivals").bars, other = this.campaign.diagnosis.ties.length ? "joint" : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
       if (drawn.length) stage.replaceChildren(...drawn);
-      else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(Math.max(280, Math.min(640, stage.clientWidth || 600)), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
+      else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(this.room(stage, 640), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
   }
 
@@ -127,10 +127,16 @@ export class Story {
     if (rested || this.seen) this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
   }
 
+  /** How wide a picture on this stage may be. An empty one has no place in its screen's grid, so something stands in it meanwhile. */
+  room(stage, most) {
+    if (!stage.firstChild) stage.append(h("div"));
+    return Math.max(280, Math.min(most, stage.clientWidth || 600));
+  }
+
   /** One of the expert's pictures with its caption, where there is one. */
   drawing(id, stage) {
     const figure = this.app.figures.all[id];
-    return figure ? [h("h4", {}, figure.says.title), figure.says.draw(Math.max(280, Math.min(760, stage.clientWidth || 600)), look()), h("p", { class: "caption" }, figure.says.caption())] : [];
+    return figure ? [h("h4", {}, figure.says.title), figure.says.draw(this.room(stage, 760), look()), h("p", { class: "caption" }, figure.says.caption())] : [];
   }
 
   curves(before, after, name = "model now") {
@@ -138,7 +144,7 @@ export class Story {
     if (!before?.predicted?.[channel]) return [];
     const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
     const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? [name, scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
-    const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = Math.max(280, Math.min(760, (this.stages.errs.clientWidth || this.stages.put.clientWidth || 640)));
+    const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = this.room(this.stages[this.screens[this.at].dataset.kind], 760);
     const shown = there ? after : before, slight = Math.sqrt(before.squares[channel] / before.counts[channel]) < SLIGHT;
     const means = slight ? [{ label: "mean error", lines: [["error", smooth(run.time, shown.errors[channel]), "error", 1.5]], height: 70 }] : [];
     return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }, ...means]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];

@@ -74,7 +74,7 @@ export class Timeline {
       ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
     this.edges = band.map(scaled);
     this.errors = result.errors[channel];
-    this.unit = `${channel.replaceAll("_", " ")} [${unitText(unit) || "1"}]`;
+    this.unit = `${channelOf(channel)} [${unitText(unit) || "1"}]`;
     this.drawCurves();
     for (const row of this.readings.tBodies[0].rows) row.toggleAttribute("aria-current", row.dataset.channel === channel);
     this.place();
