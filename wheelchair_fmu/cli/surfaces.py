@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich import box
@@ -26,29 +26,26 @@ def surfaces(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """How hard a chair rolls on floors that were measured, and on soft tyres."""
-    forces = {name: each.factor(coefficient) * coefficient * mass * 9.81 for name, each in SURFACES.items()}
+    told: list[dict[str, Any]] = [
+        {
+            "surface": name,
+            "adds": each.adds,
+            "factor": each.factor(coefficient),
+            "force": each.factor(coefficient) * coefficient * mass * 9.81,
+            "what": each.what,
+            "source": each.source,
+        }
+        for name, each in SURFACES.items()
+    ]
     soft = {bar: (bar / RATED) ** _exponent() for bar in PRESSURES}
     if as_json:
-        told = [
-            {
-                "surface": name,
-                "adds": each.adds,
-                "factor": each.factor(coefficient),
-                "force": forces[name],
-                "what": each.what,
-                "source": each.source,
-            }
-            for name, each in SURFACES.items()
-        ]
         print_json({"surfaces": told, "pressure": [{"bar": bar, "factor": value} for bar, value in soft.items()]})
         return
     table = Table(box=box.SIMPLE)
     for title in ("surface", "adds", "floor.rolling_factor", f"N of {mass:g} kg", "what it is", "source"):
         table.add_column(title, no_wrap=title != "what it is")
-    for name, each in SURFACES.items():
-        table.add_row(
-            name, f"{each.adds:.4f}", f"{each.factor(coefficient):.2f}", f"{forces[name]:.1f}", each.what, each.source
-        )
+    for t in told:
+        table.add_row(t["surface"], f"{t['adds']:.4f}", f"{t['factor']:.2f}", f"{t['force']:.1f}", t["what"], t["source"])
     console().print(table)
     factors = ", ".join(f"{value:.2f} at {bar:g} bar" for bar, value in soft.items())
     console().print(f"Rear wheels besides, by tyre.pressure: {factors}.")
