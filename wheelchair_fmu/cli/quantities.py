@@ -58,7 +58,7 @@ def records() -> list[dict[str, Any]]:
     usual = assemble(Choice())
     others = {law: assemble(Choice().with_laws({law[0]: law[1]})) for law in LAWS}
     needed = {symbol: {law[0]: law[1]} for law, model in others.items() for symbol in vocabulary(model)}
-    needed |= dict.fromkeys(vocabulary(usual), {})
+    needed |= {symbol: {} for symbol in vocabulary(usual)}
     acted_on = {symbol for model in (usual, *others.values()) for symbol in targets(model)}
     known = {symbol: q for model in (*others.values(), usual) for symbol, q in vocabulary(model).items()}
     return [
