@@ -25,6 +25,7 @@ axle, the left one first. The page is written by `make docs`; `wheelchair quanti
 | symbol | unit | of | may be acted on | what it is |
 |---|---|---|---|---|
 """
+LAWS = (("caster", "swivelling"), ("wheel", "spinning"))  # that bring quantities of their own, for effects that need them
 
 
 def register(app: typer.Typer) -> None:
@@ -54,18 +55,22 @@ def quantities(
 
 def records() -> list[dict[str, Any]]:
     """Each quantity as plain data."""
-    usual, swivelling = (assemble(Choice(caster=name)) for name in ("ideal", "swivelling"))
-    common = vocabulary(usual)
+    usual = assemble(Choice())
+    others = {law: assemble(Choice().with_laws({law[0]: law[1]})) for law in LAWS}
+    needed = {symbol: {law[0]: law[1]} for law, model in others.items() for symbol in vocabulary(model)}
+    needed |= {symbol: {} for symbol in vocabulary(usual)}
+    acted_on = {symbol for model in (usual, *others.values()) for symbol in targets(model)}
+    known = {symbol: q for model in (*others.values(), usual) for symbol, q in vocabulary(model).items()}
     return [
         {
             "symbol": symbol,
             "unit": q.unit.name,
             "components": ", ".join(q.components),
             "meaning": q.meaning,
-            "acted_on": symbol in targets(swivelling) or symbol in targets(usual),
-            "needs": {} if symbol in common else {"caster": "swivelling"},
+            "acted_on": symbol in acted_on,
+            "needs": needed[symbol],
         }
-        for symbol, q in (vocabulary(swivelling) | common).items()
+        for symbol, q in known.items()
     ]
 
 
