@@ -12,6 +12,7 @@ import numpy as np
 from ...campaign import CHANNELS, Run
 from ...errors import SimulationError
 from ..estimation.fit import Fit, prior_of
+from ..estimation.inverse import inverse
 from ..estimation.statistics import decisive
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel
@@ -54,8 +55,8 @@ def separate(
             continue
         r, S = evidence.r, evidence.S
         g = S.T @ r
-        known = np.linalg.pinv(other.covariance, hermitian=True)
-        odds.append((float(r @ r - g @ np.linalg.pinv(S.T @ S + known, hermitian=True) @ g), experiment))
+        known = inverse(other.covariance)
+        odds.append((float(r @ r - g @ inverse(S.T @ S + known) @ g), experiment))
     if not odds:
         return None
     gain, best = max(odds, key=lambda o: o[0])
@@ -101,13 +102,13 @@ def _shown(
 ) -> tuple[list[str], float]:
     """Effects that one run would show at δ, and the information of the weakest of them."""
     k = len(base.names)
-    Z, known = S[:, :k], np.linalg.pinv(base.covariance, hermitian=True) + prior**2
-    inverse = np.linalg.pinv(Z.T @ Z + known, hermitian=True)
+    Z, known = S[:, :k], inverse(base.covariance) + prior**2
+    unsure = inverse(Z.T @ Z + known)
     shown, weakest = [], np.inf
     for effect in effects:
         own = search.factory.parameters(effect)
         X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
-        information = X.T @ X - X.T @ Z @ inverse @ Z.T @ X
+        information = X.T @ X - X.T @ Z @ unsure @ Z.T @ X
         size = float(np.linalg.eigvalsh(information)[-1])
         if size > DEFAULT.tied:
             shown.append(effect)

@@ -11,9 +11,12 @@ from ...campaign import Run
 from ...quantities import Parameter
 from ..estimation.calibration import at_bound
 from ..estimation.fit import Fit
+from ..estimation.interval import half_width
 from ..estimation.statistics import finite, sandwich
 from ..evidence.evidence import Evidence
 from .verdict import Diagnosis
+
+BY_PROFILE, BY_ERRORS = "profile", "errors"  # how an interval was found
 
 
 def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
@@ -33,8 +36,8 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
         "step": d.ladder[-1].name,
         "laws": {"tyre": choice.tyre, "caster": choice.caster, "wheel": choice.wheel, "equations": choice.equations},
         "parameters": [
-            _parameter(records[name], found.values[name], float(se), *priors[name], d.intervals.get(name))
-            for name, se in zip(found.names, errors, strict=True)
+            _parameter(records[name], found.values[name], float(se), *priors[name], _interval(d, found, records, i))
+            for i, (name, se) in enumerate(zip(found.names, errors, strict=True))
         ],
         "covariance": ((covariance + covariance.T) / 2).tolist(),  # symmetric to the last digit
         "fixed": {n: d.search.factory.variant.values.get(n) for n in sorted(d.search.factory.fixed)},
@@ -53,20 +56,34 @@ def _priors(d: Diagnosis, found: Fit, records: Mapping[str, Parameter]) -> dict[
     }
 
 
+def _interval(d: Diagnosis, found: Fit, records: Mapping[str, Parameter], at: int) -> tuple[tuple[float, float], str]:
+    """That of an effect that was found, or one by standard errors alone; and which of the two it is."""
+    name = found.names[at]
+    if name in d.intervals:
+        return d.intervals[name], BY_ERRORS if d.search.factory.leads else BY_PROFILE
+    value, half, record = found.values[name], half_width(found, at), records[name]
+    return (max(value - half, record.lower), min(value + half, record.upper)), BY_ERRORS
+
+
 def _parameter(
-    record: Parameter, value: float, se: float, prior: float, prior_sd: float, interval: tuple[float, float] | None
+    record: Parameter, value: float, se: float, prior: float, prior_sd: float, interval: tuple[tuple[float, float], str]
 ) -> dict[str, Any]:
+    """Standard errors say nothing of a value that a bound stopped, which has no `interval` by these."""
+    ends, by = interval
+    stopped = at_bound(record, value, prior, prior_sd)
+    told = by == BY_PROFILE or (not stopped and bool(np.isfinite(ends).all()))
     return {
         "name": record.name,
         "unit": record.unit.name,
         "meaning": record.meaning,
         "estimate": value,
         "se": finite(se),
-        "interval": list(interval) if interval else None,
+        "interval": list(ends) if told else None,
+        "interval_by": by if told else None,
         "prior": prior if np.isfinite(prior_sd) else None,
         "prior_sd": finite(prior_sd),
         "smallest_interesting": record.smallest_interesting,
-        "at_bound": at_bound(record, value, prior, prior_sd),
+        "at_bound": stopped,
     }
 
 

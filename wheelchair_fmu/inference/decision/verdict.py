@@ -18,8 +18,8 @@ from ...model.stage import Effect
 from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts
 from ..estimation.fit import Fit
-from ..estimation.interval import profile_interval
-from ..estimation.statistics import correlation_time, estimates, standard_errors
+from ..estimation.interval import half_width, profile_interval
+from ..estimation.statistics import correlation_time, estimates
 from ..evidence.disturbance import Strength, acting, strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import MASS
@@ -44,7 +44,6 @@ from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worsened
 
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
-NORMAL = 1.96  # standard errors either side that hold 95 %
 FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 
 
@@ -54,7 +53,8 @@ class Diagnosis:
 
     `included` are the effects of the model in the end, of which the variant came with `already`; `rounds` those of the search,
     `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
-    "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood.
+    "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood, or by
+    standard errors where forces that nobody recorded lead the runs.
     """
 
     campaign: str
@@ -240,8 +240,7 @@ def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], 
     """Intervals of the parameters of the effects that were found."""
     likelihood, names = search.factory.likelihood(included), [n for e in effects for n in search.factory.parameters(e)]
     if search.factory.leads:  # no value was found by how likely the readings are
-        errors = standard_errors(found)
-        ends = {n: NORMAL * errors[n] for n in names if n in found.names}
+        ends = {n: half_width(found, found.names.index(n)) for n in names if n in found.names}
         return {n: (found.values[n] - end, found.values[n] + end) for n, end in ends.items()}
     return {n: profile_interval(likelihood, found, n) for n in names if n in found.names}
 

@@ -20,6 +20,7 @@ from ...errors import SimulationError
 from ...quantities import Parameter
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
+from .inverse import inverse
 
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
@@ -139,7 +140,7 @@ class Problem:
         g, near = self.gradient(here.S, here.r, theta), AT_BOUND * self.scale
         free = ~((theta < self.lower + near) & (g < 0) | (theta > self.upper - near) & (g > 0))
         step = np.zeros(len(theta))
-        step[free] = np.linalg.pinv(self.information(here)[np.ix_(free, free)], hermitian=True) @ g[free]
+        step[free] = inverse(self.information(here)[np.ix_(free, free)]) @ g[free]
         return step
 
     def stepped(self, theta: np.ndarray, step: np.ndarray) -> np.ndarray:
@@ -218,7 +219,7 @@ def fit(
 
 
 def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
-    covariance = np.linalg.pinv(problem.information(here), hermitian=True) if len(theta) else np.zeros((0, 0))
+    covariance = inverse(problem.information(here)) if len(theta) else np.zeros((0, 0))
     return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
 
 
@@ -275,6 +276,6 @@ def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple
         gradient = problem.whole_gradient(here, theta)
     except SimulationError:
         return None
-    step = np.linalg.pinv(problem.information(here), hermitian=True) @ gradient
+    step = inverse(problem.information(here)) @ gradient
     found = _taken(problem, theta, here, np.clip(theta + step, problem.lower, problem.upper))
     return found if found and problem.misfit(here, theta) - problem.misfit(found[1], found[0]) > STRAIGHT else None

@@ -18,6 +18,7 @@ from ..chance import student, value_beyond
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
 from .fit import Fit, Problem
+from .inverse import inverse
 from .score import RUNS
 from .statistics import between_runs, degrees_between_runs, sandwich
 
@@ -84,12 +85,12 @@ def profile(
     problem, S = Problem(likelihood, found.names), found.evidence.S
     chosen = np.isin(np.arange(len(found.names)), at)
     A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
-    inverse, where = np.linalg.pinv(A[np.ix_(~chosen, ~chosen)], hermitian=True), np.array(at)
+    known, where = inverse(A[np.ix_(~chosen, ~chosen)]), np.array(at)
 
     def misfit(values: Sequence[float] | np.ndarray) -> float:
         theta, lowest = best.copy(), np.inf
         theta[where] = values
-        theta[~chosen] -= inverse @ A[np.ix_(~chosen, where)] @ (np.asarray(values) - best[where])
+        theta[~chosen] -= known @ A[np.ix_(~chosen, where)] @ (np.asarray(values) - best[where])
         for _ in range(corrections):
             theta[~chosen] = np.clip(theta, problem.lower, problem.upper)[~chosen]
             try:
@@ -97,7 +98,7 @@ def profile(
             except SimulationError:
                 break
             lowest = min(lowest, problem.misfit(there, theta))
-            theta[~chosen] += inverse @ problem.gradient(S, there.r, theta)[~chosen]
+            theta[~chosen] += known @ problem.gradient(S, there.r, theta)[~chosen]
         return lowest
 
     return misfit

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..chance import chance_beyond, power
 from ..evidence.evidence import Evidence
+from .inverse import inverse
 
 LASTING = 0.97  # AR(1) coefficient, at most, by which a variance is recoloured
 LAG = 0.5  # s over which residuals may be correlated
@@ -49,7 +50,7 @@ class Projector:
     def __init__(self, Z: np.ndarray, prior_slopes: np.ndarray, prior_rows: np.ndarray | None = None):
         self.Z, self.slopes = Z, prior_slopes
         self.rows = np.zeros(Z.shape[1]) if prior_rows is None else prior_rows
-        self._inverse = np.linalg.pinv(Z.T @ Z + prior_slopes**2, hermitian=True)
+        self._inverse = inverse(Z.T @ Z + prior_slopes**2)
 
     def __call__(self, X: np.ndarray) -> np.ndarray:
         """What is left of the columns in the readings (N, k)."""
@@ -97,12 +98,12 @@ def _spread(
 ) -> np.ndarray:
     """Covariance (m, m) of the expected change, by what it leaves: residuals r (N,), `rows` of what was known beforehand. The
     larger of what lasting residuals make it, and of how far runs would have it apart, which shows where no model is exact."""
-    known, inverse = strained.T @ strained, np.diag(1 / information)
-    lasting = inverse @ (robust_variance(evidence, s, r) + known) @ inverse
+    known, variance = strained.T @ strained, np.diag(1 / information)
+    lasting = variance @ (robust_variance(evidence, s, r) + known) @ variance
     pulls = np.array([s[part].T @ r[part] for _, _, part in evidence.parts()])
     if len(pulls) < RUNS:
         return lasting
-    between = inverse @ (pulls.T @ pulls * len(pulls) / (len(pulls) - 1) + known) @ inverse
+    between = variance @ (pulls.T @ pulls * len(pulls) / (len(pulls) - 1) + known) @ variance
     return max(lasting, between, key=np.trace)
 
 

@@ -13,6 +13,7 @@ from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
 from .fit import prior_of
+from .inverse import inverse
 
 GLANCED = 2  # runs on which all are tried, and of them
 LOOKED_AT = 2  # times as many as are wanted on every run
@@ -39,7 +40,7 @@ def outlook(likelihood: Likelihood, known: Evidence, names: Sequence[str], theta
     rows = prior.rows(np.array(at))
     Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
     g = Z.T @ r + (prior.slopes @ rows)[:k]
-    step = np.linalg.pinv(Z.T @ Z + prior.slopes[:k, :k] ** 2, hermitian=True) @ g
+    step = inverse(Z.T @ Z + prior.slopes[:k, :k] ** 2) @ g
     return Outlook(float(r @ r + rows @ rows - g @ step), at, (*(np.array(at[:k]) + step), *at[k:]))
 
 

@@ -10,6 +10,7 @@ from ..chance import student
 from ..evidence.evidence import Evidence, block_length
 from ..policy import DEFAULT, SearchPolicy
 from .fit import Fit
+from .inverse import inverse
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
@@ -37,14 +38,14 @@ def cosines(ones: Sequence[Score], others: Sequence[Score]) -> np.ndarray:
 def sandwich(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates that allows for correlated residuals."""
     S, r = found.evidence.S, found.evidence.r
-    inverse = _inverse(found)
-    return inverse @ (robust_variance(found.evidence, S, r) + found.prior_slopes**2) @ inverse
+    known = _inverse(found)
+    return known @ (robust_variance(found.evidence, S, r) + found.prior_slopes**2) @ known
 
 
 def _inverse(found: Fit) -> np.ndarray:
     """Of Sᵀ S (k, k), and the prior's."""
     S = found.evidence.S
-    return np.linalg.pinv(S.T @ S + found.prior_slopes**2, hermitian=True)
+    return inverse(S.T @ S + found.prior_slopes**2)
 
 
 def standard_errors(found: Fit) -> dict[str, float]:
@@ -55,32 +56,32 @@ def standard_errors(found: Fit) -> dict[str, float]:
 def between_runs(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
     residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
-    r, inverse = found.evidence.r, _inverse(found)
-    total = np.zeros_like(inverse)
-    for part, Q, R, root in _decided(found, inverse):
+    r, known = found.evidence.r, _inverse(found)
+    total = np.zeros_like(known)
+    for part, Q, R, root in _decided(found, known):
         pull = R.T @ root @ (Q.T @ r[part])
         total += np.outer(pull, pull)
-    return inverse @ total @ inverse
+    return known @ total @ known
 
 
 def degrees_between_runs(found: Fit, at: int) -> float:
     """Degrees of freedom of one of these variances, by Satterthwaite: one less than there are runs where all decide alike, and
     fewer where a few of them decide most (Bell and McCaffrey 2002)."""
-    inverse, squares, pulls = _inverse(found), [], []
-    for _, _, R, root in _decided(found, inverse):
-        weight = root @ (R @ inverse[:, at])  # of the run's residuals in the estimate
+    known, squares, pulls = _inverse(found), [], []
+    for _, _, R, root in _decided(found, known):
+        weight = root @ (R @ known[:, at])  # of the run's residuals in the estimate
         squares.append(float(weight @ weight))
         pulls.append(R.T @ weight)
-    G = np.diag(squares) - np.array(pulls) @ inverse @ np.array(pulls).T
+    G = np.diag(squares) - np.array(pulls) @ known @ np.array(pulls).T
     return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G)))
 
 
-def _decided(found: Fit, inverse: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
+def _decided(found: Fit, known: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
     """Of each run its place, the factors Q R of its sensitivities, and what makes up, in Q's directions, for what the run
     itself decides of the estimates and so takes off its residuals."""
     for _, _, part in found.evidence.parts():
         Q, R = np.linalg.qr(found.evidence.S[part])
-        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ inverse @ R.T)  # what the other runs leave it to decide
+        size, axes = np.linalg.eigh(np.eye(len(R)) - R @ known @ R.T)  # what the other runs leave it to decide
         yield part, Q, R, (axes / np.sqrt(np.maximum(size, ALONE))) @ axes.T
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..estimation.fit import Fit, Problem, fit, start_value
+from ..estimation.inverse import inverse
 from ..estimation.statistics import estimates, margin
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
@@ -109,7 +110,7 @@ class Models:
         """How far an effect's estimate is from zero, by its covariance: about as much as −2 log likelihood would rise without
         it, where filters stay as they are."""
         value, covariance = estimates(found, self.factory.parameters(effect))
-        return float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
+        return float(value @ inverse(covariance) @ value)
 
     def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
         """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""

@@ -15,7 +15,7 @@ from ...model.generic import library
 from ...model.variant import Variant
 
 NORMAL = 1.96  # standard errors either way, where no profile of the likelihood was taken
-PROFILE, BY_ERRORS = "profile likelihood", "1.96 standard errors"
+PROFILE, BY_ERRORS = "profile likelihood", "standard errors"
 NEEDED = ("final", "fingerprint", "made_by")  # keys of a diagnosis that earlier versions did not write
 GENERIC = "generic_"
 EFFECT, OFFSET = "effect.", "offset."
@@ -106,7 +106,7 @@ def interval(parameter: Mapping[str, Any]) -> tuple[float, float, str]:
     """The ends of a 95 % interval (SI) and how it was found; NaN where there is none, as of a value that a bound stopped."""
     if parameter["interval"]:
         lower, upper = parameter["interval"]
-        return float(lower), float(upper), PROFILE
+        return float(lower), float(upper), PROFILE if parameter.get("interval_by", "profile") == "profile" else BY_ERRORS
     if parameter["se"] is None or parameter["at_bound"]:
         return nan, nan, ""
     half = NORMAL * parameter["se"]

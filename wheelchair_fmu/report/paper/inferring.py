@@ -135,18 +135,18 @@ def errors(case: Case) -> str:
         "Standard errors are from the sandwich covariance of the estimates, with the long-run variance of the score within "
         f"runs, prewhitened by a first-order autoregression {cite('NeweyWest1987', 'AndrewsMonahan1992')}."
     ]
+    wider = (
+        f", widened to how far the runs would have the parameter apart where that is more {cite('BellMcCaffrey2002')}"
+        if len(case.campaign.fit) >= RUNS
+        else ""
+    )
     if any(interval(p)[2] == PROFILE for p in case.parameters):
-        wider = (
-            f", widened to how far the runs would have the parameter apart where that is more {cite('BellMcCaffrey2002')}"
-            if len(case.campaign.fit) >= RUNS
-            else ""
-        )
         told.append(
             "The 95 % intervals of the effects that were found are by the profile of the likelihood "
-            f"{cite('VenzonMoolgavkar1988')}{wider}; all others are ± 1.96 standard errors."
+            f"{cite('VenzonMoolgavkar1988')}, all others by 1.96 standard errors either side{wider}."
         )
     else:
-        told.append("All 95 % intervals are ± 1.96 standard errors.")
+        told.append(f"All 95 % intervals are by 1.96 standard errors either side{wider}.")
     return " ".join(told)
 
 

@@ -1,0 +1,181 @@
+"""Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...]`.
+
+Each is imported as docs/lab.md does it, with the lines of its protocol that no file holds, and diagnosed. Printed is what is
+said, and how far off: clocks and baselines in standard errors; held-out errors beside those of a simulation that knows all but
+the floor; forces that nobody recorded beside the floor's; the share of held-out samples in bands of 95 %; intervals that miss
+what was hidden. All figures of a lab are kept in `--out`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from typer.testing import CliRunner
+
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.inference.decision.final import final
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.explain.ranking import as_json
+from wheelchair_fmu.model.generic import library
+
+from .bands import inside
+
+MEASUREMENTS = Path(__file__).resolve().parents[2] / "shared" / "measurements"
+# by the protocols: mass, radius, track, wheelbase, from the CM to the rear axle, track of the casters; where the sensor sits
+GIVEN = {
+    "lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43),
+    "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
+    "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
+}
+AT = {"lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}
+GRAVITY = 9.81
+
+
+def imported(measurements: Path, lab: str, out: Path) -> Path:
+    """The campaign of a lab's raw files, with what stands in its protocol."""
+    mass, radius, track, wheelbase, b, t_f = GIVEN[lab]
+    runs = json.loads((measurements / "lab-answers.json").read_text())[lab]["runs"]
+    kept = [word for run, told in runs.items() if told["role"] == "holdout" for word in ("--holdout", run)]
+    words = ["import", measurements / lab, "-o", out, "--mass", mass, "--radius", radius, "--track", track, *kept]
+    done = CliRunner().invoke(app, [str(word) for word in words])
+    if done.exit_code:
+        raise RuntimeError(f"{lab}: wheelchair import ended with {done.exit_code}: {done.output}")
+    text = (out / "campaign.toml").read_text(encoding="utf-8")
+    for key, value in (("a = ", wheelbase - b), ("b = ", b), ("t_f = ", t_f)):
+        text = text.replace(f"# {key}", f"{key}{value:.3f} #", 1)
+    if lab in AT:
+        text = text.replace("# at = [0.0, 0.0]", f"at = {AT[lab]} #", 1)
+    (out / "campaign.toml").write_text(text, encoding="utf-8")
+    return out
+
+
+def truths(hidden: Mapping[str, Any]) -> dict[str, float]:
+    """By parameter, what was hidden. The model's wheels have no spin, which counts as mass and as yaw inertia there."""
+    spin = 2 * hidden["wheel_inertia_each_kgm2"] / hidden["wheel_radius"] ** 2
+    found = {f"chair.{name}": hidden[name] for name in ("a", "b", "t_r")}
+    found |= {f"resistance.{name}": hidden[name] for name in ("f_r", "f_f")}
+    found |= {"tyre.C_lambda": hidden["C_lambda"], "chair.m": hidden["m"] + spin}
+    found |= {"chair.I_z": hidden["I_z"] + spin * hidden["t_r"] ** 2 / 4}
+    found |= {"effect.caster_trail.c": hidden["caster_trail"], "effect.caster_friction.M": hidden["caster_friction"]}
+    return found | {"effect.pivot_torque.M": hidden["turn_slip"]["M_p"]}
+
+
+def off(d: Mapping[str, Any], folder: Path, runs: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Each clock and baseline, and how many standard errors it is off."""
+    content = tomllib.loads((folder / "campaign.toml").read_text(encoding="utf-8"))
+    files = {run["name"]: {device: Path(file).name for device, file in run["files"].items()} for run in content["run"]}
+    for run, devices in d["sync"].items():
+        first = next(iter(files[run]))
+        for device, told in devices.items():
+            true = runs[run]["files"]
+            apart = true[files[run][device]]["offset_s"] - true[files[run][first]]["offset_s"]
+            yield f"clock {run} {device}", (told["offset"] - apart) / told["se"]
+    for run, rims in d["baseline"].items():
+        for push, told in rims.items():
+            side = "left" if push.endswith("l") else "right"
+            yield f"baseline {run} {push}", (told["offset"] - runs[run]["baseline_Nm"][side]) / told["se"]
+
+
+def missed(parameters: list[Mapping[str, Any]], true: Mapping[str, float]) -> Iterator[str]:
+    """Intervals of 95 % that do not hold what was hidden."""
+    for p in parameters:
+        if p["interval"] and p["name"] in true and not p["interval"][0] <= true[p["name"]] <= p["interval"][1]:
+            low, high = p["interval"]
+            yield f"{p['name']} {low:.4g} to {high:.4g}, hidden {true[p['name']]:.4g}"
+
+
+def row(measurements: Path, lab: str, folder: Path) -> dict[str, Any]:
+    """What was said of a lab, and how far off it is."""
+    answer = json.loads((measurements / "lab-answers.json").read_text())[lab]
+    d = diagnose(read(folder), generic=library())
+    told, hidden = as_json(d), answer["hidden"]
+    parameters = final(d, {p.name: p for e in library().values() for p in e.owned})["parameters"]
+    floors, last = answer["floor_of_the_held_out_runs"], told["physical"]
+    counts = inside(d)
+    within, there_are = (sum(one) for one in zip(*counts.values(), strict=True))
+    z = dict(off(told, folder, answer["runs"]))
+    floor = GRAVITY * hidden["floor_slope_rms"] * hidden["m"]
+    known = {p["name"] for p in parameters if p["interval"]} & truths(hidden).keys()
+    return {
+        "verdict": told["verdict"],
+        "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
+        "hidden": answer["verdict"],
+        "heldout": {"calibrated": told["ladder"][1]["heldout"], "last": told["ladder"][-1]["heldout"]},
+        "hub_speed": {run: _speed(last, run) for run in floors},
+        "yaw_rate": {run: last["yaw_rate"]["runs"][run] for run in floors if "yaw_rate" in last},
+        "reachable": {run: floor_["true_rider"] for run, floor_ in floors.items()},
+        "clocks": {k: v for k, v in z.items() if k.startswith("clock")},
+        "baselines": {k: v for k, v in z.items() if k.startswith("baseline")},
+        "force": (told["disturbance"]["force"], floor),
+        "moment": (told["disturbance"]["moment"], floor * hidden["b"]),
+        "body": told["disturbance"]["body"],
+        "inside": {"all": within / there_are, **{c: a / b for c, (a, b) in counts.items()}},
+        "intervals": len(known),
+        "missed": list(missed(parameters, truths(hidden))),
+        "parameters": parameters,
+        "seconds": told["seconds"],
+    }
+
+
+def _speed(last: Mapping[str, Any], run: str) -> float:
+    """RMS error of both wheels' speeds in m/s."""
+    return float(np.sqrt(np.mean([last[f"wheel_speed_{side}"]["runs"][run] ** 2 for side in "lr"])))
+
+
+def lines(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """A line for each figure: what it is, and how it came out."""
+    hidden, held = found["hidden"], found["heldout"]
+    yield "said", f"{found['verdict']}: {', '.join(found['named']) or 'nothing'}"
+    yield "hidden", ", ".join([*hidden["missing"], *(f"({e})" for e in hidden.get("small", ()))])
+    yield "held out, whitened", f"{held['calibrated']:.2f} calibrated, {held['last']:.2f} in the end"
+    for run, best in found["reachable"].items():
+        speed = found["hub_speed"][run]
+        yield f"{run} wheels", f"{speed:.4f} m/s, reachable {best['hub_speed_rms']:.4f}: {speed / best['hub_speed_rms']:.2f}"
+        if run in found["yaw_rate"]:
+            turn = found["yaw_rate"][run]
+            yield (
+                f"{run} yaw rate",
+                f"{turn:.2f} °/s, reachable {best['yaw_rate_rms_deg_s']:.2f}: {turn / best['yaw_rate_rms_deg_s']:.2f}",
+            )
+    for what in ("clocks", "baselines"):
+        z = np.abs([*found[what].values()])
+        worst = max(found[what], key=lambda name: abs(found[what][name]))
+        yield what, f"{(z < 2).mean():.0%} of {len(z)} within two standard errors, {worst} off by {z.max():.1f}"
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        told, floor = found[what]
+        yield f"unrecorded {what}", f"{told:.2f} {unit}, the floor's {floor:.2f}: {told / floor:.2f}"
+    yield "unrecorded swing", f"{found['body']:.2f} N s"
+    channels = ", ".join(f"{c} {share:.0%}" for c, share in found["inside"].items() if c != "all")
+    yield "in bands of 95 %", f"{found['inside']['all']:.1%}: {channels}"
+    yield "intervals of 95 %", f"{len(found['missed'])} of {found['intervals']} miss: {'; '.join(found['missed']) or 'none'}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.labs", description=__doc__)
+    parser.add_argument("labs", nargs="*", default=[*GIVEN], help="of these, all by default")
+    parser.add_argument("--measurements", type=Path, default=MEASUREMENTS, help="the folder with the labs and their answers")
+    parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
+    chosen = parser.parse_args()
+    chosen.out.mkdir(parents=True, exist_ok=True)
+    for lab in chosen.labs:
+        with tempfile.TemporaryDirectory() as place:
+            found = row(chosen.measurements, lab, imported(chosen.measurements, lab, Path(place) / lab))
+        (chosen.out / f"{lab}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        table = Table(title=f"{lab}, {found['seconds']:.0f} s", show_header=False)
+        for line in lines(found):
+            table.add_row(*line)
+        Console(width=150).print(table)
+
+
+if __name__ == "__main__":
+    main()
