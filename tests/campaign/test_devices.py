@@ -125,6 +125,20 @@ def test_every_sample_stands_at_its_own_time(lab):
     assert [(c.device, c.sd, set(c.channels)) for c in run.clocks] == [("imu", 0.002, {"yaw_rate", "a_x"})]
 
 
+def test_markers_on_the_axle_say_nothing_of_the_centre_of_mass(lab):
+    """How far it is before them is estimated: readings that held what was given would vouch for it."""
+    campaigns = [read(lab)]
+    edited(lab, "b = 0.1", "b = 0.13")
+    campaigns.append(read(lab))
+    for campaign in campaigns:
+        (run,) = campaign.runs
+        there = np.isfinite(run.channels["x"])
+        axle = moved(run.time[there])["cm"] - 0.1 * np.stack([part(moved(run.time[there])["yaw"]) for part in (np.cos, np.sin)])
+        for channel, true in zip("xy", axle, strict=True):
+            np.testing.assert_allclose(run.channels[channel][there], true, atol=0.003)
+        assert campaign.known["effect.marker_offset.from_axle"] == 1.0 and "marker_offset" in campaign.effects
+
+
 def test_units_signs_axes_and_radius_are_each_devices_own(lab):
     campaign = read(lab)
     (run,) = campaign.runs

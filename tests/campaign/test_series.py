@@ -127,3 +127,11 @@ def test_a_series_that_grows_begins_where_its_line_does():
     assert began(time, speeds) == pytest.approx(0.4, abs=0.005)
     assert began(time[::5], speeds[::5]) == pytest.approx(np.median(speeds[::5][:10]))
     assert began(time, np.full(len(time), np.nan)) is None
+
+
+def test_steps_of_the_way_are_no_converters():
+    """A marker of 0.2 mm that moves on at 2.7 m/s is never at one place twice; a counter of 0.5 mm is."""
+    time, rng = np.arange(0, 0.75, 1 / 120), np.random.default_rng(3)
+    way = 2.7 * time + 0.3 * time**2 + rng.normal(0, 2e-4, len(time))
+    assert estimate([way]) == pytest.approx(2e-4, rel=0.35)
+    assert estimate([0.01 * np.round(2.7 * time / 0.01)]) >= 0.01 / np.sqrt(12)

@@ -16,11 +16,11 @@ T_R = 0.55
 Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  # of a run and its results without: F, M (n,)
 
 
-def wandering(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
-    """A first-order Gauss–Markov process (n,) that is forgotten over FORGOTTEN seconds."""
+def wandering(rng: np.random.Generator, time: np.ndarray, sd: float, lasting: float = FORGOTTEN) -> np.ndarray:
+    """A first-order Gauss–Markov process (n,) that is forgotten over so many seconds."""
     out, level = np.empty(len(time)), sd * rng.standard_normal()
     for i, gap in enumerate(np.diff(time, prepend=time[0])):
-        keeps = np.exp(-gap / FORGOTTEN)
+        keeps = np.exp(-gap / lasting)
         level = keeps * level + np.sqrt(1 - keeps**2) * sd * rng.standard_normal()
         out[i] = level
     return out

@@ -31,6 +31,14 @@ def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     assert float(np.mean(whole.r**2)) == pytest.approx(1, abs=0.03)
 
 
+def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
+    """Slopes that are alike over 0.4 m, at 1.2 m/s."""
+    rng = np.random.default_rng(11)
+    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, run.time, 0.4, 0.33)))
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    assert found.lasting == pytest.approx(0.33, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
+
+
 def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
     """It pushes by what its momentum changes, forward as much as backward; a floor leans on the chair for a while."""
     rng, swings = np.random.default_rng(7), 2.0

@@ -70,6 +70,13 @@ def test_a_wrong_size_is_said():
     assert notes == ["yaw_rate: its noise is about 0.006 (SI), not the 0.6 stated; the data's own is used"]
 
 
+def test_what_is_as_smooth_as_motion_tells_no_noise():
+    """Markers that were filtered and interpolated show next to none of their own, and a model that is far off leaves smooth
+    errors of them: noise of a micrometre would make every error a certainty."""
+    noise_model, notes = coloured(1e-9, 0.0, 0.004, times=5e8, hertz=0.02)
+    assert noise_model.sd["yaw_rate"] == 0.004 and not notes and not noise_model.ar.get("yaw_rate")
+
+
 @pytest.mark.parametrize(("phi", "stated", "expected"), [(0.9, 0.4, 0.9), (0.0, 0.4, None), (0.0, 0.6, None)])
 def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
     """Strokes of 40 N with kinks, and noise of 0.4 N; white noise that was stated half as large again is none."""

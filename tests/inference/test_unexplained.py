@@ -112,3 +112,11 @@ def test_what_stays_the_same_is_a_floors_where_that_is_flat(force, counts):
     same = (Order("force", CONSTANT, 0.6, "the missing force stays the same throughout"),)
     left = Unexplained(Strength(force, 0.1, 0.0, 9.0), Strength(force, 0.1, 0.0, 9.0), same, (object(),), 800.0, 0.2)
     assert (left.ordered == same) == counts
+
+
+def test_the_largest_force_that_is_looked_at_may_be_larger():
+    beyond, some = Strength(500.0, 100.0, 500.0, 1.0), Strength(146.0, 0.523, 0.0, 1.0)
+    assert Unexplained(beyond, some, ()).words == [
+        "As calibrated, the model needs at least 500 N, at least 100 N m and a swing of the rider's body of at least 500 N s "
+        "that nobody recorded; in the end, 150 N and 0.52 N m."
+    ]

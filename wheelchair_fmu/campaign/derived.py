@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..faults import Fault, run_fault, suggestion
-from ..model.chassis import DEFAULTS
 from ..tables import Table
 from ..units import UnitError, factor, split
 from . import body
 from .angles import TURN, unwrapped
 from .devices import Part
-from .document import Document, number
 
 ENDS = ("axle_l", "axle_r")  # markers on the rear axle
 ROOM = ("x", "y")
@@ -49,16 +47,16 @@ def _metres(end: str, table: Table, at: int) -> float:
     return factor(unit, "m")
 
 
-def pose(part: Part, markers: Mapping[str, np.ndarray], doc: Document) -> dict[str, np.ndarray]:
-    """x, y and yaw (n,) of the centre of mass from markers at the ends of the rear axle, in m by "axle_l.x" and so on."""
+def pose(markers: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """x, y and yaw (n,) of the middle of the rear axle from markers at its ends, in m by "axle_l.x" and so on.
+
+    Where the centre of mass is before it is estimated, and would be known better than it is if readings held what was given.
+    """
     if not markers:
         return {}
     left, right = (np.stack([markers[f"{end}.{axis}"] for axis in ROOM]) for end in ENDS)
     across, middle = right - left, (right + left) / 2  # the axle points to the right
-    yaw = unwrapped(np.arctan2(-across[0], across[1]), TURN)
-    b = number(doc.table("chair").get("b"))
-    forward = (DEFAULTS["chair.b"] if b is None else b) * np.stack([np.cos(yaw), np.sin(yaw)])
-    return {"x": middle[0] + forward[0], "y": middle[1] + forward[1], "yaw": yaw}
+    return {"x": middle[0], "y": middle[1], "yaw": unwrapped(np.arctan2(-across[0], across[1]), TURN)}
 
 
 def position(

@@ -173,7 +173,7 @@ def _converted(
     angles = {name: series.pop(name) for name in (c.name for c in SOURCES) if name in series}
     values = to_sae(series, part.device.axes)
     marked = {name: rows.values[i][kept] * scale for name, (i, scale) in markers.items()}
-    values |= pose(part, marked, doc)
+    values |= pose(marked)
     noise: dict[str, float] = {}
     moved = position(part, marked, time, values.get("yaw"))
     values |= {} if moved is None or POSITION in values else {POSITION: moved}

@@ -198,6 +198,8 @@ def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:
     for effect, names in MOUNTED.items():
         at = next((points[name] for name in names if points.get(name)), None)
         known |= {} if at is None else {f"effect.{effect}.{axis}": value for axis, value in zip("xy", at, strict=True)}
+    if any(d.part.device.markers and "x" in d.channels for run in runs for d in run.drafts):
+        known["effect.marker_offset.from_axle"] = 1.0
     return known
 
 

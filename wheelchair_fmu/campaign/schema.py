@@ -187,8 +187,8 @@ RECORDING = TableRecord(
         Key(
             "markers",
             "table",
-            "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which x, y and yaw follow; and on "
-            f"the rider's body ({', '.join(body.MARKERS)}), from which rider.s and rider.momentum follow.",
+            "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which yaw, and x and y of its "
+            f"middle follow; and on the body ({', '.join(body.MARKERS)}), from which rider.s and rider.momentum follow.",
             example='markers = { axle_l = "LHUB", axle_r = "RHUB", sternum = "STERNUM" }',
             fault="no column 'LHUB.x' for the marker axle_l",
         ),

@@ -17,6 +17,7 @@ RARE = 0.01  # of all samples, and
 FEW = 3  # of a run; what is more frequent is how this sensor reads
 FIRST, LINE = 0.2, 8  # s from which a series' first value is taken, by a line if that is so many samples; of fewer
 GLANCED = 10_000  # readings, which a converter that is finer than the noise shows itself in
+MULTIPLES, WHOLE = 50, 0.1  # of a converter's step, that are looked at; and how near to whole numbers they are read
 MEDIAN = 10  # samples the median says it better
 
 
@@ -64,10 +65,15 @@ def scatter(third: np.ndarray) -> float | None:
 
 
 def _quantum(values: np.ndarray) -> float:
-    """The smallest step between two different values: what the converter resolves."""
+    """The smallest step between two different values: what the converter resolves, if all others are multiples of it. Of a
+    marker that moves on all the time it is a step of its way."""
     values = np.unique(values)
     steps = np.diff(values[np.isfinite(values)])
-    return float(steps.min()) if steps.size else 0.0
+    if not steps.size:
+        return 0.0
+    times = steps / steps.min()
+    times = times[times < MULTIPLES]
+    return float(steps.min()) if np.all(np.abs(times - np.round(times)) < WHOLE) else 0.0
 
 
 def tells(series: np.ndarray) -> bool:

@@ -90,6 +90,16 @@ def test_a_marker_beside_the_cm_draws_its_own_path():
     np.testing.assert_allclose((result["sensor.u"] + 1j * result["sensor.v"])[SETTLED], speed[SETTLED], atol=2e-6)
 
 
+@pytest.mark.effect("marker_offset")
+@pytest.mark.parametrize("b", [0.05, 0.2])
+def test_markers_on_the_axle_are_read_there_wherever_the_cm_is(b):
+    """Its middle hardly slips, and is b behind the CM."""
+    result = run({"chair.b": b, "effect.marker_offset.from_axle": 1.0, "effect.marker_offset.y": 0.02}, among=ALL)
+    to_room = np.exp(1j * result["chair.psi"])
+    marker, cm = (result[f"{of}.x"] + 1j * result[f"{of}.y"] for of in ("sensor", "chair"))
+    np.testing.assert_allclose((marker - cm) / to_room, -b + 0.02j, atol=1e-9)
+
+
 @pytest.mark.effect("accelerometer_tilt")
 @pytest.mark.parametrize(("roll", "pitch"), [(0.2, 0.0), (0.0, 0.3), (-0.3, 0.2)])
 def test_a_tilted_accelerometer_reads_along_its_own_axes(roll, pitch):

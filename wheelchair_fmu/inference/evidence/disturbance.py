@@ -25,7 +25,8 @@ USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 # times these, from where the search may start
 START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
-LASTING = (0.5, 1.0)  # s: what is forgotten sooner is a stroke or a sensor's noise, and what lasts longer an effect
+# s: a chair feels no slope for less than its own length, 0.4 m, at the 1.3 m/s of a walk; what lasts longer is an effect
+LASTING = (0.3, 1.0)
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-3  # and share of a strength over which its slope is taken
 ROUNDS = 5  # in which a path and a strength are found, at most,

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...campaign import Run
 from ...campaign.channels import TELLS
+from ...model.chassis import DEFAULTS
 from ...model.frames import to_room, velocity_at
 from .local import locals_of
 
@@ -47,6 +48,7 @@ def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = STA
 def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) -> dict[str, float]:
     """The start of the CM, where position and speed were read at another point of the frame."""
     x, y = (known.get(f"effect.marker_offset.{axis}", 0.0) for axis in "xy")
+    x -= known.get("effect.marker_offset.from_axle", 0.0) * known.get("chair.b", DEFAULTS["chair.b"])
     psi, turn = found["start.psi"], found["start.psi_dot"]
     lever = dict(zip(("start.x", "start.y"), to_room(x, y, psi), strict=True))
     lever["start.u"], _ = velocity_at(x, y, 0.0, 0.0, turn)

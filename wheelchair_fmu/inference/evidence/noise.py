@@ -6,7 +6,7 @@ d(i + k) − d(i) is 2σ²(1 − φ^k) for AR(1) noise, plus about c k² of what
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,22 +26,26 @@ SLOW = 0.98  # or one that could be right where noise is so slow that LAGS sampl
 ENDLESS = 0.99  # AR(1) coefficient of what walks at random, as a chair on a rough floor does
 MOST = 0.995  # the largest that is looked at
 ENOUGH = 100  # samples of a channel in a run that tell its noise there
+TOLD = 0.01  # share of the change from one reading to the next, at least, that tells noise: motion is c k² no better than that
 
 
 def noise_model_of(
-    evidence: Evidence, stated: Mapping[str, float], taken: NoiseModel, lowest: float = 0.0
+    evidence: Evidence, stated: Mapping[str, float], taken: NoiseModel, lowest: float = 0.0, estimated: Container[str] = ()
 ) -> tuple[NoiseModel, list[str]]:
     """Noise by channel, and a sentence for each channel where the data contradict the campaign file.
 
     The innovations of `evidence` are by the noise `taken` so far; where they change as white noise does, and errors
-    have a mean square of `lowest` or more, it is right.
+    have a mean square of `lowest` or more, it is right. Where errors change as smoothly as motion does, they tell no noise, and
+    what the file says stands; of channels `estimated` that is what their readings show by themselves.
     """
     sd, ar, notes = dict(stated), {}, []
     for channel in dict.fromkeys(c for e in evidence.runs for c in e.channels):
         if _white(evidence, channel, lowest):
             sigma, phi = taken.sd[channel], taken.ar.get(channel, 0.0)
+        elif (told := _fit_structure(*_structure(_residuals(evidence, channel)))) is None:
+            continue
         else:
-            sigma, phi = _fit_structure(*_structure(_residuals(evidence, channel)))
+            sigma, phi = told
         ratio = sigma / stated[channel] if stated[channel] > 0 else np.inf
         # what is slow may as well be what the model lacks, and what never settles is
         slow = phi > SLOW and ratio > 1 and ((1 - phi) * ratio**2 < 1 or phi >= ENDLESS)
@@ -51,8 +55,11 @@ def noise_model_of(
             ar[channel] = max(0.0, 1 - (1 - phi) * ratio**2) if trusted else phi
         if not trusted:
             sd[channel] = sigma
+            known = (
+                ("stated", "the data's own") if channel not in estimated else ("its readings show alone", "what a model leaves")
+            )
             notes.append(
-                f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} stated; the data's own is used"
+                f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} {known[0]}; {known[1]} is used"
             )
     pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in FORCES}
     ar |= {side: phi for side, phi in pushes.items() if phi > STEADY}
@@ -118,8 +125,8 @@ def _structure(residuals: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.n
     return np.array(lags), np.array(means)
 
 
-def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
-    """(σ, φ) from the mean square changes D (m,) over k (m,) readings."""
+def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float] | None:
+    """(σ, φ) from the mean square changes D (m,) over k (m,) readings; None where they are those of something smooth."""
     scale = max(float(D[0]), 1e-300)
 
     def off(q: np.ndarray) -> np.ndarray:
@@ -133,4 +140,5 @@ def _fit_structure(k: np.ndarray, D: np.ndarray) -> tuple[float, float]:
         ),
         key=lambda s: s.cost,
     )
-    return float(np.sqrt(np.exp(best.x[0]) * scale)), float(best.x[1])
+    share, phi = 2 * float(np.exp(best.x[0])) * (1 - float(best.x[1]) ** k[0]), float(best.x[1])
+    return (float(np.sqrt(np.exp(best.x[0]) * scale)), phi) if share > TOLD else None

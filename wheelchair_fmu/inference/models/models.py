@@ -120,7 +120,8 @@ class Models:
         """Take the noise that this fit's residuals show, and say whether it is another than before. `again`: now that an effect
         is in that was missing when the noise was estimated."""
         before, lowest = self.factory.noise_model, QUIETER if again else 0.0
-        now, notes = noise_model_of(found.evidence, self.factory.campaign.noise, before, lowest)
+        campaign = self.factory.campaign
+        now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
         if self.factory.leads:
             chair = self.factory.likelihood().chair(found.values)
             forces = strength(found.evidence, chair["chair.t_r"])

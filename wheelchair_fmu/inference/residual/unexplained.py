@@ -16,7 +16,7 @@ import numpy as np
 
 from ...engine.smoothing import smoothed
 from ..estimation.fit import Fit
-from ..evidence.disturbance import Strength, disturbed
+from ..evidence.disturbance import MOST, USUAL, Strength, disturbed
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel, pushes_of
@@ -30,6 +30,7 @@ SHARE = 0.25  # of a force's mean square in other runs that an order must forete
 LONE = 0.5  # of its sum of squares, in a part of a run that is
 BRIEF = 0.2  # of all that was recorded, or less: something happened there
 WINDOW = 1.0  # s, either side of where most happened
+AT_MOST = 0.99  # of the largest force that is looked at
 FLAT = 0.005  # slope: DIN 18202 lets a finished floor that counts as flat be 4 mm out over a metre
 ORDERS = (1, 2)  # times per turn of a wheel
 HARMONICS = (1, 2, 3)  # times per stroke
@@ -109,9 +110,16 @@ def _figures(s: Strength) -> dict[str, float]:
 def _size(s: Strength) -> str:
     if not s.fall:
         return "no force and no moment"
+    force, moment, body = (_told(*pair) for pair in zip((s.force, s.moment, s.body), USUAL * MOST, strict=True))
     if not s.body:
-        return f"{s.force:.2g} N and {s.moment:.2g} N m"
-    return f"{s.force:.2g} N, {s.moment:.2g} N m and a swing of the rider's body of {s.body:.2g} N s"
+        return f"{force} N and {moment} N m"
+    return f"{force} N, {moment} N m and a swing of the rider's body of {body} N s"
+
+
+def _told(size: float, most: float) -> str:
+    """To two digits, and without powers of ten; one that is as large as any that is looked at may be larger."""
+    digits = f"{float(f'{size:.2g}'):g}"
+    return f"at least {digits}" if size > AT_MOST * most else digits
 
 
 def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Strength, evidence: Evidence) -> Unexplained:
