@@ -67,10 +67,10 @@ def support(
         at, scatter = (axes @ mean)[lawful], np.sqrt((axes**2 @ variance)[lawful])
         sides = np.divide(at, scatter, out=np.zeros(len(at)), where=scatter > 0)  # of what nobody sees, either is as likely
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
-        left = float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
+        left = own * float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
         width = spread + sd**2
         paid = float(np.sum(np.log(width / spread) + along**2 / width))
-        value = 0.5 * (fall + (1 - own * left) * ahead) - 0.5 * paid + allowed
+        value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * paid + allowed
         return value, left
 
     mean, variance = posterior(policy.large)
