@@ -14,7 +14,16 @@ from typing import Any
 from .loop_cost import SAMPLE
 
 DIAGNOSIS = Path("tests/sample-diagnosis.json")
-OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
+OPTIONS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 EXACT = "() => window.report?.settled && document.getElementById('status').dataset.state === 'exact'"
 ASIDE = 3000  # ms in which what is simulated aside comes to its end
 

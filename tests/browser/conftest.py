@@ -13,22 +13,13 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from benchmarks.page_open import OPTIONS
 from tests.kit import SAMPLE_DIAGNOSIS as DIAGNOSIS
 from tests.kit import shared
 from wheelchair_fmu.cli.main import app
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "examples" / "sample-campaign"
-OPTIONS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 LOOKS = [  # schemes and widths; two show each of both
     ("light", 1280),
     ("dark", 390),

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
+from benchmarks.labs import AT, GIVEN
 from tests.campaign import lab
 from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
@@ -172,14 +173,6 @@ def test_devices_that_share_nothing_are_said(tmp_path):
     assert "is not sure: give it in clocks" in (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")
 
 
-GIVEN = {
-    "lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43),
-    "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
-    "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
-}
-
-
-AT = {"lab-00": "", "lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}  # where the inertial sensor sits
 ZEROED = {"lab-02": ("F_rl", "F_rr")}  # rims that need no baseline, by the protocol
 
 
@@ -191,7 +184,7 @@ def by_hand(name: str, text: str) -> tuple[str, int]:
     for key, value in (("a", wheelbase - b), ("b", b), ("t_f", t_f)):
         at = next(i for i, line in enumerate(lines) if line.startswith(f"# {key} = "))
         lines[at] = f"{key} = {value:.3f}"
-    if AT[name]:
+    if name in AT:
         at = next(i for i, line in enumerate(lines) if line.startswith("# at = "))
         lines[at] = f"at = {AT[name]}"
     noise = lines.index(next(line for line in lines if line.startswith("# [noise]")))

@@ -6,8 +6,10 @@ import json
 
 import pytest
 
+from benchmarks.labs import GIVEN, imported
 from tests.browser.conftest import Reader, browser, report_of  # noqa: F401 (which is a fixture)
 from tests.campaign.test_measurements import MEASUREMENTS
+from tests.campaign.test_measurements import folder as measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.final import final
 from wheelchair_fmu.inference.decision.verdict import diagnose
@@ -15,30 +17,16 @@ from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 
-from .test_import import GIVEN, imported, measured
-
-AT = {"lab-00": None, "lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}  # where the inertial sensor sits
-
 WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
 
 
-@pytest.fixture(scope="module", params=AT)
+@pytest.fixture(scope="module", params=GIVEN)
 def found(request, tmp_path_factory):
     """A lab's name, its diagnosis, and its folder."""
     if request.param == "lab-02":
         pytest.importorskip("openpyxl", reason="reading a workbook needs openpyxl")
-    mass, radius, track, wheelbase, b, t_f = GIVEN[request.param]
-    out = tmp_path_factory.mktemp("lab") / request.param
-    answers = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[request.param]["runs"]
-    kept = [word for run, told in answers.items() if told["role"] == "holdout" for word in ("--holdout", run)]
-    done = imported(measured(request.param), "-o", out, "--mass", mass, "--radius", radius, "--track", track, *kept)
-    assert done.exit_code == 0, done.output
-    text = (out / "campaign.toml").read_text(encoding="utf-8")
-    for key, value in (("a = ", wheelbase - b), ("b = ", b), ("t_f = ", t_f)):
-        text = text.replace(f"# {key}", f"{key}{value:.3f} #", 1)
-    if AT[request.param]:
-        text = text.replace("# at = [0.0, 0.0]", f"at = {AT[request.param]} #", 1)
-    (out / "campaign.toml").write_text(text, encoding="utf-8")
+    measured(request.param)
+    out = imported(MEASUREMENTS, request.param, tmp_path_factory.mktemp("lab") / request.param)
     return request.param, diagnose(read(out)), out
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from wheelchair_fmu.inference.decision.verdict import _instead_of_small
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
@@ -143,6 +144,10 @@ def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     r = Round((), NONE, Evidence((), ()), (None,) * 30, tuple(ranked([slight, large])))
     assert r.winner is None and r.slight[0].effect == "a"
     assert replace(r, candidates=(large,)).winner.effect == "b"
+    assert _instead_of_small(r) == ()
+    near = replace(large, drop=98.0)
+    (said,) = _instead_of_small(replace(r, candidates=tuple(ranked([slight, near]))))
+    assert said.startswith("b would do as well, and would not be small: 3.0 times what is of interest; the odds are ")
 
 
 def test_what_is_found_is_there_as_often_as_it_says():

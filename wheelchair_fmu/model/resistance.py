@@ -63,7 +63,6 @@ PARAMETERS = (
 
 
 LIGHTEST = 1.0  # N; a wheel that carries less is off the ground
-ROUNDED = 1e-12  # keeps what friction along a wheel leaves of its side force above zero, where rounding could take it below
 
 
 @stage(

@@ -28,7 +28,7 @@ def without_held_out() -> dict:
 def at_a_bound() -> dict:
     found = told()
     of_mass = next(p for p in found["final"]["parameters"] if p["name"] == "chair.m")
-    of_mass |= {"estimate": 88.0, "at_bound": True}
+    of_mass |= {"estimate": 88.0, "at_bound": True, "interval": None, "interval_by": None}
     return found
 
 

@@ -406,13 +406,10 @@ def _slight(first: Round) -> tuple[str, ...]:
 def _instead_of_small(first: Round) -> tuple[str, ...]:
     """A sentence for each effect that would be large, and that data cannot tell from those that are slight."""
     likeliest = max((c.support.slight for c in first.slight), default=0.0)
-    near = [
-        c
-        for c in first.candidates
-        if c.matters and not c.worsens and 2 * (likeliest - first.log_prior - c.support.large) < first.policy.tied
-    ]
+    behind = ((c, likeliest - first.log_prior - c.support.large) for c in first.candidates if c.matters and not c.worsens)
     return tuple(
         f"{c.effect} would do as well, and would not be small: {np.linalg.norm(c.estimate / c.delta):.1f} times what is of "
-        f"interest; the odds are {np.exp(likeliest - first.log_prior - c.support.large):.0f} to 1 against it"
-        for c in near
+        f"interest; the odds are {np.exp(log_odds):.0f} to 1 against it"
+        for c, log_odds in behind
+        if 2 * log_odds < first.policy.tied
     )

@@ -53,7 +53,8 @@ def support(
     axes, spread = seen_axes(covariance)
     along = axes.T @ size
     # How much of a fall belongs to the size: where more falls than standard errors say, most of it is not for them to tell.
-    own = min(1.0, float(np.sum(along**2 / spread)) / max(fall, LEAST))
+    away = float(np.sum(along**2 / spread))
+    own = min(1.0, away / max(fall, LEAST))
     one = float(np.linalg.norm(axes, axis=1).max())  # what δ of the parameter that shows most does along the seen directions
 
     def posterior(sd: float) -> tuple[np.ndarray, np.ndarray]:
@@ -67,7 +68,7 @@ def support(
         at, scatter = (axes @ mean)[lawful], np.sqrt((axes**2 @ variance)[lawful])
         sides = np.divide(at, scatter, out=np.zeros(len(at)), where=scatter > 0)  # of what nobody sees, either is as likely
         allowed = float(np.sum(special.log_ndtr(sides) + log(2)))
-        left = own * float(np.sum((along - mean) ** 2 / spread)) / max(float(np.sum(along**2 / spread)), LEAST)
+        left = own * float(np.sum((along - mean) ** 2 / spread)) / max(away, LEAST)
         width = spread + sd**2
         paid = float(np.sum(np.log(width / spread) + along**2 / width))
         value = 0.5 * (fall + (1 - left) * ahead) - 0.5 * paid + allowed

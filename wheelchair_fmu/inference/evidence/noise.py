@@ -26,7 +26,9 @@ SLOW = 0.98  # or one that could be right where noise is so slow that LAGS sampl
 ENDLESS = 0.99  # AR(1) coefficient of what walks at random, as a chair on a rough floor does
 MOST = 0.995  # the largest that is looked at
 ENOUGH = 100  # samples of a channel in a run that tell its noise there
-TOLD = 0.01  # share of the change from one reading to the next, at least, that tells noise: motion is c k² no better than that
+TOLD = (
+    0.01  # share of noise in the change between readings, below which it is not told: motion follows c k² no better than that
+)
 
 
 def noise_model_of(

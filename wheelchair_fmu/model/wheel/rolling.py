@@ -5,10 +5,11 @@ from __future__ import annotations
 import casadi as cs
 
 from ...quantities import M_S, ONE, REAR, N
-from ..resistance import LIGHTEST, ROUNDED
+from ..resistance import LIGHTEST
 from ..smooth import speed
 from ..stage import Alternative, define, stage
 
+ROUNDED = 1e-12  # keeps what friction along a wheel leaves of its side force above zero, where rounding could take it below
 FRICTION = (
     define("locked", ONE, "0 where a rear wheel rolls, 1 where it slides along its plane", "+swap", REAR),
     define("braking", N, "friction that each rear wheel uses along its plane, μN where it slides", "+swap", REAR),

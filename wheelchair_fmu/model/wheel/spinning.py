@@ -12,7 +12,8 @@ two it is some of each, as (P/μN)⁸ says, so that no force jumps.
 
 It only loses energy: of what the rim gives, w F_x, the hub gets v_x F_x, and s F_x is never below zero. With a light wheel, a
 stiff patch, and no push or brake near friction, it is the law `rolling`; a heavy wheel is its effect `wheel_inertia` there, and
-a soft patch its `longitudinal_slip`. Here that inertia is the wheel's own, and the two effects would add to it.
+a soft patch its `longitudinal_slip`. Here that inertia is the wheel's own, to which `wheel_inertia` would add, and so is the
+slip of its patch, to which `longitudinal_slip` adds nothing.
 """
 
 from __future__ import annotations

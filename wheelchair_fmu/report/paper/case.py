@@ -104,10 +104,9 @@ class Case:
 
 def interval(parameter: Mapping[str, Any]) -> tuple[float, float, str]:
     """The ends of a 95 % interval (SI) and how it was found; NaN where there is none, as of a value that a bound stopped."""
-    profiled = parameter.get("interval_by", "profile") == "profile"
-    if parameter["interval"] and (profiled or not parameter["at_bound"]):
+    if parameter["interval"]:
         lower, upper = parameter["interval"]
-        return float(lower), float(upper), PROFILE if profiled else BY_ERRORS
+        return float(lower), float(upper), PROFILE if parameter.get("interval_by", "profile") == "profile" else BY_ERRORS
     if parameter["se"] is None or parameter["at_bound"]:
         return nan, nan, ""
     half = NORMAL * parameter["se"]
