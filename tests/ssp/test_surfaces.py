@@ -66,6 +66,11 @@ def test_a_set_s_floor_too_and_the_bundled_one_is_carpet(tmp_path):
         assert float(given.settings["carpet.rolling_factor"].value) == pytest.approx(SURFACES[expected].factor(), rel=1e-9)
 
 
+def test_the_command_asks_for_a_mass_that_a_chair_can_have():
+    refused = CliRunner().invoke(app, ["surfaces", "--mass", "-3"])
+    assert refused.exit_code == 2 and "a mass of -3 kg is no chair's; give one above 0" in refused.output
+
+
 def test_the_command_prints_it():
     shown = CliRunner().invoke(app, ["surfaces", "--coefficient", "0.02", "--mass", "100", "--json"])
     told = {row["surface"]: row for row in json.loads(shown.stdout)["surfaces"]}

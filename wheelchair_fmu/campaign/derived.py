@@ -50,8 +50,8 @@ def _metres(end: str, table: Table, at: int) -> float:
 def pose(markers: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """x, y and yaw (n,) of the middle of the rear axle from markers at its ends, in m by "axle_l.x" and so on.
 
-    They are not moved to the centre of mass by the b that was given: readings that hold that value would make it look as if it had
-    been measured with them.
+    They are not moved to the centre of mass by the b that was given: readings that hold that value would make it look as if
+    it had been measured with them.
     """
     if not markers:
         return {}

@@ -8,6 +8,7 @@ import typer
 from rich import box
 from rich.table import Table
 
+from ..errors import UsageError
 from ..model.tyre.common import PARAMETERS, RATED
 from ..surroundings.surfaces import HARD, SURFACES
 from .files import print_json
@@ -26,6 +27,8 @@ def surfaces(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """How hard a chair rolls on floors that were measured, and on soft tyres."""
+    if not mass > 0:
+        raise UsageError(f"a mass of {mass:g} kg is no chair's; give one above 0")
     told: list[dict[str, Any]] = [
         {
             "surface": name,
