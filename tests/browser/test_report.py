@@ -11,14 +11,13 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 from PIL import Image
 
-from benchmarks.independent.campaigns import make
 from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
+from tests.flips import flipping
 from tests.kit import tracked, with_settings
-from wheelchair_fmu.campaign import BY_NAME, Campaign, moving, read
+from wheelchair_fmu.campaign import Campaign, moving, read
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.inference.decision.verdict import FORCES as UNRECORDED
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
@@ -144,23 +143,6 @@ def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browse
     again = reader.page.evaluate(quickly, values)
     assert again == pytest.approx(expected.runs[9].predicted[:, expected.runs[9].channels.index("yaw_rate")], abs=1e-5)
     reader.close()
-
-
-def flipping(folder: Path, chair: Variant, values: dict[str, float]) -> Campaign:
-    """Runs in which casters swing round, as this very chair goes, so that its errors are small and every path is plain."""
-    make(folder, {}, manoeuvres=("spin-right", "holdout-spin"))
-    slow, simulator, chance = read(folder), Simulator(chair), np.random.default_rng(1)
-    for run in slow.runs:
-        felt = {n: v + chance.normal(0, slow.noise["F_rl"] * n.startswith("push.F"), len(v)) for n, v in run.inputs.items()}
-        p = chair.vector({**slow.known, **values, "start.u": run.u0 or 0.0})
-        there = simulator.run(run.time, simulator.inputs(len(run.time), felt), p, tolerance=1e-6)
-        file = folder / "runs" / f"{run.name}.csv"
-        rows = pd.read_csv(file)
-        for channel in run.channels:
-            column = next(c for c in rows.columns if c.startswith(f"{channel} ["))
-            rows[column] = there[BY_NAME[channel].fmu] + chance.normal(0, slow.noise[channel], len(rows))
-        rows.to_csv(file, index=False)
-    return read(folder)
 
 
 @pytest.mark.nightly

@@ -71,6 +71,7 @@ def test_forces_that_nobody_recorded_are_part_of_the_covariance():
         assert white @ white == pytest.approx(signal.ravel() @ np.linalg.solve(V, signal.ravel()), rel=1e-8)
         assert filter_.logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
         assert filter_.response(np.ones((n, nq))).shape == (n, nz)
+        assert plain.misfit(unknown, signal[:, :, 0], mean) == pytest.approx(white @ white + filter_.logdet, rel=1e-12)
     assert plain.disturbed(replace(unknown, sd=np.zeros(2))).logdet == pytest.approx(plain.logdet, rel=1e-12)
 
 
@@ -98,31 +99,11 @@ def test_a_disturbance_is_smoothed_as_all_readings_have_it():
     apart = 0.5 ** np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
     for q, error in enumerate(noise.pushes):
         of_all = error**2 * apart @ pushed[q][:, keep] @ solve @ (signal.ravel() - offset)[keep]
-        np.testing.assert_allclose(filter_.smoothed_pushes(told)[:, q], of_all, rtol=1e-7, atol=1e-9)
+        np.testing.assert_allclose(filter_._noise(told)[:, q], of_all, rtol=1e-7, atol=1e-9)
     for d in (0, 1):
         cross = unknown.sd[d] ** 2 * lag @ by[d][:, keep]
         np.testing.assert_allclose(mean[:, d], cross @ solve @ (signal.ravel() - offset)[keep], rtol=1e-7, atol=1e-9)
         np.testing.assert_allclose(sd[:, d] ** 2, unknown.sd[d] ** 2 - np.diag(cross @ solve @ cross.T), rtol=1e-6)
-
-
-def test_how_unlikely_noise_is_counts_what_is_new_in_it():
-    """Against the inverse of the AR(1) covariance; after a gap all counts as new."""
-    rng = np.random.default_rng(7)
-    n, nx, nq, nz = 10, 2, 2, 2
-    noise = Noise(np.array([0.3, 0.5]), np.full(nq, 0.5), np.array([0.2, 0.4]), np.array([0.0, 0.6]), np.diag([0.1, 0.2]) ** 2)
-    off, pushed, present = rng.normal(size=(n, nz)), rng.normal(size=(n, nq)), np.ones((n, nz), bool)
-    filter_ = Whitener(drawn(rng, n, nx, nz, 0.4), [0, 1], noise, present)
-
-    def squares(series, sd, phi):
-        apart = np.abs(np.subtract.outer(np.arange(len(series)), np.arange(len(series))))
-        return series @ np.linalg.solve(sd**2 * float(phi) ** apart, series)
-
-    parts = [squares(off[:, 0], 0.2, 0.0), squares(off[:, 1], 0.4, 0.6)]
-    pushes = sum(squares(pushed[:, q], noise.pushes[q], 0.5) for q in (0, 1))
-    assert filter_.unlikely(off, pushed) == pytest.approx(sum(parts) + pushes)
-    off[4, 1] = np.nan
-    split = squares(off[:4, 1], 0.4, 0.6) + squares(off[5:, 1], 0.4, 0.6)
-    assert filter_.unlikely(off, pushed) == pytest.approx(parts[0] + split + pushes)
 
 
 def test_two_disturbances_that_one_white_noise_drives_go_through_the_filter_as_a_process_of_second_order():

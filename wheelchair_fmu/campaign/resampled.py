@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import binom
+from scipy.special import bdtrc
 
 REPEATED, JOINED = "repeated", "joined by straight lines"
 SURE = 1e-6  # how improbable it must be that readings stand still by chance
@@ -95,7 +95,7 @@ def _joined(values: np.ndarray) -> np.ndarray | None:
 
 
 def _still(still: int, count: int, rule: Rule) -> bool:
-    return still >= rule.still * count and float(binom.sf(still - 1, count, rule.chance)) < SURE
+    return still >= rule.still * count and float(bdtrc(still - 1, count, rule.chance)) < SURE
 
 
 def _step(levels: np.ndarray) -> float:

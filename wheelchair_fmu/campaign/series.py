@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from scipy.stats import theilslopes
 
 _MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
 _ENOUGH = 8  # differences
@@ -122,8 +121,10 @@ def began(time: np.ndarray, series: np.ndarray) -> float | None:
     first = time <= FIRST
     if first.sum() < LINE:
         return float(np.median(series[:MEDIAN])) if series.size else None
-    slope = theilslopes(series[first], time[first]).slope
-    return float(np.median(series[first] - slope * time[first]))
+    time, series = time[first], series[first]
+    earlier, later = np.triu_indices(len(time), 1)
+    slope = np.median((series[later] - series[earlier]) / (time[later] - time[earlier]))
+    return float(np.median(series - slope * time))
 
 
 def integral(time: np.ndarray, series: np.ndarray, at: np.ndarray) -> np.ndarray:

@@ -40,6 +40,7 @@ LEVELS = {
 VECTORS = {8: ("-mavx512f", "-mavx512dq", "-mavx512vl"), 4: ("-mavx2",), 2: ()}  # flags by how many numbers a vector holds
 RESTING = {"output": (2,), "still": (1, 2)}  # results of a chair's rows: its parameters are the same in all; its inputs, too
 ANYWHERE = 2  # numbers in a vector: what every processor of a system has
+SHORT = 4  # and as many as rows of one chair's derivatives and covariances make use of
 
 
 @dataclass(frozen=True)
@@ -103,11 +104,12 @@ def width() -> int:
         return ANYWHERE
 
 
-def helper(name: str) -> ctypes.CDLL:
-    """A hand-written C file of `csrc` that stands alone, compiled and loaded."""
+def helper(name: str, wide: int = ANYWHERE) -> ctypes.CDLL:
+    """A hand-written C file of `csrc` that stands alone, compiled for vectors of so many numbers, and loaded."""
     if there := shipped.library(_independent(name)):
         return there
-    return _loaded(kept(_name(name, compiler.SUFFIX), compiler.SUFFIX, lambda path: _compile_helper(name, path)))
+    key = _name(f"{name}-{wide}", compiler.SUFFIX)
+    return _loaded(kept(key, compiler.SUFFIX, lambda path: _compile_helper(name, path, wide)))
 
 
 def ship(wanted: Wanted, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
@@ -117,11 +119,11 @@ def ship(wanted: Wanted, system: str, suffix: str, cross: tuple[str, ...] | None
 
 def ship_helper(name: str, system: str, suffix: str, cross: tuple[str, ...] | None) -> Path:
     """The same for what `helper` would load."""
-    return shipped.put(_independent(name), system, suffix, partial(_compile_helper, name, cross=cross))
+    return shipped.put(_independent(name), system, suffix, partial(_compile_helper, name, wide=ANYWHERE, cross=cross))
 
 
-def _compile_helper(name: str, target: Path, cross: tuple[str, ...] | None = None) -> None:
-    compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3"], cross)
+def _compile_helper(name: str, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
+    compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3", *VECTORS[min(wide, SHORT)]], cross)
 
 
 def _loaded(path: Path) -> ctypes.CDLL:
@@ -184,9 +186,9 @@ def _by_hand(name: str, pushes: int, wide: int, cross: tuple[str, ...] | None) -
 
 
 def _flags(name: str, pushes: int, wide: int) -> list[str]:
-    """How one of the files of a library is compiled. Those of one chair, whose rows of derivatives are short, need no vectors
-    longer than four; no number depends on it, as nothing is contracted."""
-    longest = wide if name.endswith("lanes") else min(wide, 4)
+    """How one of the files of a library is compiled. Those of one chair, whose rows are short, need no long vectors; no number
+    depends on it, as nothing is contracted."""
+    longest = wide if name.endswith("lanes") else min(wide, SHORT)
     return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}", f"-DWC_LANES={wide}", *VECTORS[longest]]
 
 

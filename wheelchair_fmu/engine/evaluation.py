@@ -123,7 +123,8 @@ class Values:
 @dataclass(frozen=True)
 class Evaluation:
     """What `evaluate` finds: see evaluation.h. `start` (m + l,) and `path` (n, d) are where all is linearised, `by_parameter`
-    (n, ns, k) by the parameters that were asked for and the start's, `offset` (nx,), `pushed` (n, nq) as it was given."""
+    (n, ns, k) by the parameters that were asked for and the start's, `offset` (nx,), `pushed` (n, nq) the errors of the pushes
+    about which all is linearised."""
 
     start: np.ndarray
     path: np.ndarray
@@ -158,19 +159,21 @@ class Evaluator:
         path: np.ndarray | None,
         rounds: int,
         pushed: np.ndarray | None = None,
+        follows: bool = False,
     ) -> Evaluation:
         """The run from `start` (m + l,) along `path` (n, d), with pushes larger than their record by `pushed` (n, nq), and with
         derivatives `by` these parameters besides the start's.
 
         Its start is moved `rounds` times at most to where its readings want it; a run that is led goes where forces lead it, if
-        that is not 0. Raises SimulationError where the model cannot go on.
+        that is not 0. One that `follows` is linearised about the likeliest errors of its pushes, where slopes do not hold
+        as far as these lead. Raises SimulationError where the model cannot go on.
         """
         refuse_unrest(self.of.model, run.inputs, self.of.moving)
         place = _Place(self, run, values, by)
         place.view("start", (len(start),), "own")[:] = start
         place.view("path", place.path)[:] = 0.0 if path is None else path
         place.push(pushed)
-        status = self.of.library.wc_evaluate(*place.records, ctypes.c_int(rounds))
+        status = self.of.library.wc_evaluate(*place.records, ctypes.c_int(rounds)) or (place.follow() if follows else 0)
         if status == UNBOUNDED:
             raise SimulationError("what a clock or a baseline would do grows beyond all numbers; try other parameters")
         if status:
@@ -183,6 +186,7 @@ class _Place:
 
     def __init__(self, of: Evaluator, run: Recording, values: Values, by: Sequence[str]):
         self.run, self.n, self.nz = run, len(run.time), run.readings.shape[1]
+        self.library = of.of.library
         model, names = of.of.model, of._names
         self.nx, self.ny, self.ns, self.k = model.x.numel(), model.y.numel(), len(of.of.sensors), len(by) + len(run.starts)
         self.nd, self.l = 0 if run.unknown is None else len(run.unknown.sd), len(run.constants)
@@ -236,7 +240,7 @@ class _Place:
         )
         self._values = _Values(*(at[n] for n in ("p", "offsets", "numbers")))
         self.record, self._recording, rooms = _Evaluation(), recording, (ctypes.c_long * 2)()
-        lay = of.of.library.wc_evaluation_room
+        lay = self.library.wc_evaluation_room
         lay(ctypes.byref(recording), ctypes.byref(self.record), None, None, rooms)
         self.kept, self.work = (np.empty(room) for room in rooms)
         blocks = (ctypes.c_void_p(b.ctypes.data) for b in (self.kept, self.work))
@@ -261,6 +265,19 @@ class _Place:
         if self.pushed is not None and self.pushed.shape != (self.n, len(self.run.pushes)):
             raise ValueError(f"errors of {len(self.run.pushes)} pushes at {self.n} moments have the shape {self.pushed.shape}")
         self.record.pushed = None if self.pushed is None else self.pushed.ctypes.data
+
+    def follow(self) -> int:
+        """Goes on to where errors of the pushes lead, about which it is linearised then; a status."""
+        room = self.library.wc_pushes_room
+        room.restype = ctypes.c_long
+        shape = (self.n, len(self.run.pushes))
+        errors = np.zeros(shape) if self.pushed is None else self.pushed.copy()
+        work = np.empty(room(self.records[0]))
+        at = errors.ctypes.data
+        status: int = self.library.wc_follow_pushes(*self.records, ctypes.c_void_p(at), ctypes.c_void_p(work.ctypes.data))
+        if self.record.pushed == at:
+            self.pushed = errors
+        return status
 
     def evaluation(self) -> Evaluation:
         """Copies of what is told, each to be forgotten by itself, and the filter where it lies."""

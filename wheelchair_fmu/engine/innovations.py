@@ -15,7 +15,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from .cache import helper
+from .cache import helper, width
 from .sensitivities import Linearised
 
 MOST = 64  # states, pushes and readings together, as in innovations.c
@@ -81,8 +81,8 @@ class Disturbance:
 
 @cache
 def _library() -> ctypes.CDLL:
-    library = helper("innovations")
-    library.wc_design.restype = ctypes.c_double
+    library = helper("innovations", width())
+    library.wc_design.restype = library.wc_misfit.restype = ctypes.c_double
     return library
 
 
@@ -166,7 +166,7 @@ class Whitener:
         shapes = {"B": (n - 1, nx, nq), "C": (n - 1, nx, nq), "H": (n, nz, nx), "D": (n, nz, nq), "input_sd": (n, nq)}
         shapes |= {"input_phi": (n - 1, nq), "phi": (n - 1, nz), "common": (nq, nq)}
         self.arrays |= {name: np.empty(shape) for name, shape in shapes.items()}
-        said = noise_arrays(self.time, self.noise, steps(self.time, self.present), unknown)
+        said = noise_arrays(self.time, self.noise, self._steps, unknown)
         given = {"pushes": self._at, "which": self._which, **said}
         record = NoiseRecord(self.recorded, nz, nd, **{name: a.ctypes.data for name, a in given.items()})
         by = self._slopes
@@ -181,15 +181,38 @@ class Whitener:
         self.logdet: float = _library().wc_design(
             ctypes.byref(self._filter), ctypes.c_long(n), _of(self._gain), _of(self._scale)
         )
-        self.logdet += float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(self.noise.readings)))
+        self.logdet += self._of_kinks
+
+    @property
+    def _of_kinks(self) -> float:
+        """What readings about a rest are worth, as if they were as expected."""
+        return float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(self.noise.readings)))
+
+    @cached_property
+    def _steps(self) -> np.ndarray:
+        return steps(self.time, self.present)
 
     def disturbed(self, disturbance: Disturbance) -> Whitener:
         """The filter of the same run where other forces act that nobody recorded."""
+        other = self._composed(disturbance)
+        other._design()
+        return other
+
+    def misfit(self, disturbance: Disturbance, residual: np.ndarray, start_mean: np.ndarray) -> float:
+        """−2 log likelihood, but for a constant, of a residual (n, nz) where such forces act that nobody recorded; `start_mean`
+        as in a call. To ask this needs no gains, which are most of what a filter is."""
+        other = self._composed(disturbance)
+        given = [np.ascontiguousarray(a, float) for a in (start_mean, residual)]
+        told = _library().wc_misfit(ctypes.byref(other._filter), ctypes.c_long(len(residual)), *map(_of, given))
+        return float(told) + self._of_kinks
+
+    def _composed(self, disturbance: Disturbance) -> Whitener:
+        """The same but for its gains, which are those of the forces that were."""
+        steps = self._steps  # which both have
         other = object.__new__(Whitener)
-        other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays)}
+        other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays), "_steps": steps}
         other.__dict__.pop("spread", None)
         other._compose(disturbance)
-        other._design()
         return other
 
     @property
@@ -227,26 +250,16 @@ class Whitener:
 
     def smoothed(self, innovations: np.ndarray) -> np.ndarray:
         """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""
-        return self._smoothed(innovations)[:, self.recorded :]
+        return self._noise(innovations)[:, self.recorded :]
 
-    def smoothed_pushes(self, innovations: np.ndarray) -> np.ndarray:
-        """The errors (n, nq) of the recorded pushes, likewise."""
-        return self._smoothed(innovations)[:, : self.recorded]
-
-    def _smoothed(self, innovations: np.ndarray) -> np.ndarray:
+    def _noise(self, innovations: np.ndarray) -> np.ndarray:
+        """Errors of the recorded pushes, and forces, together (n, nq)."""
         told = np.ascontiguousarray(np.nan_to_num(innovations), float)
         noise = np.empty((len(told), self.size[1]))
         _library().wc_smooth(
             ctypes.byref(self._filter), ctypes.c_long(len(told)), _of(self._gain), _of(self._scale), _of(told), _of(noise)
         )
         return noise
-
-    def unlikely(self, off: np.ndarray, pushed: np.ndarray) -> float:
-        """−2 log probability, but for a constant, that readings are `off` (n, nz) by their own noise and the recorded pushes by
-        `pushed` (n, nq)."""
-        readings = np.where(self.arrays["present"] > 0, off / self.noise.readings, np.nan)
-        pushes = pushed / self.arrays["input_sd"][:, : self.recorded]
-        return _fresh(readings, self.arrays["phi"]) + _fresh(pushes, self.arrays["input_phi"][:, : self.recorded])
 
     @cached_property
     def spread(self) -> np.ndarray:
@@ -257,14 +270,6 @@ class Whitener:
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
-
-
-def _fresh(noise: np.ndarray, phi: np.ndarray) -> float:
-    """Σ of squares of what is new in AR(1) noise (n, m) of unit variance, with NaN in gaps, after which all counts as new."""
-    before = np.nan_to_num(noise[:-1])
-    again = np.where(np.isfinite(noise[:-1]), phi, 0.0)
-    new = (noise[1:] - again * before) / np.sqrt(1 - again**2)
-    return float(np.nansum(noise[0] ** 2) + np.nansum(new**2))
 
 
 def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:

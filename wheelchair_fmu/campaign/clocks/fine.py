@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from .equation import Equation
 from .scatter import long_run
@@ -136,4 +136,4 @@ def _se(scores: np.ndarray, sharpness: float) -> float:
     variance, wider = long_run(sums, whitened=False)
     fourth = float(np.sum(sums**4))
     freedom = max(3 * float(sums @ sums) ** 2 / fourth - LINEAR, 1.0) if fourth else 1.0
-    return wider * float(student.ppf(0.975, freedom) / NORMAL) * float(np.sqrt(variance)) / sharpness
+    return wider * float(stdtrit(freedom, 0.975) / NORMAL) * float(np.sqrt(variance)) / sharpness

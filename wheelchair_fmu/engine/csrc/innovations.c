@@ -157,6 +157,32 @@ static inline void whiten(const filter *f, long n, const double *gain, const dou
     }
 }
 
+double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual) {
+    int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
+    double P[WC_MOST * WC_MOST], Ph[WC_MOST], s[WC_MOST] = {0}, next[WC_MOST], total = 0;
+    if (size > WC_MOST) return NAN;
+    begin(f, P);
+    memcpy(s, start_mean, sizeof(double) * (size_t)nx);
+    for (long i = 0; i < n; i++) {
+        if (i) {
+            predict(f, i - 1, P);
+            carry(f, i - 1, 1, s, next);
+            memcpy(s, next, sizeof(double) * (size_t)size);
+        }
+        for (int z = 0; z < nz; z++) {
+            long at = i * nz + z;
+            if (!f->present[at]) continue;
+            double variance = expect(f, i, z, P, Ph), told = residual[at] - s[nx + nq + z];
+            for (int k = 0; k < nx; k++) told -= f->H[at * nx + k] * s[k];
+            for (int q = 0; q < nq; q++) told -= f->D[at * nq + q] * s[nx + q];
+            total += told * told / variance + log(variance);
+            add_row(size, told / variance, Ph, s);
+            for (int r = 0; r < size; r++) add_row(size, -Ph[r] / variance, Ph, P + r * size);
+        }
+    }
+    return total;
+}
+
 void wc_respond(const filter *f, long n, const double *change, double *readings) {
     int nx = f->nx, nq = f->nq;
     double e[WC_MOST] = {0}, next[WC_MOST];

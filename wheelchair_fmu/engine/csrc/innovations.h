@@ -47,6 +47,10 @@ double wc_design(const filter *f, long n, double *gain, double *scale);
 void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
                double *signals, double *work);
 
+/* −2 log likelihood, but for a constant, of one signal (n x nz): Σ of squares of its innovations, and of log of their variances.
+ * NaN where there is no room. */
+double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual);
+
 /* readings: n x nz, what inputs that are larger by `change` (n x nq) add to them. */
 void wc_respond(const filter *f, long n, const double *change, double *readings);
 

@@ -115,8 +115,8 @@ def _misfit(evidence: Evidence, noise_model: NoiseModel, t_r: float) -> float:
     """−2 log likelihood with forces as strong as `noise_model` has them, but for a constant."""
 
     def one(e: RunEvidence) -> float:
-        filter_, start = disturbed(e, noise_model, t_r)
-        r = filter_((e.measured - e.foretold)[:, :, None], start)
-        return float(np.nansum(r**2)) + filter_.logdet
+        filter_ = e.filter.whitener
+        forces = disturbance(noise_model, len(filter_.noise.pushes), t_r)
+        return filter_.misfit(forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 
     return float(sum(parallel_map(one, evidence.runs)))

@@ -28,10 +28,6 @@ from .noise_model import NoiseModel, disturbance, noise_of, pushes_of
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
-STEPS = (1.0, 0.5, 0.25, 0.1)  # shares of a step towards where errors of the pushes lead, that are tried,
-MOST_STEPS = 12  # and how many steps are taken at most
-MOMENTS = 8  # up to which readings are asked where a run's pushes led
-HELD = 1.0  # Σ of squares by which innovations may differ where slopes hold: by less than one standard error of anything
 MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
 
 
@@ -190,92 +186,25 @@ class Likelihood:
                 self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), 4))
             found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
-            found = self._evaluated(run, values, by, at, None, rounds, self._errors_of_pushes(run))
+            pushed = self._errors_of_pushes(run)
+            found = self._evaluated(run, values, by, at, None, rounds, pushed, self._may_flip and rounds > 0)
+            if found.pushed is not None and found.pushed is not pushed:
+                self.paths[run.name] = found.pushed
             if not np.array_equal(found.start, at):
                 self.starts[run.name] = dict(zip(names, found.start.tolist(), strict=True))
-        e = self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
-        return self._about_pushes(e, values, by) if rounds and self._may_flip else e
+        return self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
 
     @property
     def _may_flip(self) -> bool:
-        """May casters swing round, on a run that no other forces lead?"""
+        """May casters swing round, on a run that no other forces lead? While a chair backs up, they stand as pencils on their
+        tips: noise of the pushes decides when they swing, and so where the chair goes. Slopes about any other path than its own
+        say little of it, so all is linearised about the likeliest errors of the pushes, which are kept for the next values."""
         return not self.leads and all(name in self.start_names for name in CASTERS)
 
     def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
         """As they were found, (n, nq), for a model whose casters may flip."""
         found = self.paths.get(run.name)
         return found if self._may_flip and found is not None and len(found) == len(run.time) else None
-
-    def _about_pushes(self, e: RunEvidence, values: Mapping[str, float], by: tuple[str, ...]) -> RunEvidence:
-        """The run along the path to which the errors of its pushes lead, where slopes do not hold as far as that.
-
-        While a chair backs up, its casters stand as pencils on their tips: noise of the pushes decides when they swing round,
-        and so where the chair goes. Slopes about any other path than its own say little of it. So all is linearised about the
-        likeliest errors of the pushes, by Gauss and Newton's steps, as starts are; kept for the next values.
-        """
-        first = e
-        for _ in range(MOST_STEPS):
-            there = self._towards(e, values)
-            if there is None:
-                break
-            e = there
-        if e is first:
-            return e
-        self.starts[e.run.name], self.paths[e.run.name] = dict(e.start), e.pushed if e.pushed is not None else np.empty(0)
-        return self._pushed_by(e, values, by, e.start, e.pushed) if by else e
-
-    def _towards(self, e: RunEvidence, values: Mapping[str, float]) -> RunEvidence | None:
-        """One step to where readings have the start and the errors of the pushes; None where slopes hold as far as that, or
-        no step makes all together likelier.
-
-        Where a simulation has gone another way than the chair, slopes about it say nothing of what comes after. So besides all
-        readings, those up to each of some moments are asked, and what they say together makes likeliest is taken.
-        """
-        filter_ = e.filter.whitener
-        told = filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0]
-        now = np.zeros((len(told), filter_.recorded)) if e.pushed is None else e.pushed
-        least, best = self._unlikely(e, e.followed, now, e.start), None
-        for until in np.linspace(len(told), 0, MOMENTS, endpoint=False).astype(int):
-            known = np.arange(len(told)) < until
-            step = filter_.smoothed_pushes(np.where(known[:, None], told, 0.0)) - now
-            better = self._better_start(e, known)
-            for share in STEPS:
-                start = {**e.start, **{n: e.start.get(n, 0.0) + share * (v - e.start.get(n, 0.0)) for n, v in better.items()}}
-                pushed = now + share * step
-                try:
-                    driven = self._simulated(e.run, values, start, pushed=pushed)[1]
-                except SimulationError:
-                    continue
-                if until == len(told) and share == 1.0 and self._held(e, start, driven - filter_.response(pushed)):
-                    return None
-                if (found := self._unlikely(e, driven, pushed, start)) < least:
-                    least, best = found, (start, pushed)
-        return None if best is None else self._pushed_by(e, values, (), *best)
-
-    def _held(self, e: RunEvidence, start: Mapping[str, float], foretold: np.ndarray) -> bool:
-        """Do slopes say what is `foretold` from that start? Innovations allow for another start and other pushes, so that to
-        first order they do not depend on these."""
-        r = e.filter((e.measured - foretold)[:, :, None], e.offset)[:, :, 0]
-        r = r + e.start_S @ [v - e.start.get(n, 0.0) for n, v in ((n, start[n]) for n in e.uncertain)]
-        return float(np.nansum((r - e.r) ** 2)) < HELD
-
-    def _unlikely(self, e: RunEvidence, driven: np.ndarray, pushed: np.ndarray, start: Mapping[str, float]) -> float:
-        """−2 log probability of readings, of the pushes' errors and of the start together, but for a constant."""
-        prior = self._prior(e.run)
-        begun = sum(((start.get(n, 0.0) - prior.get(n, 0.0)) / sd) ** 2 for n, sd in e.uncertain.items() if sd > 0)
-        return e.filter.whitener.unlikely(e.measured - driven, pushed) + float(begun)
-
-    def _pushed_by(
-        self,
-        e: RunEvidence,
-        values: Mapping[str, float],
-        by: tuple[str, ...],
-        start: Mapping[str, float],
-        pushed: np.ndarray | None,
-    ) -> RunEvidence:
-        """The run from this start, linearised where its pushes are larger than their record by `pushed` (n, nq)."""
-        at = np.array([start.get(n, 0.0) for n in e.uncertain])
-        return self._told(e.run, values, by, self._evaluated(e.run, values, by, at, None, 0, pushed), start)
 
     def _evaluated(
         self,
@@ -286,6 +215,7 @@ class Likelihood:
         path: np.ndarray | None,
         rounds: int,
         pushed: np.ndarray | None = None,
+        follows: bool = False,
     ) -> Evaluation:
         given, chair = self._set(run, values), self.chair(values)
         offsets = [values.get(f"offset.{c}", 0.0) for c in self._channels(run)]
@@ -294,7 +224,7 @@ class Likelihood:
         p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
         at = Values(p, np.array(offsets), delay, along, p[self._tread], chair[MASS])
         columns = [n for n in by if n not in self._delays and n not in self.offsets]
-        return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed)
+        return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed, follows)
 
     def _recording(self, run: Run) -> Recording:
         channels, pushes = self._channels(run), pushes_of(run)
@@ -364,10 +294,9 @@ class Likelihood:
         out[:, [self._inputs.index(n) for n in pushes_of(run)]] += pushed
         return out
 
-    def _better_start(self, e: RunEvidence, known: np.ndarray | None = None) -> dict[str, float]:
-        """The start, and what else is uncertain of the run, given all readings, or those in `known` (n,) rows: prior mean +
-        P₀ S₀ᵀ r, to first order."""
-        good = np.isfinite(e.r) if known is None else np.isfinite(e.r) & known[:, None]
+    def _better_start(self, e: RunEvidence) -> dict[str, float]:
+        """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
+        good = np.isfinite(e.r)
         prior, sd = self._prior(e.run), e.uncertain
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
