@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -106,6 +107,37 @@ class Recording:
     set: np.ndarray
     constants: Sequence[Constant]
 
+    @cached_property
+    def said(self) -> dict[str, np.ndarray]:
+        """Of its noise, what a `NoiseRecord` points to, but for places."""
+        return noise_arrays(self.time, self.noise, steps(self.time, np.isfinite(self.readings)), self.unknown)
+
+    @cached_property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All that evaluations of it point to, whatever the model."""
+        shapes = [np.zeros(len(self.time)) if c.shape is None else c.shape for c in self.constants]
+        whole = {
+            "pushes": self.pushes,
+            "which": self.which,
+            "late": self.late,
+            "drifts": self.drifts,
+            "start_set": self.set,
+            "constant_kind": [KINDS[c.kind] for c in self.constants],
+            "constant_inputs": [c.inputs for c in self.constants],
+            "constant_readings": [c.readings for c in self.constants],
+        }
+        real = {
+            "inputs": self.inputs,
+            "recorded": self.readings,
+            "usual": [np.median(np.diff(self.time))],
+            "start_prior": self.prior,
+            "start_sd": self.sd,
+            "constant_shape": shapes,
+            "constant_sd": [c.sd for c in self.constants],
+        }
+        given = {name: np.ascontiguousarray(a, np.intc) for name, a in whole.items()}
+        return given | {name: np.ascontiguousarray(a, float) for name, a in real.items()} | self.said
+
 
 @dataclass(frozen=True)
 class Values:
@@ -194,36 +226,19 @@ class _Place:
         if size > MOST:
             raise ValueError(f"{size} states, pushes, disturbances and readings are more than {MOST}")
         self.path = (self.n, self.nd)
-        said = noise_arrays(run.time, run.noise, steps(run.time, np.isfinite(run.readings)), run.unknown)
-        shapes = [np.zeros(self.n) if c.shape is None else c.shape for c in run.constants]
         whole = {
-            "pushes": run.pushes,
-            "which": run.which,
-            "late": run.late,
-            "drifts": run.drifts,
             "columns": [of.of.columns.index(n) for n in (*by, *run.starts)],
             "start_places": [names.index(n) for n in run.starts],
-            "start_set": run.set,
-            "constant_kind": [KINDS[c.kind] for c in run.constants],
-            "constant_inputs": [c.inputs for c in run.constants],
-            "constant_readings": [c.readings for c in run.constants],
         }
         real = {
-            "inputs": run.inputs,
-            "recorded": run.readings,
-            "usual": [np.median(np.diff(run.time))],
-            "start_prior": run.prior,
-            "start_sd": run.sd,
-            "constant_shape": shapes,
-            "constant_sd": [c.sd for c in run.constants],
             "p": values.parameters,
             "offsets": values.offsets,
             "numbers": [of.tolerance, values.delay, values.along, values.track, values.mass],
         }
         self.given = {name: np.ascontiguousarray(a, np.intc) for name, a in whole.items()}
-        self.given |= {name: np.ascontiguousarray(a, float) for name, a in real.items()} | said
+        self.given |= {name: np.ascontiguousarray(a, float) for name, a in real.items()} | run.arrays
         at = {name: a.ctypes.data for name, a in self.given.items()}
-        noise = NoiseRecord(len(run.pushes), self.nz, self.nd, **{n: at[n] for n in ("pushes", "which", *said)})
+        noise = NoiseRecord(len(run.pushes), self.nz, self.nd, **{n: at[n] for n in ("pushes", "which", *run.said)})
         recording = _Recording(
             of.of.simulator.kernel,
             of.of.tangent,

@@ -56,9 +56,10 @@ class Projector:
         """What is left of the columns in the readings (N, k)."""
         return X - self.Z @ self._imitated(X)
 
-    def strained(self, X: np.ndarray) -> np.ndarray:
-        """What is left of them in the further readings (m, k)."""
-        return -self.slopes @ self._imitated(X)
+    def with_strained(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same, and what is left of the columns in the further readings (m, k)."""
+        imitated = self._imitated(X)
+        return X - self.Z @ imitated, -self.slopes @ imitated
 
     def _imitated(self, X: np.ndarray) -> np.ndarray:
         return self._inverse @ (self.Z.T @ X)
@@ -118,7 +119,7 @@ def score(
 ) -> Score:
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
     r, scaled = evidence.r, S * delta
-    s, strained = off(scaled), off.strained(scaled)
+    s, strained = off.with_strained(scaled)
     I = s.T @ s + strained.T @ strained  # noqa: E741
     size, axes = np.linalg.eigh(I)
     seen = size > max(SEEN, 1e-9 * size.max(initial=0))

@@ -28,6 +28,7 @@ from .noise_model import NoiseModel, disturbance, noise_of, pushes_of
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
+LONG = 30_000  # rows: five minutes at 100 Hz, some megabytes
 MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
 
 
@@ -69,6 +70,7 @@ class Likelihood:
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
         self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
+        self._recordings: dict[tuple[str, bool], tuple[Run, NoiseModel, Recording]] = {}
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
@@ -227,6 +229,16 @@ class Likelihood:
         return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed, follows)
 
     def _recording(self, run: Run) -> Recording:
+        """What the evaluation needs of a run: made once for each noise, but for a long one, whose memory counts."""
+        if len(run.time) > LONG:
+            return self._recorded(run)
+        key = run.name, self.leads
+        known = self._recordings.get(key)
+        if known is None or known[0] is not run or known[1] is not self.noise_model:
+            known = self._recordings[key] = run, self.noise_model, self._recorded(run)
+        return known[2]
+
+    def _recorded(self, run: Run) -> Recording:
         channels, pushes = self._channels(run), pushes_of(run)
         prior, sd = self._prior(run), start_sd(run, self.start_names)
         constants = [constant(c, channels, self._inputs, len(run.time)) for c in locals_of(run)]

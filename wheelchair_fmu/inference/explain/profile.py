@@ -39,7 +39,7 @@ def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[
     for effect in free:
         own = factory.parameters(effect)
         columns = evidence.S[:, [k + names.index(n) for n in own]]
-        s, strained = off(columns), off.strained(columns)
+        s, strained = off.with_strained(columns)
         prior = prior_of(likelihood, own).sd
         known = strained.T @ strained + np.diag(prior**-2.0)
         inverse = np.linalg.inv(s.T @ s + known)
