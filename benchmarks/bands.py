@@ -14,14 +14,13 @@ Counts = dict[str, tuple[int, int]]  # by channel, how many samples lie in their
 
 def inside(d: Diagnosis) -> Counts:
     """A band is as wide as noise, with forces that nobody recorded, and doubt of the fitted values have it."""
-    found, search = d.top, d.search
-    likelihood = search.factory.likelihood(d.included)
-    held = search.heldout(likelihood, found.values).runs
+    found, likelihood = d.top, d.models.likelihood(d.included)
+    held = d.models.heldout(likelihood, found.values).runs
     covariance, moved = sandwich(found), []
     for name, se in zip(found.names, np.sqrt(np.diag(covariance)), strict=True):
         record = likelihood.records[name]
         step = se if found.values[name] + se <= record.upper else -se
-        there = search.heldout(likelihood, {**found.values, name: found.values[name] + step}).runs
+        there = d.models.heldout(likelihood, {**found.values, name: found.values[name] + step}).runs
         moved.append([(b.predicted - a.predicted) / step for a, b in zip(held, there, strict=True)])
     counts: Counts = {}
     for i, e in enumerate(held):

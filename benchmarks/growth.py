@@ -17,9 +17,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wheelchair_fmu.campaign import Campaign, Run, read
-from wheelchair_fmu.inference.estimation.fit import Fit, fit, start_value
+from wheelchair_fmu.inference.estimation.fit import fit, start_value
+from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.factory import ModelFactory
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.models.hypothesis import Model
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.search.screen import screen
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies.sweep import prepare
@@ -112,22 +115,23 @@ def _runs(measured: Campaign) -> Line:
 def _effects(measured: Campaign) -> Line:
     """Parts of the library, drawn at random."""
     names = [*np.random.default_rng(0).permutation(list(bundled()))]
-    search, base = _fitted(measured)
-    return _line("effects", {n: (lambda some=names[:n]: search.screen(base, (), some)) for n in (4, 8, 16, len(names))})
+    models, base = _fitted(measured)
+    return _line("effects", {n: (lambda some=names[:n]: screen(models, base, some)) for n in (4, 8, 16, len(names))})
 
 
 def _screening(measured: Campaign) -> Callable[[], object]:
-    search, base = _fitted(measured)
-    return lambda: search.screen(base, ())
+    models, base = _fitted(measured)
+    return lambda: screen(models, base)
 
 
-def _fitted(measured: Campaign) -> tuple[Search, Fit]:
-    """A search that has compiled what it needs, and the calibrated fit."""
-    search = Search(ModelFactory(measured, Variant()))
-    likelihood, names = search.factory.likelihood(), search.names(())
-    base = fit(likelihood, names, {n: start_value(likelihood, likelihood.records[n]) for n in names})
-    search.screen(base, ())
-    return search, base
+def _fitted(measured: Campaign) -> tuple[Models, Model]:
+    """Models that are compiled, and the calibrated one."""
+    models = Models.of(ModelFactory(measured, Variant()))
+    likelihood, names = models.likelihood(), models.names(())
+    start = {n: start_value(likelihood, likelihood.records[n]) for n in names}
+    base = Model((), fit(likelihood, names, start), Evidence((), ()))
+    screen(models, base)
+    return models, base
 
 
 def _chairs() -> Line:

@@ -24,8 +24,9 @@ from threadpoolctl import threadpool_limits
 from wheelchair_fmu.campaign import CHANNELS, Campaign, read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.search.beginning import begin
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.search.screen import screen
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
@@ -88,11 +89,10 @@ class _Peer:
 
 def rows() -> Iterator[Row]:
     measured = read(SAMPLE)
-    search = Search(ModelFactory(measured, Variant()))
-    base = begin(search, lambda words: None)[0]
-    count, cores = len(search.factory.catalogue), cpu_count() or 1
+    begun = begin(Models.of(ModelFactory(measured, Variant())))
+    count, cores = len(begun.models.factory.catalogue), cpu_count() or 1
     with threadpool_limits(limits=1):  # as in diagnose: cores are for runs
-        screens = [ms / 1e3 for ms in timed(lambda: search.screen(base, ()), 5)]
+        screens = [ms / 1e3 for ms in timed(lambda: screen(begun.models, begun.calibrated), 5)]
     yield Row(f"screening {count} effects on {len(measured.runs)} runs", "s", screens, SCREEN, note="tangents and secants")
     whole = [ms / 1e3 for ms in timed(lambda: diagnose(measured, generic=library()), 3)]
     yield Row("the whole diagnose", "s", whole, WHOLE)

@@ -71,7 +71,7 @@ def _with(campaign: Campaign, name: str, change: Callable[[Run], Run]) -> Campai
 
 
 def line(case: Case, found: Diagnosis) -> str:
-    told = found.search.clocks.get(case.run, {}).get("pushes")
+    told = found.clocks.get(case.run, {}).get("pushes")
     clock = f"{1000 * told.seconds:9.1f} ± {1000 * told.sd:4.1f}" if told else f"{'none':>16}"
     return f"{case.run:18}{1000 * case.seconds:8.0f}{clock}   {found.verdict:8} {', '.join(found.effects)}"
 

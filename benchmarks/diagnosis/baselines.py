@@ -9,8 +9,8 @@ import numpy as np
 
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.search.beginning import begin
-from wheelchair_fmu.inference.search.search import Search
 
 BIC_MARGIN = 10.0  # "very strong" evidence, Kass and Raftery
 CORRELATION = 0.1  # below which nobody would point at anything
@@ -18,31 +18,30 @@ THRESHOLD = 0.3  # of δ, of the sparse regression
 ROUNDS = 10
 
 
-def baselines(search: Search) -> dict[str, str | None]:
+def baselines(models: Models) -> dict[str, str | None]:
     """The effect that each method names, by the method's name."""
-    fresh = Search(search.factory)
-    base, _, _ = begin(fresh, lambda words: None)
-    w = fresh.factory
+    begun = begin(models)
+    w, base = begun.models.factory, begun.calibrated.fit
     names = [n for e in w.light for n in w.parameters(e)]
-    evidence = w.wide().evidence(w.campaign.fit, base.values, names)
-    delta = np.array([fresh.records[n].smallest_interesting for n in names])
+    evidence = begun.models.wide().evidence(w.campaign.fit, base.values, names)
+    delta = np.array([w.records[n].smallest_interesting for n in names])
     owner = [n.split(".")[1] for n in names]
     return {
-        "refit everything, BIC": _refit(fresh, base),
+        "refit everything, BIC": _refit(begun.models, base),
         "residual correlation": _correlation(evidence.r, evidence.S, owner),
         "sparse regression": _sparse(evidence.r, evidence.S * delta, owner),
     }
 
 
-def _refit(search: Search, base) -> str | None:
+def _refit(models: Models, base) -> str | None:
     """Fit every effect beside the calibrated values, and take the lowest BIC, as if residuals were independent."""
-    w, best, lowest = search.factory, None, -BIC_MARGIN
+    w, best, lowest = models.factory, None, -BIC_MARGIN
     for effect in w.catalogue:
         own = w.parameters(effect)
-        records = [search.records[n] for n in own]
+        records = [w.records[n] for n in own]
         start = {**base.values, **{r.name: r.smallest_interesting for r in records}}
         try:
-            found = fit(w.likelihood([effect]), search.names([effect]), start)
+            found = fit(models.likelihood([effect]), models.names([effect]), start)
         except SimulationError:
             continue
         change = found.misfit - base.misfit + len(own) * np.log(len(found.evidence.r))

@@ -34,7 +34,7 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
         said = as_json(found)
         seconds = time.process_time() - began
         resampled = bootstrap(found).estimates
-        others = baselines(found.search) if with_baselines else {}
+        others = baselines(found.models) if with_baselines else {}
     rows = {row["effect"]: row for row in said["ranking"]}
     return {
         "case": case.name,

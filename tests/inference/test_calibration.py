@@ -20,8 +20,8 @@ from wheelchair_fmu.quantities import M, Parameter
 
 def fitted(campaign):
     shop = ModelFactory(campaign, Variant())
-    found, *_ = Models(shop).calibrate()
-    return {c.record.name: c for c in calibration(shop.likelihood(), found)}
+    _, found, *_ = Models.of(shop).calibrated()
+    return {c.record.name: c for c in calibration(shop.likelihood(), found.fit)}
 
 
 def test_values_as_given_raise_no_doubts(sample):

@@ -18,11 +18,12 @@ from wheelchair_fmu.inference.estimation.interval import half_width
 from wheelchair_fmu.inference.estimation.statistics import correlation_time, sandwich
 from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.residual.staircase import Step
+from wheelchair_fmu.inference.search import screen as screening
 from wheelchair_fmu.inference.search.beginning import begin
 from wheelchair_fmu.inference.search.rounds import Round
-from wheelchair_fmu.inference.search.search import Search
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
@@ -78,8 +79,8 @@ def test_who_watches_is_told_the_whole_staircase(watched):
 
 def test_lasting_structure_is_no_noise(sampled):
     """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
-    before = ModelFactory(sampled.search.factory.campaign, Variant()).likelihood()
-    calibrated = before.evidence(sampled.search.factory.campaign.fit, sampled.rounds[0].fit.values)
+    before = ModelFactory(sampled.models.campaign, Variant()).likelihood()
+    calibrated = before.evidence(sampled.models.campaign.fit, sampled.rounds[0].fit.values)
     final = sampled.final.evidence
     assert _structured(calibrated, DEFAULT) and correlation_time(calibrated) > DEFAULT.lasting
     assert not _structured(final, DEFAULT) and correlation_time(final) < DEFAULT.lasting
@@ -205,11 +206,12 @@ def test_resamples_name_the_hidden_effect_or_its_double(sampled):
 
 def test_values_that_cannot_be_simulated_spoil_no_screen(sample, monkeypatch):
     """Calibrated values as the campaign has them are only tried; effects with states are scored without them, too."""
-    search = Search(ModelFactory(sample, Variant()))
-    base = begin(search, lambda words: None)[0]
-    monkeypatch.setattr(Search, "at_prior_mean", lambda *given: [dict.fromkeys(base.values, float("nan"))])
-    monkeypatch.setattr(Search, "_slopes_at_prior_mean", lambda *given: [])
-    assert {"trunk_motion", "caster_trail"} <= {s.score.effect for s in search.screen(base, ())}
+    begun = begin(Models.of(ModelFactory(sample, Variant())))
+    nowhere = dict.fromkeys(begun.calibrated.fit.values, float("nan"))
+    monkeypatch.setattr(screening, "at_prior_mean", lambda *given: [nowhere])
+    monkeypatch.setattr(screening, "_slopes_at_prior_mean", lambda *given: [])
+    scored = {s.score.effect for s in screening.screen(begun.models, begun.calibrated)}
+    assert {"trunk_motion", "caster_trail"} <= scored
 
 
 @pytest.mark.nightly

@@ -12,7 +12,7 @@ from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.inference.decision.foretold import on_led_runs, worsened
 from wheelchair_fmu.inference.residual.physical import ChannelError
 from wheelchair_fmu.inference.residual.staircase import Step
-from wheelchair_fmu.inference.search.selection import StepwiseSelection
+from wheelchair_fmu.inference.search import selection
 
 
 def step(name: str, **off: float) -> Step:
@@ -49,8 +49,7 @@ def led(fails: bool = False) -> Some:
             raise SimulationError("beyond all numbers")
         return evidence([np.full((5, 1), values["off"])] * len(runs), [np.zeros((5, 1, 0))] * len(runs), ())
 
-    factory = Some(campaign=Some(fit=(1, 2), holdout=(3,)), likelihood=lambda: Some(evidence=errors))
-    return Some(factory=factory)
+    return Some(campaign=Some(fit=(1, 2), holdout=(3,)), likelihood=lambda: Some(evidence=errors))
 
 
 def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
@@ -71,14 +70,8 @@ def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
         ({"a": 2.0, "b": 0.8}, ("b",), (), ("a", "b")),  # helped, and is large beside the others
     ],
 )
-def test_what_is_named_of_what_is_in_a_model(sizes, helping, parts, expected):
-    selection = object.__new__(StepwiseSelection)
-    selection.__dict__ |= {
-        "search": Some(surely_large=lambda base, e: sizes[e] > 0.7),
-        "effects": ("old", *sizes),
-        "already": ("old",),
-        "base": None,
-        "helping": set(helping),
-        "parts": set(parts),
-    }
-    assert selection.named() == expected
+def test_what_is_named_of_what_is_in_a_model(monkeypatch, sizes, helping, parts, expected):
+    monkeypatch.setattr(selection, "surely_large", lambda models, found, e: sizes[e] > 0.7)
+    top = Some(effects=("old", *sizes), fit=None)
+    found = selection.Selection(None, top, (), 0.0, print, already=("old",), helping=frozenset(helping), parts=frozenset(parts))
+    assert found.named() == expected

@@ -12,10 +12,13 @@ import pytest
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory, groups_of
+from wheelchair_fmu.inference.models.hypothesis import Model
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.search.beginning import begin
 from wheelchair_fmu.inference.search.joint import parted
-from wheelchair_fmu.inference.search.screen import Screen
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.search.judge import judge
+from wheelchair_fmu.inference.search.screen import _secants, screen_groups
+from wheelchair_fmu.inference.search.search import searched
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.stage import Effect, adds
 from wheelchair_fmu.model.variant import Variant
@@ -58,14 +61,13 @@ def leaning(sample):
 
 
 @pytest.fixture(scope="module")
-def search(leaning):
-    return Search(ModelFactory(leaning, chair()))
+def begun(leaning):
+    return begin(Models.of(ModelFactory(leaning, chair())))
 
 
 @pytest.fixture(scope="module")
-def first(search):
-    base, held, _ = begin(search, lambda words: None)
-    return search.round((), base, held)
+def first(begun):
+    return searched(begun.models, begun.calibrated)
 
 
 def test_groups_are_what_records_say():
@@ -83,37 +85,33 @@ def test_every_effect_that_one_acts_through_is_in_the_catalogue():
 def test_a_member_is_tried_beside_those_that_it_acts_through():
     """Of what two sizes do only as a product each is nothing alone; one by one the second does all."""
     w = np.array([1.0, -2.0, 0.5])
-    screen = object.__new__(Screen)
-    screen.__dict__ |= {
-        "factory": Some(
-            groups={TOGETHER: ("lean", "rubs")},
-            members=lambda e: ("lean", "rubs") if e == TOGETHER else (e,),
-            parameters=lambda e: tuple(n for n in SIZES if e in (TOGETHER, n.split(".")[1])),
-            catalogue={"lean": LEAN, "rubs": RUBS},
-        ),
-        "records": {p.name: p for effect in (LEAN, RUBS) for p in effect.owned},
-    }
+    factory = Some(
+        members=lambda e: ("lean", "rubs") if e == TOGETHER else (e,),
+        parameters=lambda e: tuple(n for n in SIZES if e in (TOGETHER, n.split(".")[1])),
+        linear=lambda e: e != TOGETHER,
+        records={p.name: p for effect in (LEAN, RUBS) for p in effect.owned},
+    )
     product = Some(resimulated=lambda known, at: Some(r=-at.get(ANGLE_NAME, 0.0) * at.get(DRAG_NAME, 0.0) * w))
     known = Some(r=0 * w)
-    (S,) = screen._secants(product, known, {}, TOGETHER)
+    (S,) = _secants(factory, product, known, {}, TOGETHER)
     np.testing.assert_allclose(S, np.stack([0 * w, ANGLE.smallest_interesting * w], axis=1))
-    (alone,) = screen._secants(product, known, {}, "rubs")
+    (alone,) = _secants(factory, product, known, {}, "rubs")
     np.testing.assert_allclose(alone, 0)
 
 
 @pytest.mark.nightly
-def test_a_group_has_the_parameters_of_its_members(search):
-    assert search.factory.parameters(TOGETHER) == tuple(SIZES)
-    assert set(SIZES) <= set(search.factory.likelihood([TOGETHER]).records)
+def test_a_group_has_the_parameters_of_its_members(begun):
+    assert begun.models.factory.parameters(TOGETHER) == tuple(SIZES)
+    assert set(SIZES) <= set(begun.models.likelihood([TOGETHER]).records)
 
 
 @pytest.mark.nightly
-def test_a_group_promises_what_no_member_does(search, first):
-    alone, joined = search.screen_groups(first.fit, ())
+def test_a_group_promises_what_no_member_does(begun, first):
+    alone, joined = screen_groups(begun.models, first.model)
     promised = {s.score.effect: s.score.drop for s in (*alone, *joined)}
     assert [s.score.effect for s in joined] == [TOGETHER]
     assert promised["rubs"] < 1e-6 and promised[TOGETHER] > 5 * promised["lean"]
-    again, none = search.screen_groups(first.fit, ("lean",))
+    again, none = screen_groups(begun.models, replace(first.model, effects=("lean",)))
     assert not none and "rubs" in {s.score.effect for s in again}, "beside one of them the other is an effect like any"
 
 
@@ -140,12 +138,12 @@ def test_a_group_of_which_one_does_all_comes_to_that_one(sample):
     """A drag that needs no lean, found with one."""
     alone = replace(RUBS, id="rubs_alone", contributions=(adds("F_x", lambda k, u: -k * u / 50),))
     size = "effect.rubs_alone.k"
-    search = Search(ModelFactory(measured(sample, {size: 40.0}, alone), chair(alone)))
-    base, held, _ = begin(search, lambda words: None)
-    now = search.round((), base, held)
+    begun = begin(Models.of(ModelFactory(measured(sample, {size: 40.0}, alone), chair(alone))))
+    models, base = begun.models, begun.calibrated
+    now = searched(models, base)
     group = "lean+rubs_alone"
-    whole = search.refit(("lean", "rubs_alone"), base.values)
-    judged = search.judge(base, held, whole, held, group, search.factory.parameters(group), 1)
-    (r,) = parted(search, replace(now, candidates=()), judged)
+    whole = Model(("lean", "rubs_alone"), models.refit(("lean", "rubs_alone"), base.fit.values), base.heldout)
+    judged = judge(models, base, whole, group, models.factory.parameters(group), 1)
+    (r,) = parted(models, replace(now, candidates=()), judged)
     assert r.effects == () and [c.effect for c in r.candidates] == ["rubs_alone"]
     assert r.candidates[0].estimate[0] == pytest.approx(40.0, abs=3 * r.candidates[0].se[0])

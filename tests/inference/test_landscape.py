@@ -12,6 +12,7 @@ from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.campaign import read, windows
 from wheelchair_fmu.inference.explain.landscape import landscape
 from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.model.variant import Variant
 
 ROOT = Path(__file__).parents[2]
@@ -19,13 +20,13 @@ TOLD = json.loads(SAMPLE_DIAGNOSIS.read_text())
 
 
 @pytest.fixture(scope="module")
-def factory():
-    return ModelFactory(windows(read(ROOT / "examples" / "sample-campaign")), Variant())
+def models():
+    return Models.of(ModelFactory(windows(read(ROOT / "examples" / "sample-campaign")), Variant()))
 
 
-def test_a_profile_crosses_its_level_where_the_interval_ends(factory):
+def test_a_profile_crosses_its_level_where_the_interval_ends(models):
     """The interval was found by another search, for roots; both follow one likelihood."""
-    (one,) = landscape(factory, {**TOLD, "ranking": []})["profiles"]
+    (one,) = landscape(models, {**TOLD, "ranking": []})["profiles"]
     heights, lower = np.array(one["heights"]), int(np.argmin(one["heights"]))
     assert heights[lower] == pytest.approx(0, abs=0.2) and one["values"][lower] == pytest.approx(one["estimate"], abs=0.01)
     left = np.interp(-one["level"], -heights[: lower + 1], one["values"][: lower + 1])
@@ -33,14 +34,14 @@ def test_a_profile_crosses_its_level_where_the_interval_ends(factory):
     assert [left, right] == pytest.approx(TOLD["ranking"][0]["parameters"]["D"]["interval"], abs=0.004)
 
 
-def test_what_was_not_found_has_no_landscape(factory):
-    assert landscape(factory, {**TOLD, "effects": [], "models": TOLD["models"][:2]}) == {"profiles": [], "pair": None}
+def test_what_was_not_found_has_no_landscape(models):
+    assert landscape(models, {**TOLD, "effects": [], "models": TOLD["models"][:2]}) == {"profiles": [], "pair": None}
 
 
 @pytest.mark.nightly
-def test_two_rivals_have_the_contours_of_their_joint_fit(factory):
+def test_two_rivals_have_the_contours_of_their_joint_fit(models):
     """Inside its grid the likelihood is lowest at the joint fit, and about as high as a parabola one step off."""
-    pair = landscape(factory, {**TOLD, "effects": TOLD["effects"]})["pair"]
+    pair = landscape(models, {**TOLD, "effects": TOLD["effects"]})["pair"]
     heights, about = np.array(pair["heights"], float), np.array(pair["about"])
     middle = len(about) // 2
     assert pair["effects"][0] == TOLD["effects"][0] != pair["effects"][1]

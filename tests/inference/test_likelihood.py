@@ -13,7 +13,9 @@ from wheelchair_fmu.inference.estimation.score import _long_run_variance
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import pushes_of
 from wheelchair_fmu.inference.models.factory import ModelFactory
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.search.refitting import candidate
+from wheelchair_fmu.inference.search.screen import screen
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 from wheelchair_fmu.studies.measured import PREDICTS
@@ -160,13 +162,13 @@ def test_an_offset_that_the_campaign_names_is_estimated(biased):
 
 
 def test_an_effect_is_never_tested_beside_the_offset_that_it_is(biased):
-    search = Search(ModelFactory(biased, CHAIR, fixed=[DRAG]))
-    base, held, _, _ = search.calibrate()
-    assert "offset.yaw_rate" in base.names
-    screened = search.screen(base, (), ["gyro_bias", "gyro_scale"])
+    models, base, *_ = Models.of(ModelFactory(biased, CHAIR, fixed=[DRAG])).calibrated()
+    models = models.with_doubles(base.fit)
+    assert models.doubles == {"gyro_bias": {"offset.yaw_rate"}} and "offset.yaw_rate" in base.fit.names
+    screened = screen(models, base, ["gyro_bias", "gyro_scale"])
     by = {s.score.effect: s for s in screened}
     assert by["gyro_bias"].score.drop > 100 > by["gyro_scale"].score.drop
-    found = search.candidate(base, held, (), by["gyro_bias"], 2)
+    found = candidate(models, base, by["gyro_bias"], 2)
     assert found is not None and "offset.yaw_rate" not in found.fit.names
     assert found.estimate[0] == pytest.approx(BIAS, abs=0.004)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace as Some
 
 import numpy as np
@@ -9,9 +10,10 @@ import pytest
 
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
+from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.search import ties
-from wheelchair_fmu.inference.search.selection import StepwiseSelection
+from wheelchair_fmu.inference.search.selection import Selection
 from wheelchair_fmu.inference.search.ties import beside, overtaker, tied
 
 WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
@@ -42,38 +44,38 @@ def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again
 
 
 class Known:
-    """A search that knows what every model does; it notes what refits it is `asked` for."""
+    """Models of which it is known what every one does; it is noted what refits are `asked` for."""
 
     def __init__(self, misfits):
         self.misfits, self.asked, self.policy = misfits, [], DEFAULT
-        self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"], likelihood=lambda effects: self)
+        self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"])
 
-    def restarted(self, evidence, values):
-        return evidence
+    def likelihood(self, effects):
+        return Some(restarted=lambda evidence, values: evidence)
 
-    def screen(self, base, effects):
-        return [Some(score=Some(effect=e, drop=WITHOUT - m)) for e, m in self.misfits.items()]
-
-    def refit(self, effects, start):
+    def model(self, effects, start):
         assert effects == ("later",)
-        return fit(WITHOUT)
-
-    def heldout(self, likelihood, values):
-        return Evidence((), ())
+        return Model(effects, fit(WITHOUT), Evidence((), ()))
 
     def compared(self, found, effect, base):
         return found
 
-    def rival_of(self, effect, effects, base, held):
-        return base, held
+    def rival_of(self, effect, base):
+        return base
 
-    def judge(self, base, held, found, found_held, effect, names, tests):
-        assert names == [f"effect.{effect}.size"] and tests == len(self.misfits)
-        return one(effect, found.misfit)
 
-    def candidate(self, base, held, effects, s, tests, least):
-        self.asked.append((s.score.effect, least))
-        return one(s.score.effect, self.misfits[s.score.effect]) if s.score.drop >= least else None
+def screen(models, base):
+    return [Some(score=Some(effect=e, drop=WITHOUT - m)) for e, m in models.misfits.items()]
+
+
+def judge(models, base, found, effect, names, tests):
+    assert names == [f"effect.{effect}.size"] and tests == len(models.misfits)
+    return one(effect, found.fit.misfit)
+
+
+def candidate(models, base, s, tests, least):
+    models.asked.append((s.score.effect, least))
+    return one(s.score.effect, models.misfits[s.score.effect]) if s.score.drop >= least else None
 
 
 def before(*others, alone=0.0, small=False):
@@ -84,10 +86,15 @@ def before(*others, alone=0.0, small=False):
 
 
 @pytest.fixture
-def search(monkeypatch):
+def models(monkeypatch):
+    for part in (screen, judge, candidate):
+        monkeypatch.setattr(ties, part.__name__, part)
     monkeypatch.setattr(ties, "shortlist", lambda screened, most, alike: screened)
     monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.drop))
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
+
+
+FINAL = Model(("gain", "later"), fit(0.0), Evidence((), ()))
 
 
 @pytest.mark.parametrize(
@@ -100,18 +107,18 @@ def search(monkeypatch):
         None,  # nobody knew the noise
     ],
 )
-def test_an_effect_is_searched_for_again_beside_all_others(search, found_in):
-    r = beside(search, "gain", ("gain", "later"), fit(0.0), None, found_in)
+def test_an_effect_is_searched_for_again_beside_all_others(models, found_in):
+    r = beside(models, "gain", FINAL, found_in)
     assert r.again and r.effects == ("later",)
     # the effect is as it is in the model; others are refitted, where they promise half as much
     assert [(c.effect, c.drop) for c in r.candidates] == [("inertia", 1050.0), ("gain", 1000.0), ("radius", 700.0)]
-    assert search.asked == [("inertia", 500.0), ("radius", 500.0), ("slope", 500.0)]
-    assert {s.effect for s in r.scores} == set(search.misfits)
+    assert models.asked == [("inertia", 500.0), ("radius", 500.0), ("slope", 500.0)]
+    assert {s.effect for s in r.scores} == set(models.misfits)
 
 
-def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(search):
-    assert beside(search, "gain", ("gain", "later"), fit(0.0), None, before(("slope", 900.0), ("later", 100.0))) is None
-    assert not search.asked
+def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(models):
+    assert beside(models, "gain", FINAL, before(("slope", 900.0), ("later", 100.0))) is None
+    assert not models.asked
 
 
 def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_found():
@@ -144,26 +151,23 @@ def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, be
 
 @pytest.mark.parametrize(("rms", "stays"), [(1.0, True), (1.2, True), (1.3, False)])
 def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(monkeypatch, rms, stays):
-    def settled(effects, fit):
-        factory.starts["spin"] = {"start.u": 1.0}
-        return Some(evidence=Some(rms=rms)), "held with it"
+    """What it did to the search goes with it: where runs start, the steps to it, and that it helped."""
 
-    factory = Some(starts={"spin": {"start.u": 0.0}})
-    selection = object.__new__(StepwiseSelection)
-    selection.__dict__ |= {
-        "search": Some(factory=factory, settled=settled),
-        "effects": ("drag",),
-        "base": Some(evidence=Some(rms=1.15)),
-        "rounds": [Some(effects=("drag",))],
-        "held": "held",
-        "helping": {"toe"},
-        "ladder": ["nominal", "calibrated", "+drag"],
-    }
-    monkeypatch.setattr(StepwiseSelection, "_step", lambda self: self.ladder.append("+toe"))
-    monkeypatch.setattr(StepwiseSelection, "_prune", lambda self: None)
-    assert selection._put_in(Some(effect="toe", fit=None)) == stays
-    assert selection.effects == (("drag", "toe") if stays else ("drag",))
-    assert selection.ladder == ["nominal", "calibrated", "+drag", *(["+toe"] if stays else [])]
-    assert selection.held == ("held with it" if stays else "held")
-    assert factory.starts["spin"]["start.u"] == (1.0 if stays else 0.0)
-    assert selection.helping == ({"toe"} if stays else set())
+    def top(*effects, rms):
+        return Model(effects, replace(fit(0.0), evidence=Some(rms=rms)), Evidence((), ()))
+
+    moved = Some()
+    models = Some(settled=lambda effects, found: (moved, top(*effects, rms=rms)))
+    ladder = ("nominal", "calibrated", "+drag")
+    foot = Selection(models, top("drag", rms=1.15), ladder, 0.0, print, rounds=(Some(effects=("drag",)),))
+    helped = replace(foot, ladder=(*ladder, "+part"), helping=frozenset({"toe"}))
+    found = iter([lambda now: (helped, Some(effect="toe", fit=None)), lambda now: (now, None)])
+    monkeypatch.setattr(Selection, "_found", lambda self: next(found)(self))
+    monkeypatch.setattr(Selection, "_looked_beside", lambda self: (self, False))
+    monkeypatch.setattr(Selection, "_step", lambda self: replace(self, ladder=(*self.ladder, "+toe")))
+    monkeypatch.setattr(Selection, "_pruned", lambda self: self)
+    now = foot.to_the_top()
+    assert now.effects == (("drag", "toe") if stays else ("drag",))
+    assert now.ladder == ((*ladder, "+part", "+toe") if stays else ladder)
+    assert now.models is (moved if stays else models)
+    assert now.helping == ({"toe"} if stays else set())

@@ -32,8 +32,10 @@ from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.evidence.initial_state import START, START_SD
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.models.hypothesis import Model
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.policy import SearchPolicy
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.search.judge import judge
 from wheelchair_fmu.model.variant import Variant
 
 NAMES = ("a", "b", "c")
@@ -46,8 +48,8 @@ EFFECTS = {  # of the catalogue, by what kind of test they ask for
 
 
 @pytest.fixture(scope="module")
-def search(sample) -> Search:
-    return Search(ModelFactory(sample, Variant()))
+def models(sample) -> Models:
+    return Models.of(ModelFactory(sample, Variant()))
 
 
 def white(shape, seed=0, rho=0.0) -> np.ndarray:
@@ -238,35 +240,36 @@ def nulls(k: int, rho: float, replications: int, one_sided: bool, level: float =
                 yield [d[:, i : i + 1] for d in drawn], [s[:, :, own] for s in slopes]
 
 
-def judged(search, kind: str, measured, slopes, tests: int = 1):
+def judged(models, kind: str, measured, slopes, tests: int = 1):
     """The search's verdict on an effect, by fits with and without it; a size that may only be positive is."""
     effect, own = EFFECTS[kind]
     names = ("q0", "q1", *own)
-    slopes = [s / [1.0, 1.0, *search.deltas(own)] for s in slopes]  # so that one δ shows
+    slopes = [s / [1.0, 1.0, *models.factory.deltas(own)] for s in slopes]  # so that one δ shows
     base, found = (least_squares(measured, slopes, names, keep=keep) for keep in ((0, 1), None))
     if kind == "one-sided" and found.values[own[0]] < 0:
         found = base
-    return search.judge(base, None, found, None, effect, own, tests)
+    base, found = (Model((), fit, Evidence((), ())) for fit in (base, found))
+    return judge(models, base, found, effect, own, tests)
 
 
 @pytest.mark.parametrize("kind", ["one-sided", "two parameters", pytest.param("two-sided", marks=pytest.mark.nightly)])
-def test_of_a_hundred_effects_that_are_not_there_five_are_significant(search, kind):
+def test_of_a_hundred_effects_that_are_not_there_five_are_significant(models, kind):
     one_sided, k = kind == "one-sided", len(EFFECTS[kind][1])
-    found = [judged(search, kind, *null).p < 0.05 for null in nulls(k, 0.0, 2000, one_sided)]
+    found = [judged(models, kind, *null).p < 0.05 for null in nulls(k, 0.0, 2000, one_sided)]
     assert 0.04 <= np.sum(found) / 2000 <= 0.06, np.sum(found) / 2000
 
 
-def test_coloured_noise_is_no_more_significant(search):
-    found = [judged(search, "two-sided", *null).p < 0.05 for null in nulls(1, 0.9, 1000, False)]
+def test_coloured_noise_is_no_more_significant(models):
+    found = [judged(models, "two-sided", *null).p < 0.05 for null in nulls(1, 0.9, 1000, False)]
     assert 0.035 <= np.sum(found) / 1000 <= 0.065, np.sum(found) / 1000
 
 
-def test_of_a_hundred_catalogues_without_a_missing_effect_five_have_a_significant_one(search):
+def test_of_a_hundred_catalogues_without_a_missing_effect_five_have_a_significant_one(models):
     """At most: twenty effects are tested on the same data, and each is judged as one of twenty, by the worse of two tests. Of
     4000 catalogues 3.5 % had one, which is on the careful side of five; without the correction it is more than half of them."""
     rejected = set()
     for measured, slopes in nulls(1, 0.0, 1000, False, level=0.05 / 20, effects=20):
-        if judged(search, "two-sided", measured, slopes, tests=20).p < 0.05:
+        if judged(models, "two-sided", measured, slopes, tests=20).p < 0.05:
             rejected.add(measured[0].tobytes())
     assert 0.025 <= len(rejected) / 1000 <= 0.06, len(rejected) / 1000
 
@@ -311,12 +314,12 @@ def test_a_strained_prior_speaks_for_what_would_relieve_it():
     assert found.drop == pytest.approx(bent.misfit - whole.misfit, rel=1e-6)
 
 
-def test_noise_that_is_larger_than_stated_makes_nothing_surer(search):
+def test_noise_that_is_larger_than_stated_makes_nothing_surer(models):
     """Twice the residuals are four times the squares: what falls is measured by what is left."""
     rng = np.random.default_rng(12)
     slopes = signals(rng, 6, LONG, 3)
     measured = [s @ np.array([1.0, -1.0, 0.3]) + noise(rng, (LONG, 1)) for s in slopes]
-    once, twice = (judged(search, "two-sided", [f * m for m in measured], slopes) for f in (1.0, 2.0))
+    once, twice = (judged(models, "two-sided", [f * m for m in measured], slopes) for f in (1.0, 2.0))
     assert twice.drop == pytest.approx(once.drop, rel=1e-9)
     assert twice.p == pytest.approx(once.p, rel=1e-6)
     whole, y = (np.concatenate([a.reshape(LONG, -1) for a in arrays]) for arrays in (slopes, measured))
@@ -324,11 +327,11 @@ def test_noise_that_is_larger_than_stated_makes_nothing_surer(search):
     assert once.drop == pytest.approx((left[0] - left[1]) / (left[1] / len(y)), rel=1e-9)
 
 
-def test_a_candidates_standard_error_allows_for_noise_that_lasts(search):
+def test_a_candidates_standard_error_allows_for_noise_that_lasts(models):
     """About √19 as much as if samples were independent: δ is compared with that, and so is the verdict "small"."""
     rng = np.random.default_rng(13)
     slopes = signals(rng, 6, LONG, 3)
-    found = judged(search, "two-sided", [noise(rng, (LONG, 1), 0.9) for _ in slopes], slopes)
+    found = judged(models, "two-sided", [noise(rng, (LONG, 1), 0.9) for _ in slopes], slopes)
     assert 2 < found.se[0] / np.sqrt(found.fit.covariance[-1, -1]) < np.sqrt(19)
 
 

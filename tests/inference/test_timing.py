@@ -14,9 +14,9 @@ from wheelchair_fmu.campaign import covered
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.factory import ModelFactory
-from wheelchair_fmu.inference.preflight.timing import Late, by_model, by_signals, retimed, unlike_the_others
-from wheelchair_fmu.inference.search.beginning import begin, retime_by_slopes, settle_clocks
-from wheelchair_fmu.inference.search.search import Search
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.preflight.timing import Late, by_model, by_signals, clocks, retimed, unlike_the_others
+from wheelchair_fmu.inference.search.beginning import begin, late_by_slopes
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -24,15 +24,14 @@ from wheelchair_fmu.model.variant import Variant
     ("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1), ("holdout-random", 0.3)]
 )
 def test_a_shifted_run_is_read_in_time(sample, name, seconds):
-    search = Search(ModelFactory(with_shift(sample, Case(name, seconds)), Variant()))
-    base, held, _ = begin(search, lambda words: None)
-    settle_clocks(search, base.evidence, held)
-    assert set(search.clocks) == {name}
-    late = search.clocks[name]["pushes"]
+    begun = begin(Models.of(ModelFactory(with_shift(sample, Case(name, seconds)), Variant())))
+    found = clocks(begun.calibrated.fit.evidence, begun.calibrated.heldout)
+    assert set(found) == {name}
+    late = found[name]["pushes"]
     assert late.seconds == pytest.approx(seconds, abs=0.01)
     side = "early" if seconds > 0 else "late"
-    assert [n for n in search.notes if n.startswith(f"{name}: ") and f"too {side}" in n]
-    assert [r.name for r in search.factory.campaign.runs] == [r.name for r in sample.runs]
+    assert [n for n in begun.heard(found) if n.startswith(f"{name}: ") and f"too {side}" in n]
+    assert [r.name for r in begun.models.campaign.runs] == [r.name for r in sample.runs]
 
 
 def test_a_missing_effect_is_not_taken_for_a_shift(sample):
@@ -66,9 +65,8 @@ def test_one_run_that_is_unlike_all_others_is_named(sample):
 
 def test_where_nobody_is_to_estimate_a_delay_none_is_looked_for(sample):
     """`--fix effect.push_force_delay.tau`."""
-    search = Search(ModelFactory(sample, Variant(), fixed=["effect.push_force_delay.tau"]))
-    base, *_ = search.calibrate()
-    assert not retime_by_slopes(search, (), (), base) and search.retimed == {}
+    models, base, *_ = Models.of(ModelFactory(sample, Variant(), fixed=["effect.push_force_delay.tau"])).calibrated()
+    assert late_by_slopes(models, (), (), base.fit) == {}
 
 
 def test_a_delay_that_all_runs_share_is_no_clock(sample):
@@ -80,8 +78,8 @@ def same_verdict(sample, name, seconds, chair=None):
     """The shift that `diagnose` says, None if none; the verdict is as without it."""
     found = diagnose(with_shift(sample, Case(name, seconds)), chair)
     assert found.verdict == "missing" and found.effects == ("rolling_resistance_asymmetry",)
-    assert set(found.search.clocks) <= {name}
-    return found.search.clocks[name]["pushes"].seconds if found.search.clocks else None
+    assert set(found.clocks) <= {name}
+    return found.clocks[name]["pushes"].seconds if found.clocks else None
 
 
 @pytest.mark.nightly
@@ -98,8 +96,8 @@ def test_a_shift_leaves_the_verdict_that_the_same_run_leaves_without_it_whose_cl
     as it is. Either loss alone leaves enough."""
     case = Case("slalom-slow", -1.3)
     found = diagnose(with_shift(sample, case))
-    assert found.search.clocks[case.run]["pushes"].seconds == pytest.approx(case.seconds, abs=0.01)
-    control = diagnose(less(sample, case, found.search.retimed[case.run].sd))
+    assert found.clocks[case.run]["pushes"].seconds == pytest.approx(case.seconds, abs=0.01)
+    control = diagnose(less(sample, case, found.retimed[case.run].sd))
     assert (
         (found.verdict, found.ties)
         == (control.verdict, control.ties)
@@ -114,7 +112,7 @@ def test_where_the_push_that_tells_a_shift_was_not_recorded_the_run_is_named(sam
     what is left of the run where all of them could have been tells as much as without a shift."""
     case = Case("steady-right", 1.3)
     found = diagnose(with_shift(sample, case))
-    assert found.search.clocks == {} and found.effects[:1] == ("rolling_resistance_asymmetry",)
+    assert found.clocks == {} and found.effects[:1] == ("rolling_resistance_asymmetry",)
     assert [n for n in found.notes if n.startswith("steady-right: of this run the last model leaves 2.6 times the noise")]
     control = with_shift(sample, case)
     settled = [covered(run, 1.6) if run.name == case.run else run for run in control.runs]

@@ -10,9 +10,9 @@ import pytest
 from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.inference.decision.improve import add
 from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.preflight.wiring import SIDES, Wiring, wiring
 from wheelchair_fmu.inference.search.beginning import begin
-from wheelchair_fmu.inference.search.search import Search
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -35,11 +35,10 @@ def found(campaign: Campaign) -> Wiring:
 
 @pytest.mark.parametrize("channel", ["yaw_rate", "a_y"])
 def test_a_channel_with_the_other_sign_is_left_out(sample, channel):
-    search = Search(ModelFactory(wired(sample, **{channel: -1.0}), Variant()))
-    base, _, _ = begin(search, lambda words: None)
-    assert search.notes[0] == f"{channel} has the other sign than the model's, and is left out; turn its column round"
-    assert all(channel not in e.channels for e in base.evidence.runs)
-    assert not any("recorded" in note for note in search.notes)
+    begun = begin(Models.of(ModelFactory(wired(sample, **{channel: -1.0}), Variant())))
+    assert begun.notes[0] == f"{channel} has the other sign than the model's, and is left out; turn its column round"
+    assert all(channel not in e.channels for e in begun.calibrated.fit.evidence.runs)
+    assert not begun.retimed
 
 
 def test_axes_are_named_where_all_that_they_turn_is_turned(sample):
@@ -82,14 +81,10 @@ def test_nothing_is_left_out_where_nothing_would_be_left(sample):
 
 def test_a_run_in_which_nothing_else_was_measured_is_left_out(sample):
     first, *others = wired(sample, yaw_rate=-1.0).runs
-    search = Search(
-        ModelFactory(
-            replace(sample, runs=(replace(first, channels={"yaw_rate": first.channels["yaw_rate"]}), *others)), Variant()
-        )
-    )
-    begin(search, lambda words: None)
-    assert search.notes[0].startswith("yaw_rate has the other sign")
-    assert [r.name for r in search.factory.campaign.runs] == [r.name for r in others]
+    alone = replace(first, channels={"yaw_rate": first.channels["yaw_rate"]})
+    begun = begin(Models.of(ModelFactory(replace(sample, runs=(alone, *others)), Variant())))
+    assert begun.notes[0].startswith("yaw_rate has the other sign")
+    assert [r.name for r in begun.models.campaign.runs] == [r.name for r in others]
 
 
 def test_a_missing_effect_and_a_poor_guess_are_no_wrong_column(sample):

@@ -125,7 +125,7 @@ class Diagnosis:
         >>> found.sentence
         'Missing from the model: one rear wheel that rolls harder than the other.'
         """
-        return sentence(self._told, {e.id: e.title for e in self._found.search.factory.catalogue.values()})
+        return sentence(self._told, {e.id: e.title for e in self._found.models.factory.catalogue.values()})
 
     @property
     def probabilities(self) -> dict[str, float]:
@@ -331,7 +331,7 @@ class Diagnosis:
         return f"Diagnosis({self._told['campaign']!r}, verdict={self.verdict!r}, effects={list(self.effects)})"
 
     def _repr_html_(self) -> str:
-        records = {p.name: p for e in self._found.search.factory.catalogue.values() for p in e.owned}
+        records = {p.name: p for e in self._found.models.factory.catalogue.values() for p in e.owned}
         said = "".join(f"<li>{escape(words)}</li>" for words in particulars(self._told, records))
         picture = StringIO()
         save_svg(self.plot_staircase(), picture)

@@ -16,7 +16,7 @@ def missing(d: Diagnosis) -> dict[str, Any] | None:
     if d.proposal is None:
         return None
     term = terms()[d.proposal.effect]
-    found = estimate_profiles(d.search, d.rounds[0].fit, d.rounds[0].effects, profiles(term))
+    found = estimate_profiles(d.models, d.rounds[0].fit, d.rounds[0].effects, profiles(term))
     panels = [
         {
             "variable": words,

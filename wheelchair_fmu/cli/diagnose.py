@@ -98,9 +98,9 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     out.print(physical_staircase(d.ladder))
     for words in d.unexplained.words if d.unexplained else ():
         out.print(words)
-    out.print(_ranking(content, set(d.search.factory.catalogue) - set(bundled())))
+    out.print(_ranking(content, set(d.models.factory.catalogue) - set(bundled())))
     for name, (low, high) in d.intervals.items():
-        unit = d.search.records[name].unit.name
+        unit = d.models.factory.records[name].unit.name
         out.print(f"{name.removeprefix('effect.')} = {d.final.values[name]:.4g} {unit}, 95 % within {low:.4g} to {high:.4g}")
     if d.next_experiment:
         n = d.next_experiment

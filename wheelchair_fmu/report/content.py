@@ -22,6 +22,8 @@ from ..inference.evidence.local import BaselineError, ClockError, Local, locals_
 from ..inference.evidence.noise_model import NoiseModel, disturbance, noise_of, pushes_of
 from ..inference.explain.landscape import landscape
 from ..inference.models.factory import ModelFactory
+from ..inference.models.models import Models
+from ..inference.models.setting import Setting
 from ..inference.preflight.timing import Late, retimed
 from ..model.stage import Effect
 from ..model.variant import Variant
@@ -45,14 +47,14 @@ def content(
     campaign = replace(campaign, runs=tuple(in_time(r, diagnosis.get("sync", {})) for r in campaign.runs))
     campaign = used(moving(campaign), diagnosis) if leads else campaign
     factory = ModelFactory(campaign, variant, fixed)
-    factory.noise_model = colour
+    models = Models(factory, Setting(colour))
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
     compiled = modules([(v.choice, v.active()) for v in variants], STARTS, driven(campaign))
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
         "diagnosis": diagnosis,
-        "landscape": {"profiles": [], "pair": None} if leads else landscape(factory, diagnosis),
+        "landscape": {"profiles": [], "pair": None} if leads else landscape(models, diagnosis),
         "runs": [_run(r, campaign, colour, leads) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
         "outputs": {c.name: c.fmu for c in CHANNELS},

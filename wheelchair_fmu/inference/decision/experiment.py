@@ -16,8 +16,8 @@ from ..estimation.inverse import inverse
 from ..estimation.statistics import decisive
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel
+from ..models.models import Models
 from ..policy import DEFAULT
-from ..search.search import Search
 
 MOST_REPEATS = 20
 
@@ -36,7 +36,7 @@ class Experiment(Protocol):
 
 
 def separate(
-    search: Search, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment], beside: Sequence[str] = ()
+    models: Models, one: Fit, other: Fit, effects: tuple[str, str], among: Sequence[Experiment], beside: Sequence[str] = ()
 ) -> dict[str, Any] | None:
     """The experiment that separates two fitted models, of these effects, with the fewest repeats, or None where none does.
     `beside` are the effects that both models have.
@@ -44,13 +44,13 @@ def separate(
     The first model says what would be read; what the second cannot imitate, within what the campaign already says of
     its parameters, is −2 log of the odds that one run gives.
     """
-    likelihood = search.factory.likelihood([e for e in (*beside, *effects) if e in search.factory.catalogue])
+    likelihood = models.likelihood([e for e in (*beside, *effects) if e in models.factory.catalogue])
     needed = decisive(one.evidence)  # as the verdict on a tie has it
     odds = []
     for experiment in among:
         try:
-            run = _imagined(likelihood, experiment, one)
-            evidence = _with_sensors(likelihood, experiment).evidence([run], other.values, other.names)
+            there, run = _imagined(likelihood, experiment, one)
+            evidence = there.evidence([run], other.values, other.names)
         except SimulationError:
             continue
         r, S = evidence.r, evidence.S
@@ -71,19 +71,19 @@ def separate(
     }
 
 
-def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
+def reveal(models: Models, base: Fit, hidden: Sequence[str], among: Sequence[Experiment]) -> dict[str, Any] | None:
     """The experiment that would show most of the effects that this campaign could not have shown."""
-    likelihood = search.factory.wide()
-    effects = [e for e in hidden if e in search.factory.light]
-    names = [n for e in effects for n in search.factory.parameters(e)]
+    likelihood = models.wide()
+    effects = [e for e in hidden if e in models.factory.light]
+    names = [n for e in effects for n in models.factory.parameters(e)]
     best: tuple[int, Any, list[str], float] | None = None
     for experiment in among:
         try:
-            run = _imagined(likelihood, experiment, base)
-            e = _with_sensors(likelihood, experiment).evidence([run], base.values, [*base.names, *names])
+            there, run = _imagined(likelihood, experiment, base)
+            e = there.evidence([run], base.values, [*base.names, *names])
         except SimulationError:
             continue
-        shown, weakest = _shown(search, e.S, base, prior_of(likelihood, base.names).slopes, effects, names)
+        shown, weakest = _shown(models, e.S, base, prior_of(likelihood, base.names).slopes, effects, names)
         if shown and (best is None or len(shown) > best[0]):
             best = (len(shown), experiment, shown, weakest)
     if best is None:
@@ -98,7 +98,7 @@ def reveal(search: Search, base: Fit, hidden: Sequence[str], among: Sequence[Exp
 
 
 def _shown(
-    search: Search, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str], names: Sequence[str]
+    models: Models, S: np.ndarray, base: Fit, prior: np.ndarray, effects: Sequence[str], names: Sequence[str]
 ) -> tuple[list[str], float]:
     """Effects that one run would show at δ, and the information of the weakest of them."""
     k = len(base.names)
@@ -106,8 +106,8 @@ def _shown(
     unsure = inverse(Z.T @ Z + known)
     shown, weakest = [], np.inf
     for effect in effects:
-        own = search.factory.parameters(effect)
-        X = S[:, [k + names.index(n) for n in own]] * [search.records[n].smallest_interesting for n in own]
+        own = models.factory.parameters(effect)
+        X = S[:, [k + names.index(n) for n in own]] * [models.factory.records[n].smallest_interesting for n in own]
         information = X.T @ X - X.T @ Z @ unsure @ Z.T @ X
         size = float(np.linalg.eigvalsh(information)[-1])
         if size > DEFAULT.tied:
@@ -116,8 +116,8 @@ def _shown(
     return shown, weakest
 
 
-def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> Run:
-    """The run as a fitted model would have it read, without noise."""
+def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tuple[Likelihood, Run]:
+    """The likelihood with an experiment's sensors, and the run as a fitted model would have it read, without noise."""
     known = {**likelihood.variant.values, **likelihood.campaign.known}
     given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
     measured = {c for r in likelihood.campaign.runs for c in r.channels} | set(experiment.sensors)
@@ -132,7 +132,7 @@ def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> Run
         dict(experiment.inputs),
         {},
     )
-    likelihood.starts[blank.name] = {
+    start = {
         "start.x": 0.0,
         "start.y": 0.0,
         "start.psi": experiment.heading,
@@ -141,12 +141,9 @@ def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> Run
         "start.psi_dot": 0.0,
     }
     w = likelihood.inputs(blank)
-    p = likelihood.variant.vector({**known, **model.values, **given, **likelihood.starts[blank.name]})
+    p = likelihood.variant.vector({**known, **model.values, **given, **start})
     simulated = likelihood.sensitivities.run(experiment.time, w, p)
     places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
-    return replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
-
-
-def _with_sensors(likelihood: Likelihood, experiment: Experiment) -> Likelihood:
-    sd = {**experiment.sensors, **likelihood.noise_model.sd}
-    return likelihood.with_noise_model(NoiseModel(sd, likelihood.noise_model.ar))
+    noise_model = NoiseModel({**experiment.sensors, **likelihood.noise_model.sd}, likelihood.noise_model.ar)
+    there = likelihood.started(noise_model, {blank.name: start}, {})
+    return there, replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})

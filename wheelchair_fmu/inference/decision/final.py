@@ -27,7 +27,7 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
     nobody estimated because the user set them, by name; `runs` says which readings were used (see `_run`). `more` are the
     records of generic terms, by name, one of which the model may have in it.
     """
-    found, likelihood = d.top, d.search.factory.likelihood(d.included)
+    found, likelihood = d.top, d.models.likelihood(d.included)
     records, covariance = {**more, **likelihood.records}, sandwich(found)
     errors = np.sqrt(np.maximum(np.diag(covariance), 0))
     priors = _priors(d, found, records)
@@ -40,14 +40,14 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
             for i, (name, se) in enumerate(zip(found.names, errors, strict=True))
         ],
         "covariance": ((covariance + covariance.T) / 2).tolist(),  # symmetric to the last digit
-        "fixed": {n: d.search.factory.variant.values.get(n) for n in sorted(d.search.factory.fixed)},
-        "runs": {r.name: _run(r, found.evidence) for r in d.search.factory.campaign.runs},
+        "fixed": {n: d.models.factory.variant.values.get(n) for n in sorted(d.models.factory.fixed)},
+        "runs": {r.name: _run(r, found.evidence) for r in d.models.factory.campaign.runs},
     }
 
 
 def _priors(d: Diagnosis, found: Fit, records: Mapping[str, Parameter]) -> dict[str, tuple[float, float]]:
     """Mean and standard deviation (inf: nothing was known) of each parameter before the fit."""
-    known = {**d.search.factory.variant.values, **d.search.factory.campaign.known}
+    known = {**d.models.factory.variant.values, **d.models.factory.campaign.known}
     given = {c.record.name: c.prior for c in d.calibration}
     slopes = abs(np.diag(found.prior_slopes))
     return {
@@ -60,7 +60,7 @@ def _interval(d: Diagnosis, found: Fit, records: Mapping[str, Parameter], at: in
     """That of an effect that was found, or one by standard errors alone; and which of the two it is."""
     name = found.names[at]
     if name in d.intervals:
-        return d.intervals[name], BY_ERRORS if d.search.factory.leads else BY_PROFILE
+        return d.intervals[name], BY_ERRORS if d.models.factory.leads else BY_PROFILE
     value, half, record = found.values[name], half_width(found, at), records[name]
     return (max(value - half, record.lower), min(value + half, record.upper)), BY_ERRORS
 

@@ -17,7 +17,7 @@ WORSE = 1.1  # times an error: a start that is off within what readings say of i
 def on_led_runs(step: Step, values: Mapping[str, float], led: Models) -> Step:
     """A step of a search on whole runs, with the errors that its `values` leave where the chair rolls, as those of all further
     steps are of a search that is `led`; whitened it stays as it is."""
-    campaign, likelihood = led.factory.campaign, led.factory.likelihood()
+    campaign, likelihood = led.campaign, led.likelihood()
     try:
         fitted, held = (channel_errors(likelihood.evidence(runs, values)) for runs in (campaign.fit, campaign.holdout))
     except SimulationError:  # it goes another way than any force could lead it: so its errors are of whole runs

@@ -11,11 +11,14 @@ from ...model.variant import Variant
 from ...quantities import Parameter
 from ..estimation.fit import Fit
 from ..estimation.statistics import standard_errors
-from ..evidence.evidence import Evidence
 from ..models.factory import ModelFactory
+from ..models.hypothesis import Model
+from ..models.models import Models, quiet
+from ..preflight.timing import clocks
 from ..residual.staircase import Step
-from ..search.beginning import begin, settle_clocks
-from ..search.search import Search
+from ..search.beginning import begin
+from ..search.refitting import candidate
+from ..search.screen import screen
 from .verdict import Diagnosis
 
 
@@ -32,31 +35,30 @@ class Improved:
 
 
 def add(
-    campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = lambda words: None
+    campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = quiet
 ) -> Improved:
     """Refit the chair with one more effect; its own effects are estimated anew.
 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
     """
-    search = Search(ModelFactory(windows(campaign), chair, fixed), progress=say)
-    base, held, ladder = begin(search, say)
-    on: tuple[str, ...] = ()
-    for one in (*(e for e in chair.effects if e != effect and search.factory.parameters(e)), effect):
+    begun = begin(Models.of(ModelFactory(windows(campaign), chair, frozenset(fixed)), say=say))
+    models, now, ladder = begun.models, begun.calibrated, begun.ladder
+    for one in (*(e for e in chair.effects if e != effect and models.factory.parameters(e)), effect):
         say(f"refitting with {one}")
-        base, held = search.with_given((*on, one), base) if one != effect else _with(search, base, held, on, one)
-        on = (*on, one)
-        ladder.append(Step.of(f"+{one}", base.evidence, held))
-    settle_clocks(search, base.evidence, held)
-    notes = (*search.notes, *search.noise_notes)
-    return Improved(improved(chair, on, base, campaign), base, search.factory.likelihood(on).records, tuple(ladder), notes)
+        on = (*now.effects, one)
+        models, now = models.with_given(on, now.fit) if one != effect else _with(models, now, one)
+        ladder = (*ladder, Step.of(f"+{one}", now.fit.evidence, now.heldout))
+    notes = (*begun.heard(clocks(now.fit.evidence, now.heldout)), *models.setting.notes)
+    records = models.likelihood(now.effects).records
+    return Improved(improved(chair, now.effects, now.fit, campaign), now.fit, records, ladder, notes)
 
 
-def _with(search: Search, base: Fit, held: Evidence, on: tuple[str, ...], effect: str) -> tuple[Fit, Evidence]:
-    screened = search.screen(base, on, [effect])
-    candidate = search.candidate(base, held, on, screened[0], 1) if screened else None
-    if candidate is None:
+def _with(models: Models, base: Model, effect: str) -> tuple[Models, Model]:
+    screened = screen(models, base, [effect])
+    found = candidate(models, base, screened[0], 1) if screened else None
+    if found is None:
         raise Failure(f"the chair with {effect} cannot be simulated on these runs; check its bounds and its law")
-    return search.settled((*on, effect), candidate.fit)
+    return models.settled((*base.effects, effect), found.fit)
 
 
 def improved(chair: Variant, effects: Sequence[str], found: Fit, campaign: Campaign) -> Variant:

@@ -19,31 +19,32 @@ from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts
 from ..estimation.fit import Fit
 from ..estimation.interval import half_width, profile_interval
-from ..estimation.statistics import correlation_time, estimates
+from ..estimation.statistics import correlation_time
 from ..evidence.disturbance import Strength, acting, strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import MASS
 from ..evidence.limits import beyond
 from ..evidence.noise_model import NoiseModel
-from ..models.factory import CALIBRATED, MEASURED, TOGETHER, ModelFactory
+from ..models.factory import CALIBRATED, MEASURED, ModelFactory
+from ..models.models import Models, quiet
+from ..models.setting import Setting
 from ..policy import DEFAULT, SearchPolicy
-from ..preflight.timing import unlike_the_others
+from ..preflight.timing import Late, clocks, unlike_the_others
 from ..residual.lead import lead
 from ..residual.staircase import Step
 from ..residual.unexplained import Unexplained, unexplained
-from ..search.beginning import retime_by_slopes, settle_clocks
-from ..search.candidate import Candidate, ranked
+from ..search.beginning import Beginning, Clocks, begin, late_by_slopes
+from ..search.candidate import Candidate
 from ..search.probability import beliefs, shared
 from ..search.relief import reliefs
 from ..search.rounds import Belief, Round
-from ..search.screen import AT_THE_FLOOR, PROMISING
-from ..search.search import HALFWAY, HOPELESS, Search, at_the_floor
-from ..search.selection import StepwiseSelection
+from ..search.screen import screen
+from ..search.selection import Selection, selection
 from ..search.ties import grouped, tied
 from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worsened
+from .leftover import leftover, settled
 
-TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 
 
@@ -54,7 +55,8 @@ class Diagnosis:
     `included` are the effects of the model in the end, of which the variant came with `already`; `rounds` those of the search,
     `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
     "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood, or by
-    standard errors where forces that nobody recorded lead the runs.
+    standard errors where forces that nobody recorded lead the runs. `models` are those that were searched, `retimed` and
+    `clocks` what is known of time, and `heard` sentences on columns and clocks.
     """
 
     campaign: str
@@ -71,7 +73,10 @@ class Diagnosis:
     final: Fit
     calibration: tuple[Calibrated, ...]
     intervals: Mapping[str, tuple[float, float]]
-    search: Search
+    models: Models
+    retimed: Mapping[str, Late]
+    clocks: Clocks
+    heard: tuple[str, ...]
     notes: tuple[str, ...]
     next_experiment: dict[str, Any] | None
     seconds: float = 0.0
@@ -96,8 +101,8 @@ class Diagnosis:
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
         """By effect, which of its parameters (k,) may only be positive."""
-        w = self.search.factory
-        return {e: self.search.one_sided(w.parameters(e)) for e in w.catalogue}
+        w = self.models.factory
+        return {e: w.one_sided(w.parameters(e)) for e in w.catalogue}
 
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
@@ -112,7 +117,7 @@ def diagnose(
     variant: Variant | None = None,
     generic: Mapping[str, Effect] | None = None,
     calibrated: Sequence[str] = CALIBRATED,
-    progress: Callable[[str], None] = lambda words: None,
+    progress: Callable[[str], None] = quiet,
     experiments: Sequence[Experiment] = (),
     fixed: Iterable[str] = (),
     stepped: Callable[[Sequence[Step]], None] = lambda ladder: None,
@@ -127,20 +132,20 @@ def diagnose(
     began = time.monotonic()
     campaign = windows(campaign)
 
-    factory = ModelFactory(campaign, variant or Variant(), fixed, calibrated)
-    found = _searched(Search(factory, progress, policy), generic or {}, experiments, stepped)
-    found = _with_forces(found, lambda search: _searched(search, {}, experiments, stepped), progress)
+    models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
+    found = _diagnosed(models, generic or {}, experiments, stepped)
+    found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     notes = (*found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
-def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
+def _with_forces(found: Diagnosis, again: Callable[[Models], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
     with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
     before, along = _acting(found, (), found.rounds[0].fit)
-    if found.verdict != "outside" or found.ladder[-1].left < found.search.policy.a_little or not before.fall:
+    if found.verdict != "outside" or found.ladder[-1].left < found.models.policy.a_little or not before.fall:
         return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
     say("searching again, with forces that nobody recorded")
     try:
@@ -151,102 +156,128 @@ def _with_forces(found: Diagnosis, again: Callable[[Search], Diagnosis], say: Ca
     if left.ordered or not left.like_a_floor:
         return replace(found, unexplained=left)
     nominal, calibrated = found.ladder[:2]
-    calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.search)
+    calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.models)
     with_forces = replace(second.ladder[1], name=FORCES)
     return replace(second, ladder=(nominal, calibrated, with_forces, *second.ladder[2:]), unexplained=left)
 
 
-def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Search:
-    """A search of the same campaign, with its columns and clocks as they were found, along such forces, as they lead the
+def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Models:
+    """The models of the same campaign, with its columns and clocks as they were found, along such forces, as they lead the
     calibrated model's runs."""
-    factory = found.search.factory.led(along, found.rounds[0].fit.values)
-    mass = found.search.factory.likelihood().chair(found.rounds[0].fit.values)[MASS]
-    factory.noise_model = forces.put_into(NoiseModel(factory.campaign.noise), mass)
-    search = Search(factory, found.search.say, found.search.policy)
-    search.notes = list(found.search.notes)
-    return search
+    w, values = found.models.factory, found.rounds[0].fit.values
+    mass = found.models.likelihood().chair(values)[MASS]
+    noise_model = forces.put_into(NoiseModel(w.campaign.noise), mass)
+    return replace(found.models, factory=w.led(), setting=Setting.led(noise_model, along, values))
 
 
 def _left(found: Diagnosis, before: Strength) -> Unexplained:
     """The force that the last model of a search lacks, where it lacked so much `before`, and what orders it."""
     after, evidence = _acting(found, found.included, found.top)
-    return unexplained(found.search.factory.likelihood(found.included), found.top, before, after, evidence)
+    return unexplained(found.models.likelihood(found.included), found.top, before, after, evidence)
 
 
 def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength, Evidence]:
     """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
     term, which no likelihood of the search knows."""
-    likelihood = found.search.factory.likelihood(effects)
+    likelihood = found.models.likelihood(effects)
     t_r = likelihood.chair(at.values)["chair.t_r"]
     if not set(at.names) <= set(likelihood.records):
         return strength(at.evidence, t_r), at.evidence
     return acting(likelihood, at.values, t_r)
 
 
-def _searched(
-    search: Search, generic: Mapping[str, Effect], experiments: Sequence[Experiment], stepped: Callable[[Sequence[Step]], None]
+def _diagnosed(
+    models: Models,
+    generic: Mapping[str, Effect],
+    experiments: Sequence[Experiment],
+    stepped: Callable[[Sequence[Step]], None],
+    heard: tuple[str, ...] = (),
 ) -> Diagnosis:
-    """The search up the staircase, and the verdict on where it ends."""
-    campaign = search.factory.campaign
-    selection = StepwiseSelection(search, stepped)
-    selection.to_the_top()
-    if retime_by_slopes(search, selection.effects, (*selection.named(), *selection.already), selection.base):
-        selection = StepwiseSelection(search, stepped)
-        selection.to_the_top()
-    leftover, proposal = _leftover(selection, generic)
-    included, base, ladder, rounds = selection.effects, selection.base, selection.ladder, selection.rounds
+    """The search up the staircase, and the verdict on where it ends; `heard` are sentences on columns and clocks that there are
+    already."""
+    beginning, found = _climbed(models, stepped)
+    models, rounds, base = found.models, found.rounds, found.top.fit
+    left, proposal = leftover(found, generic)
+    included, ladder = found.effects, found.ladder
     if proposal is not None:
-        included, proposal, ladder = _settle(search, generic, included, proposal, ladder)
-        stepped(tuple(ladder))
-    beside = {e: r for e, r in selection.beside.items() if r} if proposal is None else {}
-    effects = tuple(e for e in selection.named() if e in included)
+        included, proposal, ladder = settled(found, generic, proposal)
+        stepped(ladder)
+    beside = {e: r for e, r in found.beside.items() if r} if proposal is None else {}
+    effects = tuple(e for e in found.named() if e in included)
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
-    ties = tuple(group for group, _ in groups)
-    values = calibration(search.factory.likelihood(included), proposal.fit if proposal else base)
-    verdict = _verdict(search, effects, ties, rounds, proposal, ladder, base.evidence, values)
-    found = dict.fromkeys(chain.from_iterable(grouped(effects, ties)))
-    named = found if verdict in ("missing", "tie", "outside") else _slight(rounds[0]) if verdict == "small" else ()
-    following = _next(search, verdict, groups, rounds, experiments)
-    intervals = _intervals(search, included, effects, base) if proposal is None else {}
-    settle_clocks(search, base.evidence, selection.held)
-    thinned = (campaign.thinned,) if campaign.thinned else ()
-    beyond_limits = beyond(search.factory.likelihood(selection.effects), base.evidence)
-    doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
-    odd = unlike_the_others(base.evidence, selection.held)
-    large = _instead_of_small(rounds[0]) if verdict == "small" else ()
-    notes = (*thinned, *search.notes, *odd, *search.noise_notes, *doubtful, *beyond_limits, *large)
+    ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
+    values = calibration(models.likelihood(included), proposal.fit if proposal else base)
+    verdict = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, values)
+    heard = (*heard, *beginning.heard(in_time))
     return Diagnosis(
-        campaign.name,
-        verdict,
-        tuple(named),
-        tuple(included),
-        selection.already,
-        ties,
-        tuple(ladder),
-        tuple(rounds),
-        tuple(beside.values()),
-        leftover,
-        proposal,
-        base,
-        tuple(values),
-        intervals,
-        search,
-        notes,
-        following,
+        campaign=models.campaign.name,
+        verdict=verdict,
+        effects=_named(verdict, effects, ties, rounds[0]),
+        included=included,
+        already=found.already,
+        ties=ties,
+        ladder=ladder,
+        rounds=rounds,
+        beside=tuple(beside.values()),
+        leftover=left,
+        proposal=proposal,
+        final=base,
+        calibration=tuple(values),
+        intervals=_intervals(models, included, effects, base) if proposal is None else {},
+        models=models,
+        retimed=beginning.retimed,
+        clocks=in_time,
+        heard=heard,
+        notes=_notes(found, heard, verdict, proposal, values),
+        next_experiment=_next(models, verdict, groups, rounds, experiments),
     )
 
 
-def _intervals(search: Search, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
+def _named(verdict: str, effects: Sequence[str], ties: Sequence[Sequence[str]], first: Round) -> tuple[str, ...]:
+    """The effects that a verdict is on."""
+    if verdict in ("missing", "tie", "outside"):
+        return tuple(dict.fromkeys(chain.from_iterable(grouped(effects, ties))))
+    return _slight(first) if verdict == "small" else ()
+
+
+def _climbed(models: Models, stepped: Callable[[Sequence[Step]], None]) -> tuple[Beginning, Selection]:
+    """Where a search began, and how it ended; once again where its last model shows that pushes are a little early or late."""
+    first = begin(models)
+    found = selection(first, stepped).to_the_top()
+    named = (*found.named(), *found.already)
+    late = late_by_slopes(found.models, found.effects, named, found.top.fit)
+    if not late:
+        return first, found
+    again = begin(replace(found.models, factory=found.models.factory.retimed(late)))
+    notes = tuple(dict.fromkeys((*first.notes, *again.notes)))
+    again = replace(again, notes=notes, retimed={**first.retimed, **late, **again.retimed})
+    return again, selection(again, stepped).to_the_top()
+
+
+def _notes(
+    found: Selection, heard: Sequence[str], verdict: str, proposal: Candidate | None, values: Sequence[Calibrated]
+) -> tuple[str, ...]:
+    """Sentences on recordings, on noise, and on what a model came out at that nobody should believe."""
+    models, top, rounds = found.models, found.top, found.rounds
+    thinned = (models.campaign.thinned,) if models.campaign.thinned else ()
+    odd = unlike_the_others(top.fit.evidence, top.heldout)
+    doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
+    beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
+    large = _instead_of_small(rounds[0]) if verdict == "small" else ()
+    return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large)
+
+
+def _intervals(models: Models, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
     """Intervals of the parameters of the effects that were found."""
-    likelihood, names = search.factory.likelihood(included), [n for e in effects for n in search.factory.parameters(e)]
-    if search.factory.leads:  # no value was found by how likely the readings are
+    likelihood, names = models.likelihood(included), [n for e in effects for n in models.factory.parameters(e)]
+    if models.factory.leads:  # no value was found by how likely the readings are
         ends = {n: half_width(found, found.names.index(n)) for n in names if n in found.names}
         return {n: (found.values[n] - end, found.values[n] + end) for n, end in ends.items()}
     return {n: profile_interval(likelihood, found, n) for n in names if n in found.names}
 
 
 def _next(
-    search: Search,
+    models: Models,
     verdict: str,
     ties: Sequence[tuple[Sequence[str], Round]],
     rounds: Sequence[Round],
@@ -256,86 +287,19 @@ def _next(
     if not experiments:
         return None
     if verdict == "tie":
-        search.say("looking for an experiment that breaks the tie")
+        models.say("looking for an experiment that breaks the tie")
         (group, found), *_ = ties
         fits = {c.effect: c.fit for c in found.candidates}
-        return separate(search, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments, found.effects)
+        return separate(models, fits[group[0]], fits[group[1]], (group[0], group[1]), experiments, found.effects)
     if verdict == "cannot_see":
-        search.say("looking for an experiment that would show more")
-        weak = [s.effect for s in rounds[0].scores if s.power < search.policy.power]
-        return reveal(search, rounds[0].fit, weak, experiments)
+        models.say("looking for an experiment that would show more")
+        weak = [s.effect for s in rounds[0].scores if s.power < models.policy.power]
+        return reveal(models, rounds[0].fit, weak, experiments)
     return None
 
 
-def _leftover(selection: StepwiseSelection, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:
-    """Test the generic terms on what is left; a proposal where one is found that no effect explains."""
-    if not generic:
-        return None, None
-    search, effects, base, held, rounds = selection.search, selection.effects, selection.base, selection.held, selection.rounds
-    search.say("looking for what no effect explains")
-    terms = Search(search.factory.widened(generic), search.say, search.policy.of_terms)
-    first, found = rounds[0], effects[len(rounds[0].effects) :]
-    if len(found) > 1 or (found and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
-        promised = max((s.drop for s in first.scores if s.effect in found), default=0.0)  # by slopes, like the terms'
-        alone = _terms(terms, generic, first.effects, first.fit, first.heldout, HOPELESS * promised, base.misfit)
-        names = [n for e in found for n in search.factory.parameters(e)]
-        joint = search.judge(first.fit, first.heldout, base, held, TOGETHER.join(found), names, len(first.scores))
-        if alone.winner is not None and _likelier(alone.winner, joint, search.policy, len(first.scores)):
-            return alone, alone.winner
-    if found and at_the_floor(base.evidence, held):
-        scores = (s.score for s in terms.screen(base, effects, list(generic)))
-        return Round(effects, base, held, tuple(scores), ()), None  # too little is left to call what was found wrong
-    known = [c for r in rounds if r.effects == effects for c in r.every if c.possible]
-    left = _terms(terms, generic, effects, base, held, HALFWAY * max((c.drop for c in known), default=0.0))
-    best = left.winner
-    if best is not None and not all(_likelier(best, c, search.policy, len(first.scores)) for c in known):
-        best = None  # an effect of the catalogue does so, be it too small to be named
-    return left, best
-
-
-def _terms(
-    search: Search,
-    generic: Mapping[str, Effect],
-    effects: tuple[str, ...],
-    base: Fit,
-    held: Evidence,
-    least: float,
-    rival: float = np.inf,
-) -> Round:
-    """A round of the generic terms beside these effects."""
-    odds, least = search.policy.generic_odds, max(PROMISING, least)
-    return search.round(effects, base, held, list(generic), most=TERMS, twin=1.0, least=least, rival=rival, odds=odds)
-
-
-def _likelier(term: Candidate, other: Candidate, policy: SearchPolicy, effects: int) -> bool:
-    """Is a generic term likelier than an effect, or several, of a catalogue of so many, be these large or slight?"""
-    prior = policy.log_prior(effects)
-    both = {c.effect: c.support for c in ranked([term, other])}
-    ours, theirs = both[term.effect], both[other.effect]
-    return prior + np.log(policy.generic_odds) + ours.large > max(prior * len(other.members) + theirs.large, theirs.slight)
-
-
-def _settle(
-    search: Search, generic: Mapping[str, Effect], effects: tuple[str, ...], proposal: Candidate, ladder: list[Step]
-) -> tuple[tuple[str, ...], Candidate, list[Step]]:
-    """The proposal with the effects that still stand beside it; those it replaces leave the staircase."""
-    wider = Search(search.factory.widened(generic), search.say, search.policy)
-    beside = tuple(e for e in effects if any(n.startswith(f"effect.{e}.") for n in proposal.fit.names))
-    whole = (*beside, proposal.effect)
-    found, held = wider.settled(whole, proposal.fit)
-    every, fewer = wider.pruned(whole, found)
-    if every != whole:
-        found, held = wider.settled(every, fewer)
-    estimate, covariance = estimates(found, wider.factory.parameters(proposal.effect))
-    kept = every[:-1]
-    steps = [step for step in ladder if not step.name.startswith("+") or step.name[1:] in kept]
-    steps.append(Step.of(f"+{proposal.effect}", found.evidence, held))
-    settled = replace(proposal, fit=found, heldout=held, estimate=estimate, covariance=covariance)
-    return kept, settled, steps
-
-
 def _verdict(
-    search: Search,
+    models: Models,
     effects: Sequence[str],
     ties: Sequence[Sequence[str]],
     rounds: Sequence[Round],
@@ -345,21 +309,21 @@ def _verdict(
     values: Sequence[Calibrated],
 ) -> str:
     # a body that swings with the pushes, and that nobody recorded, answers them as another mass would
-    swings = search.factory.noise_model.body > 0
+    swings = models.setting.noise_model.body > 0
     strained = [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
-    if proposal is not None or ladder[-1].left > search.policy.unexplained or strained:
+    if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
         return "outside"
-    lasting = correlation_time(left) > search.policy.lasting
-    if effects and not search.factory.leads and insufficient(ladder, search.policy) and lasting:
+    lasting = correlation_time(left) > models.policy.lasting
+    if effects and not models.factory.leads and insufficient(ladder, models.policy) and lasting:
         return "outside"
     if effects:
         return "tie" if ties else "missing"
-    if lasting and _structured(left, search.policy):
+    if lasting and _structured(left, models.policy):
         return "outside"
     if _slight(rounds[0]):
         return "small"
-    seen = _seen(search, rounds[0])
-    return "adequate" if share_seen(seen, search.factory.catalogue) >= search.policy.library else "cannot_see"
+    seen = _seen(models, rounds[0])
+    return "adequate" if share_seen(seen, models.factory.catalogue) >= models.policy.library else "cannot_see"
 
 
 def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:
@@ -371,14 +335,14 @@ def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> flo
     return float(np.mean([float(np.mean(forms)) for forms in causes.values()] or [0.0]))
 
 
-def _seen(search: Search, first: Round) -> dict[str, bool]:
+def _seen(models: Models, first: Round) -> dict[str, bool]:
     """Which effects would have been seen if they were there, but for what mass and geometry could be instead within what is
     known of them: in that case the model predicts as well without."""
-    weak = [s.effect for s in first.scores if s.power < search.policy.power]
+    weak = [s.effect for s in first.scores if s.power < models.policy.power]
     exact = replace(first.fit, names=tuple(n for n in first.fit.names if n not in MEASURED))
-    again = search.screen(exact, first.effects, weak) if weak else []
+    again = screen(models, replace(first.model, fit=exact), weak) if weak else []
     powers = {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}
-    return {effect: power >= search.policy.power for effect, power in powers.items()}
+    return {effect: power >= models.policy.power for effect, power in powers.items()}
 
 
 def insufficient(ladder: Sequence[Step], policy: SearchPolicy = DEFAULT) -> bool:

@@ -386,6 +386,15 @@ class Likelihood:
         other.__dict__ = {**self.__dict__, "noise_model": noise_model}
         return other
 
+    def started(
+        self, noise_model: NoiseModel, starts: Mapping[str, Mapping[str, float]], paths: Mapping[str, np.ndarray]
+    ) -> Likelihood:
+        """The same likelihood with other noise, and with runs started and led from there; where it moves them is its own."""
+        other = self.with_noise_model(noise_model)
+        other.starts = {**self.starts, **{run: dict(start) for run, start in starts.items()}}
+        other.paths = {**self.paths, **paths}
+        return other
+
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""

@@ -20,6 +20,7 @@ from ..estimation.interval import LEVEL, NORMAL, half_width, profile
 from ..estimation.statistics import finite
 from ..evidence.likelihood import Likelihood
 from ..models.factory import ModelFactory
+from ..models.models import Models
 from ..parallel import parallel_map
 
 ALONG = np.linspace(-1.6, 1.6, 13)  # half widths of the interval, about an estimate
@@ -28,7 +29,7 @@ ABOUT = np.linspace(-3.6, 3.6, 9)  # standard deviations along either axis of tw
 
 
 @threadpool_limits.wrap(limits=1)  # as in diagnose: BLAS threads would only wait for one another
-def landscape(factory: ModelFactory, told: Mapping[str, Any]) -> dict[str, Any]:
+def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
     """`profiles` of the effects that a diagnosis found, and the `pair` of the first that has a rival, None without one.
 
     A profile has `parameter`, `estimate`, `values` (SI) and their `heights`, and `level`, below which 95 % lie. A pair has
@@ -36,16 +37,17 @@ def landscape(factory: ModelFactory, told: Mapping[str, Any]) -> dict[str, Any]:
     SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, and `middle`,
     below which 50 % lie. There are neither where the last model cannot be simulated; a height is None where no model can be.
     """
+    factory = models.factory
     effects, values = [e for e in told["effects"] if e in factory.catalogue], told["models"][-1]["values"]
     names = [n for n in factory.calibrated if n in values] + [n for n in values if n.startswith("effect.")]
-    likelihood = factory.likelihood(effects_in(names))
+    likelihood = models.likelihood(effects_in(names))
     names = [n for n in names if n in likelihood.records]
     own = [n for e in effects for n in factory.parameters(e) if n in names]
     if not own:
         return {"profiles": [], "pair": None}
     try:
         found = fit(likelihood, names, values)
-        return {"profiles": [_profile(likelihood, found, n) for n in own], "pair": _pair(factory, told, effects, found)}
+        return {"profiles": [_profile(likelihood, found, n) for n in own], "pair": _pair(models, told, effects, found)}
     except SimulationError:
         return {"profiles": [], "pair": None}
 
@@ -75,12 +77,13 @@ def _robust(found: Fit, at: int) -> float:
     return float(found.covariance[at, at] / (half_width(found, at) / NORMAL) ** 2)
 
 
-def _pair(factory: ModelFactory, told: Mapping[str, Any], effects: Sequence[str], base: Fit) -> dict[str, Any] | None:
+def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base: Fit) -> dict[str, Any] | None:
     """The sizes of an effect and of its rival, fitted together: in a tie the other one of it, else what looks most alike."""
+    factory = models.factory
     one, other = _rivals(factory, told, effects)
     if other is None:
         return None
-    likelihood = factory.likelihood((*effects_in(base.names), other))
+    likelihood = models.likelihood((*effects_in(base.names), other))
     pair = (factory.parameters(one)[0], factory.parameters(other)[0])
     found = fit(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
     at = [found.names.index(n) for n in pair]

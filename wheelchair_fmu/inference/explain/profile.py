@@ -10,7 +10,8 @@ import numpy as np
 from ...model.stage import Effect
 from ..estimation.fit import Fit, prior_of
 from ..estimation.score import robust_variance
-from ..search.search import Search
+from ..models.models import Models
+from ..search.screen import projector
 
 SUPPORTED = 0.9  # of a knot's prior variance that the data must take away, for the knot to be drawn
 
@@ -24,17 +25,17 @@ class Profile:
     se: np.ndarray
 
 
-def profiles(search: Search, base: Fit, effects: tuple[str, ...], free: Mapping[str, Effect]) -> list[Profile]:
+def profiles(models: Models, base: Fit, effects: tuple[str, ...], free: Mapping[str, Effect]) -> list[Profile]:
     """One linear estimate for each of the `free` effects, beside a model without what is missing.
 
     Each is estimated alone, from the innovations and with the calibrated directions taken off; the spread of size 10 δ about
     zero keeps knots that the data hardly reach from running away.
     """
-    factory = search.factory.widened(free)
-    likelihood = factory.wide(effects)
+    wider = models.widened(free)
+    factory, likelihood = wider.factory, wider.wide(effects)
     names = [n for effect in free for n in factory.parameters(effect)]
-    evidence = likelihood.evidence(factory.campaign.fit, base.values, [*base.names, *names])
-    k, off = len(base.names), search.off(likelihood, base, evidence)
+    evidence = likelihood.evidence(wider.campaign.fit, base.values, [*base.names, *names])
+    k, off = len(base.names), projector(likelihood, base, evidence)
     found = []
     for effect in free:
         own = factory.parameters(effect)

@@ -33,10 +33,10 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "next_experiment": d.next_experiment,
         "sync": {
             run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
-            for run, of in d.search.clocks.items()
+            for run, of in d.clocks.items()
         },
         "baseline": {
-            run: {push: dict(found) for push, found in of.items()} for run, of in d.search.factory.campaign.rims.items()
+            run: {push: dict(found) for push, found in of.items()} for run, of in d.models.factory.campaign.rims.items()
         },
         "physical": d.ladder[-1].physical,
         "disturbance": d.unexplained.as_json() if d.unexplained else None,
@@ -83,12 +83,12 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
         }
         for r in d.rounds
         for c in r.groups
-        if (names := d.search.factory.parameters(c.effect))
+        if (names := d.models.factory.parameters(c.effect))
     ]
 
 
 def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
-    records = d.search.records
+    records = d.models.factory.records
     estimate, se = _estimate(d, s, c)
     parameters = {
         name.rpartition(".")[2]: {
@@ -141,7 +141,7 @@ def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
         return "small" if d.verdict == "small" else "missing"
     if s.effect in d.included or (c and not c.matters and c.p < SIGNIFICANT):
         return "small"
-    return "not needed" if s.power >= d.search.policy.power else "cannot_see"
+    return "not needed" if s.power >= d.models.policy.power else "cannot_see"
 
 
 def leftover_json(d: Diagnosis) -> dict[str, Any]:

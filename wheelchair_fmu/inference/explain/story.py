@@ -21,13 +21,13 @@ def story(d: Diagnosis) -> dict[str, Any]:
     for row in content["ranking"]:
         values = models.get(f"+{row['effect']}", refitted.get(row["effect"]))
         row["values"] = None if values is None else dict(values)
-    noise_model = d.search.factory.noise_model
+    noise_model = d.models.setting.noise_model
     return {
         **content,
-        "calibrated": list(d.search.names(())),
+        "calibrated": list(d.models.names(())),
         "begins": _beginning(d),
         "noise": asdict(noise_model),
-        "fingerprint": d.search.factory.campaign.fingerprint,
+        "fingerprint": d.models.factory.campaign.fingerprint,
         "made_by": {"version": __version__, "code": code_fingerprint()},
         "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],
     }

@@ -1,4 +1,4 @@
-"""Benches for any set of effects: each as light as it can be, made once.
+"""Likelihoods for any set of effects: each as light as it can be, compiled once.
 
 An effect that brings a state makes every simulation dearer, and one more model to compile. Those that bring none are in one
 model together, off or on, and beside effects with states only where somebody asks for any.
@@ -6,8 +6,9 @@ model together, off or on, and beside effects with states only where somebody as
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -16,10 +17,11 @@ from ...campaign.channels import MOMENTUM
 from ...model.stage import Effect
 from ...model.variant import Variant
 from ...model.wheelchair import adds_state
-from ..evidence.evidence import Evidence
+from ...quantities import Parameter
 from ..evidence.likelihood import Likelihood, driven
 from ..evidence.noise_model import NoiseModel
 from ..preflight.timing import Late, retimed
+from .setting import Setting
 
 MEASURED = ("chair.m", "chair.a", "chair.b", "chair.t_r")  # by scales and tape, well enough to be doubted only a little
 CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", *MEASURED)
@@ -41,62 +43,101 @@ def _of_a_standing_start(campaign: Campaign) -> tuple[str, ...]:
     return (ONSET,) if sets_off(campaign) else ()
 
 
-OF_CAMPAIGNS = (SCALE, ONSET)  # what is calibrated of some only
-
-
+@dataclass(frozen=True)
 class ModelFactory:
-    """A campaign, the variant it is compared with, and a likelihood for every question.
+    """Likelihoods for every question about a campaign and the `chair` that it is compared with.
 
-    `calibrated` are the parameters that every fit estimates, `fixed` those that nobody estimates. `given` are the values that
-    the variant's own effects have for a start; they are estimated again, unless they are fixed.
+    `usual` are the parameters that fits to any campaign estimate, but for the `fixed` ones, which nobody does. A factory that
+    `leads` has every run led along the forces that nobody recorded.
     """
 
-    def __init__(self, campaign: Campaign, variant: Variant, fixed: Iterable[str] = (), calibrated: Iterable[str] = CALIBRATED):
-        self.fixed = frozenset(fixed)
-        names = (*calibrated, *_of_the_body(campaign), *_of_a_standing_start(campaign))
-        self.calibrated = tuple(n for n in dict.fromkeys(names) if n not in self.fixed)
-        self.given = {n: v for n, v in variant.values.items() if n.startswith("effect.") and n not in self.fixed}
-        self.campaign = campaign
-        self.variant = replace(variant, values={n: v for n, v in variant.values.items() if n not in self.given})
-        self.catalogue: dict[str, Effect] = dict(variant.catalogue)
-        self.groups = groups_of(self.catalogue)
-        self.demanding = [e for e in self.catalogue if self.catalogue[e].needs]
-        self.heavy = [e for e in self.catalogue if e not in self.demanding and adds_state(variant.choice, self.catalogue[e])]
-        self.light = [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
-        self.noise_model = NoiseModel(campaign.noise)
-        self._benches: dict[tuple[frozenset[str], bool], Likelihood] = {}
-        self.starts: dict[str, dict[str, float]] = {}
-        self.paths: dict[str, np.ndarray] = {}
-        self.leads = False  # are runs led along the forces that nobody recorded?
-        self.begun: dict[str, float] = {}  # calibrated values from where calibration starts, if not from those given
+    campaign: Campaign
+    chair: Variant
+    fixed: Collection[str] = ()
+    usual: Sequence[str] = CALIBRATED
+    leads: bool = False
 
-    def led(self, along: Evidence, values: Mapping[str, float]) -> ModelFactory:
-        """The same, of where the chair rolls, with every run led along the forces that nobody recorded: from starts, paths and
-        calibrated `values` of evidence `along` which they led."""
-        other = ModelFactory(moving(self.campaign), self.variant, self.fixed, self._usual)
-        other.given, other.noise_model, other.leads, other.begun = self.given, self.noise_model, True, dict(values)
-        other.starts = {e.run.name: dict(e.start) for e in along.runs}
-        other.paths = {e.run.name: e.path for e in along.runs if e.path is not None}
-        return other
+    @cached_property
+    def calibrated(self) -> tuple[str, ...]:
+        """The parameters that every fit estimates."""
+        names = (*self.usual, *_of_the_body(self.campaign), *_of_a_standing_start(self.campaign))
+        return tuple(n for n in dict.fromkeys(names) if n not in self.fixed)
+
+    @cached_property
+    def given(self) -> dict[str, float]:
+        """The values that the chair's own effects have for a start; they are estimated again, unless they are fixed."""
+        return {n: v for n, v in self.chair.values.items() if n.startswith("effect.") and n not in self.fixed}
+
+    @cached_property
+    def variant(self) -> Variant:
+        """The chair without what is `given`."""
+        return replace(self.chair, values={n: v for n, v in self.chair.values.items() if n not in self.given})
 
     @property
-    def _usual(self) -> list[str]:
-        """What is calibrated of any campaign."""
-        return [n for n in self.calibrated if n not in OF_CAMPAIGNS]
+    def catalogue(self) -> Mapping[str, Effect]:
+        return self.chair.catalogue
 
-    def likelihood(self, effects: Iterable[str] = ()) -> Likelihood:
+    @cached_property
+    def records(self) -> dict[str, Parameter]:
+        """The parameters of all effects, by full name."""
+        return {p.name: p for e in self.catalogue.values() for p in e.owned}
+
+    @cached_property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """See `groups_of`."""
+        return groups_of(self.catalogue)
+
+    @cached_property
+    def demanding(self) -> list[str]:
+        """Effects that ask for another law."""
+        return [e for e, effect in self.catalogue.items() if effect.needs]
+
+    @cached_property
+    def heavy(self) -> list[str]:
+        """Effects of the usual laws that bring states of their own."""
+        return [e for e, effect in self.catalogue.items() if not effect.needs and adds_state(self.chair.choice, effect)]
+
+    @cached_property
+    def light(self) -> list[str]:
+        """Effects that make no simulation dearer."""
+        return [e for e in self.catalogue if e not in self.demanding and e not in self.heavy]
+
+    @property
+    def setting(self) -> Setting:
+        """Nothing but what the campaign says."""
+        return Setting(NoiseModel(self.campaign.noise))
+
+    def likelihood(self, effects: Iterable[str] = (), setting: Setting | None = None) -> Likelihood:
         """The likelihood on which these effects may be on."""
         wanted = self._members(effects)
         heavy = wanted.difference(self.light)
-        return self._likelihood(wanted if heavy and heavy == wanted else {*self.light, *heavy})
+        return self._likelihood(wanted if heavy and heavy == wanted else {*self.light, *heavy}, setting)
 
-    def wide(self, effects: Iterable[str] = ()) -> Likelihood:
+    def wide(self, effects: Iterable[str] = (), setting: Setting | None = None) -> Likelihood:
         """The likelihood on which these effects, and all light ones, may be on."""
-        return self._likelihood({*self.light, *self._members(effects)})
+        return self._likelihood({*self.light, *self._members(effects)}, setting)
 
-    def rerun(self, effects: Iterable[str] = ()) -> Likelihood:
+    def rerun(self, effects: Iterable[str] = (), setting: Setting | None = None) -> Likelihood:
         """A likelihood on which these effects may be on, and that only runs evidence again: it is compiled in half the time."""
-        return self._likelihood(self._members(effects), derives=False)
+        return self._likelihood(self._members(effects), setting, derives=False)
+
+    def _likelihood(self, effects: set[str], setting: Setting | None, derives: bool = True) -> Likelihood:
+        """One of its own for whoever asks: what it finds of starts is nobody else's."""
+        here = setting or self.setting
+        return self._compiled(frozenset(effects), derives).started(here.noise_model, here.starts, here.paths)
+
+    @cached_property
+    def _compiled(self) -> Callable[[frozenset[str], bool], Likelihood]:
+        """The likelihood of these effects, made once."""
+
+        @cache
+        def compiled(effects: frozenset[str], derives: bool) -> Likelihood:
+            chosen = [e for e in self.catalogue if e in effects]
+            own = (n for e in chosen for n in self.parameters(e))
+            columns = (*dict.fromkeys((*self.calibrated, ONSET)), *own)
+            return Likelihood(self.campaign, self.variant.with_effects(chosen), None, columns, derives, self.leads)
+
+        return compiled
 
     def _members(self, effects: Iterable[str]) -> set[str]:
         """These effects, the members of those that are groups, and the variant's own."""
@@ -106,51 +147,43 @@ class ModelFactory:
         """The effects of a group, or the one effect that this is."""
         return self.groups.get(effect, (effect,))
 
-    def _likelihood(self, effects: set[str], derives: bool = True) -> Likelihood:
-        key = frozenset(effects), derives
-        if key not in self._benches:
-            variant = self.variant.with_effects(e for e in self.catalogue if e in effects)
-            columns = (
-                *dict.fromkeys((*self.calibrated, ONSET)),
-                *(n for e in self.catalogue if e in effects for n in self.parameters(e)),
-            )
-            self._benches[key] = Likelihood(self.campaign, variant, None, columns, derives, self.leads)
-        likelihood = self._benches[key]
-        likelihood.noise_model = self.noise_model
-        likelihood.starts.update(self.starts)
-        likelihood.paths.update(self.paths)
-        return likelihood
-
-    def leave_out(self, channels: Container[str]) -> None:
-        """Go on without these channels, and without runs that have no other."""
-        kept = (replace(r, channels={c: v for c, v in r.channels.items() if c not in channels}) for r in self.campaign.runs)
-        self.campaign = replace(self.campaign, runs=tuple(r for r in kept if r.channels))
-        self._benches.clear()
-
-    def retime(self, late: Mapping[str, Late]) -> None:
-        """Go on with the pushes of these runs at the time when the chair felt them."""
-        if late:
-            runs = tuple(retimed(r, late[r.name]) if r.name in late else r for r in self.campaign.runs)
-            self.campaign = replace(self.campaign, runs=runs)
-            self._benches.clear()
-
-    def remember(self, likelihood: Likelihood) -> None:
-        """Keep the starts and paths a likelihood has found, for the next one."""
-        self.starts.update(likelihood.starts)
-        self.paths.update(likelihood.paths)
-
-    def widened(self, more: Mapping[str, Effect]) -> ModelFactory:
-        """The same campaign with more effects in the catalogue; noise and starts are kept."""
-        variant = replace(self.variant, catalogue={**self.catalogue, **more})
-        other = ModelFactory(self.campaign, variant, self.fixed, self._usual)
-        other.noise_model, other.starts, other.paths = self.noise_model, dict(self.starts), dict(self.paths)
-        other.leads = self.leads
-        return other
-
     def parameters(self, effect: str) -> tuple[str, ...]:
         """Full names of the parameters of an effect, or of a group of them, that a fit estimates."""
         owned = (p for member in self.members(effect) for p in self.catalogue[member].owned)
         return tuple(p.name for p in owned if p.estimated and p.name not in self.fixed)
+
+    def linear(self, effect: str) -> bool:
+        """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
+        if effect in self.groups:
+            return False
+        record = self.catalogue[effect]
+        return not (record.even or record.rows or record.needs)
+
+    def deltas(self, names: Sequence[str]) -> np.ndarray:
+        """Smallest interesting sizes (k,)."""
+        return np.array([self.records[n].smallest_interesting for n in names])
+
+    def one_sided(self, names: Sequence[str]) -> np.ndarray:
+        """Which of these may only be positive (k,)."""
+        return np.array([self.records[n].lower == 0 for n in names], bool)
+
+    def without(self, channels: Container[str]) -> ModelFactory:
+        """The same without these channels, and without runs that have no other."""
+        kept = (replace(r, channels={c: v for c, v in r.channels.items() if c not in channels}) for r in self.campaign.runs)
+        return replace(self, campaign=replace(self.campaign, runs=tuple(r for r in kept if r.channels)))
+
+    def retimed(self, late: Mapping[str, Late]) -> ModelFactory:
+        """The same with the pushes of these runs at the time when the chair felt them."""
+        runs = (retimed(r, late[r.name]) if r.name in late else r for r in self.campaign.runs)
+        return replace(self, campaign=replace(self.campaign, runs=tuple(runs))) if late else self
+
+    def widened(self, more: Mapping[str, Effect]) -> ModelFactory:
+        """The same with more effects in the catalogue."""
+        return replace(self, chair=replace(self.chair, catalogue={**self.catalogue, **more}))
+
+    def led(self) -> ModelFactory:
+        """The same of where the chair rolls, with every run led along the forces that nobody recorded."""
+        return replace(self, campaign=moving(self.campaign), leads=True)
 
 
 def groups_of(catalogue: Mapping[str, Effect]) -> dict[str, tuple[str, ...]]:

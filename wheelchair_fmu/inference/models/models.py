@@ -1,110 +1,102 @@
-"""The models that a search fits: by which parameters, with which noise, and from where every run starts."""
+"""The models that a search fits: by which parameters, in which setting, each hypothesis once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
+from ...campaign import Campaign
+from ...model.stage import Effect
 from ..estimation.fit import Fit, Problem, fit, start_value
 from ..estimation.inverse import inverse
-from ..estimation.statistics import estimates, margin
+from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood, offsets_of
 from ..evidence.noise import QUIETER, by_run, noise_model_of
 from ..policy import DEFAULT, SearchPolicy
-from ..preflight.timing import Late
+from .doubles import doubles
 from .factory import ModelFactory
+from .hypothesis import Hypothesis, Model
+from .setting import Setting
 
-PLAINLY = 100.0  # times what would be decisive
+
+def quiet(words: str) -> None:
+    """Who tells nobody."""
 
 
+@dataclass(frozen=True)
 class Models:
-    """A factory's models, with any of its effects."""
+    """A factory's models in one setting, and by which policy they are judged. `say` is told what is being done; `doubles` are
+    by effect the nuisances of the campaign that stand for the very same, without which the effect is fitted."""
 
-    def __init__(
-        self, factory: ModelFactory, progress: Callable[[str], None] = lambda words: None, policy: SearchPolicy = DEFAULT
-    ):
-        self.factory, self.say, self.policy = factory, progress, policy
-        self.records = {p.name: p for e in factory.catalogue.values() for p in e.owned}
-        self.confounded: dict[str, frozenset[str]] = {}
-        self._without: dict[tuple[object, ...], tuple[Fit, Evidence]] = {}
-        self.notes: list[str] = []  # on columns and clocks
-        self.clocks: dict[str, dict[str, Late]] = {}  # by run and device, where they are uncertain
-        self.retimed: dict[str, Late] = {}  # by run, whose pushes are read at another time than they have
-        self.noise_notes: list[str] = []
+    factory: ModelFactory
+    setting: Setting
+    policy: SearchPolicy = DEFAULT
+    say: Callable[[str], None] = quiet
+    doubles: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    _fits: dict[Hypothesis, Fit] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _heldout: dict[Hypothesis, Evidence] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @classmethod
+    def of(cls, factory: ModelFactory, policy: SearchPolicy = DEFAULT, say: Callable[[str], None] = quiet) -> Models:
+        """A factory's, where nothing is known but what the campaign says."""
+        return cls(factory, factory.setting, policy, say)
+
+    @property
+    def campaign(self) -> Campaign:
+        return self.factory.campaign
 
     @property
     def offsets(self) -> tuple[str, ...]:
         """Sensor offsets that every fit estimates."""
-        return tuple(offsets_of(self.factory.campaign))
+        return tuple(offsets_of(self.campaign))
 
-    def calibrate(self) -> tuple[Fit, Evidence, Evidence, Evidence]:
-        """(calibrated fit, its held-out evidence, nominal fit evidence, nominal held-out evidence)."""
-        w = self.factory
-        likelihood = w.likelihood()
-        names = self.names(())
-        start = {n: w.begun.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
-        nominal = likelihood.evidence(w.campaign.fit, start, names, tune_start=1)
-        nominal_held = likelihood.evidence(w.campaign.holdout, start, (), tune_start=1)
-        found = fit(likelihood, names, start, nominal)
-        found = self._restarted(likelihood, names, found.values, 1)
-        held = self.heldout(likelihood, found.values)
-        w.remember(likelihood)
-        if w.leads:
-            w.begun = dict(found.values)
-        return found, held, nominal, nominal_held
+    def likelihood(self, effects: Sequence[str] = ()) -> Likelihood:
+        """See `ModelFactory.likelihood`."""
+        return self.factory.likelihood(effects, self.setting)
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
-        """The campaign's best values of the calibrated and these effects' parameters; see `fit`."""
-        return fit(self.factory.likelihood(effects), self.names(effects), start, here, **how)
+    def wide(self, effects: Sequence[str] = ()) -> Likelihood:
+        """See `ModelFactory.wide`."""
+        return self.factory.wide(effects, self.setting)
 
-    def names(self, effects: Sequence[str]) -> list[str]:
-        """What a model with these effects has to be fitted by."""
-        confounded = frozenset().union(*(self.confounded.get(e, ()) for e in effects))
-        offsets = (n for n in self.offsets if n not in confounded)
+    def rerun(self, effects: Sequence[str] = ()) -> Likelihood:
+        """See `ModelFactory.rerun`."""
+        return self.factory.rerun(effects, self.setting)
+
+    def names(self, effects: Sequence[str], without: frozenset[str] = frozenset()) -> list[str]:
+        """What a model with these effects has to be fitted by, if it also does `without` these nuisances."""
+        left_out = without.union(*(self.doubles.get(e, ()) for e in effects))
+        offsets = (n for n in self.offsets if n not in left_out)
         return [*self.factory.calibrated, *offsets, *(n for e in effects for n in self.factory.parameters(e))]
 
-    def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Fit, Evidence]:
-        """The model with these effects, which the variant has already, estimated anew."""
-        return self.settled(effects, self.refit(effects, {**self.factory.given, **base.values}))
+    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
+        """The campaign's best values of the calibrated and these effects' parameters, as far as it is followed; see `fit`."""
+        return fit(self.likelihood(effects), self.names(effects), start, here, **how)
 
-    def settled(self, effects: Sequence[str], found: Fit) -> tuple[Fit, Evidence]:
-        """A fit again from its own result, with every run started where this model wants it, and held out."""
-        likelihood = self.factory.likelihood(effects)
-        self._without.clear()  # these started elsewhere
-        again = self._restarted(likelihood, self.names(effects), found.values, 2)
-        held = self.heldout(likelihood, again.values, tune_start=2)
-        self.factory.remember(likelihood)
-        return again, held
+    def fitted(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Fit:
+        """The same followed to its end, once: who asks again gets what came of the first start."""
+        hypothesis = Hypothesis(tuple(effects), without)
+        if hypothesis not in self._fits:
+            self._fits[hypothesis] = fit(self.likelihood(effects), self.names(effects, without), start)
+        return self._fits[hypothesis]
 
-    def _restarted(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
-        """A fit from `start`, with every run started where the readings want it there, in so many steps."""
-        problem = Problem(likelihood, names)
-        values = problem.values(problem.inside(start))
-        return fit(
-            likelihood, names, values, likelihood.evidence(self.factory.campaign.fit, values, names, tune_start=tune_start)
-        )
+    def model(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Model:
+        """`fitted`, and held out."""
+        hypothesis, found = Hypothesis(tuple(effects), without), self.fitted(effects, start, without)
+        if hypothesis not in self._heldout:
+            self._heldout[hypothesis] = self.heldout(self.likelihood(effects), found.values)
+        return Model(hypothesis.effects, found, self._heldout[hypothesis])
 
-    def pruned(self, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
-        """Backward: leave out every effect but the last, and those to `keep`, that the others have made needless."""
-        for effect in effects[:-1]:
-            if effect in keep or self._plainly_needed(found, effect):
-                continue
-            fewer = tuple(e for e in effects if e != effect)
-            if self.factory.leads and self.weight(found, effect) > margin(found.evidence, self.policy):
-                continue
-            without = self.refit(fewer, found.values)
-            if self.factory.leads or without.misfit - found.misfit < margin(found.evidence, self.policy):
-                return self.pruned(fewer, without, keep)
-        return effects, found
+    def rival_of(self, effect: str, base: Model) -> Model:
+        """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
+        same = self.doubles.get(effect)
+        return self.model(base.effects, base.fit.values, same) if same else base
 
-    def _plainly_needed(self, found: Fit, effect: str) -> bool:
-        """Is an effect's estimate, by its standard errors, so far from zero that nobody needs to try without?"""
-        return self.weight(found, effect) > PLAINLY * self.policy.tied
+    def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
+        """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
+        return likelihood.evidence(self.campaign.holdout, values, (), tune_start=tune_start)
 
     def weight(self, found: Fit, effect: str) -> float:
         """How far an effect's estimate is from zero, by its covariance: about as much as −2 log likelihood would rise without
@@ -112,54 +104,61 @@ class Models:
         value, covariance = estimates(found, self.factory.parameters(effect))
         return float(value @ inverse(covariance) @ value)
 
-    def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
-        """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
-        return likelihood.evidence(self.factory.campaign.holdout, values, (), tune_start=tune_start)
-
-    def reestimate_noise(self, found: Fit, *, again: bool = False) -> bool:
-        """Take the noise that this fit's residuals show, and say whether it is another than before. `again`: now that an effect
-        is in that was missing when the noise was estimated."""
-        before, lowest = self.factory.noise_model, QUIETER if again else 0.0
-        campaign = self.factory.campaign
-        now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
-        if self.factory.leads:
-            chair = self.factory.likelihood().chair(found.values)
-            forces = strength(found.evidence, chair["chair.t_r"])
-            now = forces.put_into(replace(now, by_run=by_run(found.evidence, before)), chair["chair.m"])
-        if not now.differs(before):
-            return False  # and models that are compared are by the same noise
-        self.factory.noise_model, self.noise_notes = now, notes
-        self._without.clear()
-        return True
-
-    def rival_of(self, effect: str, effects: Sequence[str], base: Fit, held: Evidence | None) -> tuple[Fit, Evidence | None]:
-        """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
-        if not self.confounded.get(effect):
-            return base, held
-        key = (effect, *effects)
-        if key not in self._without:
-            names = [n for n in self.names(effects) if n not in self.confounded[effect]]
-            likelihood = self.factory.likelihood(effects)
-            fewer = fit(likelihood, names, base.values)
-            self._without[key] = fewer, self.heldout(likelihood, fewer.values)
-        return self._without[key]
-
-    def linear(self, effect: str) -> bool:
-        """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
-        if effect in self.factory.groups:
-            return False
-        record = self.factory.catalogue[effect]
-        return not (record.even or record.rows or record.needs)
-
     def compared(self, found: Fit, effect: str, base: Fit) -> Fit:
         """A fit as it compares with one that lacks an effect of it. Where forces lead the runs, how likely these are is no
         measure: there the misfit is less by as much as the effect's estimate is from zero."""
         return replace(found, misfit=base.misfit - self.weight(found, effect)) if self.factory.leads else found
 
-    def deltas(self, names: Sequence[str]) -> np.ndarray:
-        """Smallest interesting sizes (k,)."""
-        return np.array([self.records[n].smallest_interesting for n in names])
+    def calibrated(self) -> tuple[Models, Model, Evidence, Evidence]:
+        """The calibrated model, with the models whose runs start where it wants them; and evidence of fitted and of held-out
+        runs for the nominal one, of values as they are given."""
+        likelihood, names = self.likelihood(), self.names(())
+        start = {n: self.setting.begun.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
+        nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=1)
+        nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
+        first = fit(likelihood, names, start, nominal)
+        found = self._restarted(likelihood, names, first.values, 1)
+        held = self.heldout(likelihood, found.values)
+        setting = self.setting.started_as(likelihood)
+        if self.factory.leads:
+            setting = replace(setting, begun=dict(found.values))
+        return replace(self, setting=setting), Model((), found, held), nominal, nominal_held
 
-    def one_sided(self, names: Sequence[str]) -> np.ndarray:
-        """Which of these may only be positive (k,)."""
-        return np.array([self.records[n].lower == 0 for n in names], bool)
+    def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Models, Model]:
+        """The model with these effects, which the variant has already, estimated anew."""
+        return self.settled(effects, self.refit(effects, {**self.factory.given, **base.values}))
+
+    def settled(self, effects: Sequence[str], found: Fit) -> tuple[Models, Model]:
+        """A fit again from its own result, with every run started where this model wants it, and held out; with the models
+        whose runs start there."""
+        likelihood = self.likelihood(effects)
+        again = self._restarted(likelihood, self.names(effects), found.values, 2)
+        held = self.heldout(likelihood, again.values, tune_start=2)
+        return replace(self, setting=self.setting.started_as(likelihood)), Model(tuple(effects), again, held)
+
+    def _restarted(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
+        """A fit from `start`, with every run started where the readings want it there, in so many steps."""
+        problem = Problem(likelihood, names)
+        values = problem.values(problem.inside(start))
+        return fit(likelihood, names, values, likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start))
+
+    def with_noise_of(self, found: Fit, *, again: bool = False) -> Models | None:
+        """The models with the noise that this fit's residuals show; None where it is no other than before. `again`: now that an
+        effect is in that was missing when the noise was estimated."""
+        before, lowest, campaign = self.setting.noise_model, QUIETER if again else 0.0, self.campaign
+        now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
+        if self.factory.leads:
+            chair = self.likelihood().chair(found.values)
+            forces = strength(found.evidence, chair["chair.t_r"])
+            now = forces.put_into(replace(now, by_run=by_run(found.evidence, before)), chair["chair.m"])
+        if not now.differs(before):
+            return None  # and models that are compared are by the same noise
+        return replace(self, setting=replace(self.setting, noise_model=now, notes=tuple(notes)))
+
+    def with_doubles(self, calibrated: Fit) -> Models:
+        """The models that know which effects a nuisance of the campaign stands for."""
+        return replace(self, doubles=doubles(self.wide(), self.factory, self.offsets, calibrated)) if self.offsets else self
+
+    def widened(self, more: Mapping[str, Effect], policy: SearchPolicy | None = None) -> Models:
+        """The same with more effects in the catalogue, by another policy if there is one."""
+        return replace(self, factory=self.factory.widened(more), policy=policy or self.policy)

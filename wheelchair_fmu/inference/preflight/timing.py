@@ -149,9 +149,10 @@ def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
     )
 
 
-def clocks(evidence: Evidence) -> dict[str, dict[str, Late]]:
+def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
     """For each run whose devices' clocks are uncertain, and each of these, its offset as the readings have it."""
-    found = {e.run.name: {c.device: _estimated(e, c) for c in e.run.clocks if c.sd > 0} for e in evidence.runs}
+    runs = (e for some in evidence for e in some.runs)
+    found = {e.run.name: {c.device: _estimated(e, c) for c in e.run.clocks if c.sd > 0} for e in runs}
     return {run: of for run, of in found.items() if of}
 
 

@@ -2,90 +2,102 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...campaign.recorded import PUSHES_CLOCK
 from ..estimation.fit import Fit, Problem
-from ..evidence.evidence import Evidence
-from ..preflight.timing import Late, by_model, by_signals, by_slopes, clocks
+from ..models.hypothesis import Model
+from ..models.models import Models
+from ..preflight.timing import Late, by_model, by_signals, by_slopes
 from ..preflight.wiring import wiring
 from ..residual.staircase import Step
-from .search import Search
 
 LED = 3  # times that forces, noise and calibration are found one from another, at most
+Clocks = Mapping[str, Mapping[str, Late]]  # by run and device, where they are uncertain
 
 
-def begin(search: Search, say: Callable[[str], None]) -> tuple[Fit, Evidence, list[Step]]:
-    """Calibrate, with the noise that the data show: (fit, held out, the staircase's first two steps).
+@dataclass(frozen=True)
+class Beginning:
+    """The models that a search may ask for, the calibrated one, and the staircase up to there; what was found odd in columns;
+    and by run how late pushes are that are read at another time than they were recorded at."""
+
+    models: Models
+    calibrated: Model
+    ladder: tuple[Step, ...]
+    notes: tuple[str, ...] = ()
+    retimed: Mapping[str, Late] = field(default_factory=dict)
+
+    def heard(self, clocks: Clocks) -> tuple[str, ...]:
+        """What there is to say of columns and clocks, once it is known what these are."""
+        return (*self.notes, *(_late(run, clocks[run][PUSHES_CLOCK], late.unique) for run, late in self.retimed.items()))
+
+
+def begin(models: Models) -> Beginning:
+    """Calibrate, with the noise that the data show.
 
     Channels that are not what they are called are left out; pushes that belong to another time than the readings of their run
     are read at that time.
     """
-    say("calibrating")
-    w = search.factory
-    if w.leads:
-        return _begin_led(search)
-    found = dict(by_signals(w.campaign))
-    w.retime(found)
-    columns = wiring(w.likelihood(), w.given)
+    models.say("calibrating")
+    begun = _begun_led(models) if models.factory.leads else _begun(models)
+    return replace(begun, models=begun.models.with_doubles(begun.calibrated.fit))
+
+
+def _begun(models: Models) -> Beginning:
+    found = dict(by_signals(models.campaign))
+    models = replace(models, factory=models.factory.retimed(found))
+    columns = wiring(models.likelihood(), models.factory.given)
     if columns.wrong:
-        w.leave_out(channels=columns.wrong)
-    base, held, ladder = first_steps(search)
+        models = replace(models, factory=models.factory.without(columns.wrong))
+    begun = first_steps(models)
     if columns.trusted:
-        more = by_model(w.likelihood(), base.evidence, base.values) | by_model(w.likelihood(), held, base.values)
+        models, (base, held) = begun.models, (begun.calibrated.fit, begun.calibrated.heldout)
+        late = [by_model(models.likelihood(), e, base.values) for e in (base.evidence, held)]
+        more = late[0] | late[1]
         if more:
-            w.retime(more)
             found |= more
-            base, held, ladder = first_steps(search)
-    if search.reestimate_noise(base):
-        base, held, ladder = first_steps(search)
-    search.retimed |= found
-    search.notes = list(columns.notes)
-    return base, held, ladder
+            begun = first_steps(replace(models, factory=models.factory.retimed(more)))
+    again = begun.models.with_noise_of(begun.calibrated.fit)
+    return replace(first_steps(again) if again else begun, notes=columns.notes, retimed=found)
 
 
-def _begin_led(search: Search) -> tuple[Fit, Evidence, list[Step]]:
+def _begun_led(models: Models) -> Beginning:
     """The same where forces lead the runs: columns and clocks were looked at before, and how strong the forces are may be known
     only once all is calibrated beside them."""
-    base, held, ladder = first_steps(search)
+    begun = first_steps(models)
     for _ in range(LED):
-        if not search.reestimate_noise(base):
+        again = begun.models.with_noise_of(begun.calibrated.fit)
+        if again is None:
             break
-        base, held, ladder = first_steps(search)
-    return base, held, ladder
+        begun = first_steps(again)
+    return begun
 
 
-def retime_by_slopes(search: Search, effects: Sequence[str], named: Container[str], base: Fit) -> bool:
-    """Read the pushes in time of the runs that the model with these effects shows to be a little early or late; are there any?
-    Not while a delay of all pushes is `named`, or nobody is to estimate one; one that only helps may come of a single run's."""
-    w = search.factory
+def late_by_slopes(models: Models, effects: Sequence[str], named: Container[str], base: Fit) -> dict[str, Late]:
+    """How late the pushes of the runs are that the model with these effects shows to be a little early or late. None where a
+    delay of all pushes is `named`, or nobody is to estimate one; one that only helps may come of a single run's."""
+    w = models.factory
     delay, name = next(((e.id, n) for e in w.catalogue.values() if e.delays_record for n in w.parameters(e.id)), ("", ""))
     if not name or delay in named or w.leads:
-        return False
+        return {}
     if delay in effects:
         effects = [e for e in effects if e != delay]
-        base = search.refit(effects, base.values)
-    likelihood, theta = w.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
+        base = models.fitted(effects, base.values)
+    likelihood, theta = models.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
     prior = Problem(likelihood, base.names).prior
-    evidence = likelihood.evidence(w.campaign.runs, base.values, (*base.names, name))
-    found = by_slopes(evidence, prior.rows(theta), prior.slopes)
-    w.retime(found)
-    search.retimed |= found
-    return bool(found)
+    evidence = likelihood.evidence(models.campaign.runs, base.values, (*base.names, name))
+    return by_slopes(evidence, prior.rows(theta), prior.slopes)
 
 
-def settle_clocks(search: Search, *evidence: Evidence) -> None:
-    """Keep what clocks are by this evidence, of fitted and of held-out runs, and say which pushes were read at another time."""
-    search.clocks = {run: of for e in evidence for run, of in clocks(e).items()}
-    search.notes += [_late(run, search.clocks[run][PUSHES_CLOCK], late.unique) for run, late in search.retimed.items()]
-
-
-def first_steps(search: Search) -> tuple[Fit, Evidence, list[Step]]:
-    """The calibrated fit, its held-out evidence, and the staircase up to there, with the noise as it is known."""
-    base, held, nominal, nominal_held = search.calibrate()
-    return base, held, [Step.of("nominal", nominal, nominal_held), Step.of("calibrated", base.evidence, held)]
+def first_steps(models: Models) -> Beginning:
+    """The calibrated model, and the staircase up to there, with the noise as it is known."""
+    models, base, nominal, nominal_held = models.calibrated()
+    return Beginning(
+        models, base, (Step.of("nominal", nominal, nominal_held), Step.of("calibrated", base.fit.evidence, base.heldout))
+    )
 
 
 def _late(run: str, late: Late, unique: bool) -> str:

@@ -16,10 +16,14 @@ import numpy as np
 from ...errors import SimulationError
 from ..estimation.fit import Fit
 from ..estimation.starts import most_promising
-from ..models.factory import TOGETHER
+from ..models.factory import TOGETHER, ModelFactory
+from ..models.hypothesis import Model
+from ..models.models import Models
 from .candidate import Candidate
+from .judge import judge
+from .pruning import pruned
+from .refitting import HALFWAY
 from .rounds import Round
-from .search import HALFWAY, Search
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
 TRIES = 125  # combinations of them, at most
@@ -27,46 +31,51 @@ BEGUN = 16  # of these, refits that make one step
 ENDED = 2  # of these, refits that go on to their end
 
 
-def together(search: Search, now: Round) -> Candidate | None:
+def together(models: Models, now: Round) -> Candidate | None:
     """Of the effects that ask for one law, as a group: the first that a round finds, beside the model that it was `now` for."""
-    w, effects, base = search.factory, now.effects, now.fit
-    for group in kin(search):
-        new = tuple(e for e in group if e not in effects)
-        found = _fitted(search, effects, new, group, base) if new and len(group) > 1 else None
+    w = models.factory
+    for group in kin(w):
+        new = tuple(e for e in group if e not in now.effects)
+        found = _fitted(models, now.model, new, group) if new and len(group) > 1 else None
         if found is None:
             continue
-        likelihood, names = w.likelihood((*effects, *new)), [n for e in new for n in w.parameters(e)]
-        found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-        held = search.heldout(likelihood, found.values)
-        judged = search.judge(base, now.heldout, found, held, TOGETHER.join(new), names, len(now.scores))
+        whole = _held_out(models, (*now.effects, *new), found)
+        names = [n for e in new for n in w.parameters(e)]
+        judged = judge(models, now.model, whole, TOGETHER.join(new), names, len(now.scores))
         if replace(now, candidates=(), groups=(judged,)).winner is not None:
             return judged
     return None
 
 
-def parted(search: Search, now: Round, group: Candidate) -> list[Round]:
+def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
     """Rounds that judge each effect of a group that a round found, beside the rest of the group, the most needed last. What the
     others make needless is left out, so that a group of which one does all comes to that one."""
-    w, known = search.factory, now.effects
-    whole = search.refit((*known, *w.members(group.effect)), group.fit.values)
-    order = sorted(w.members(group.effect), key=lambda e: search.weight(whole, e))
-    every, found = search.pruned((*known, *order), whole, known)
+    w, known = models.factory, now.effects
+    whole = models.fitted((*known, *w.members(group.effect)), group.fit.values)
+    order = sorted(w.members(group.effect), key=lambda e: models.weight(whole, e))
+    every, found = pruned(models, (*known, *order), whole, known)
     near = (c for c in now.candidates if c.lawful and c.drop >= HALFWAY * group.drop)
     contested = bool({c.effect for c in near}.difference(every))
-    found = replace(found, evidence=w.likelihood(every).restarted(found.evidence, found.values))
-    held, rounds = search.heldout(w.likelihood(every), found.values), []
+    top, rounds = _held_out(models, every, found), []
     for effect in every[len(known) :]:
         others = tuple(e for e in every if e != effect)
-        without = search.refit(others, found.values) if others != known else now.fit
-        before, names = search.heldout(w.likelihood(others), without.values), w.parameters(effect)
-        judged = search.judge(without, before, search.compared(found, effect, without), held, effect, names, len(now.scores))
-        rounds.append(Round(others, without, before, now.scores, (judged,), contested=contested, policy=search.policy))
+        fewer = now.fit if others == known else models.fitted(others, found.values)
+        without = Model(others, fewer, models.heldout(models.likelihood(others), fewer.values))
+        with_it = replace(top, fit=models.compared(top.fit, effect, fewer))
+        judged = judge(models, without, with_it, effect, w.parameters(effect), len(now.scores))
+        rounds.append(Round(others, fewer, without.heldout, now.scores, (judged,), contested=contested, policy=models.policy))
     return rounds
 
 
-def kin(search: Search) -> list[tuple[str, ...]]:
+def _held_out(models: Models, effects: tuple[str, ...], found: Fit) -> Model:
+    """A fit with its runs started where readings want them, to first order, and held out."""
+    likelihood = models.likelihood(effects)
+    found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
+    return Model(effects, found, models.heldout(likelihood, found.values))
+
+
+def kin(w: ModelFactory) -> list[tuple[str, ...]]:
     """Effects with parameters to estimate, by the laws that they ask for."""
-    w = search.factory
     groups: dict[tuple[tuple[str, str], ...], list[str]] = {}
     for e in w.demanding:
         if w.parameters(e):
@@ -74,23 +83,23 @@ def kin(search: Search) -> list[tuple[str, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
-def _fitted(search: Search, effects: tuple[str, ...], new: tuple[str, ...], group: Sequence[str], base: Fit) -> Fit | None:
+def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[str]) -> Fit | None:
     """The most likely model with all of a group that starts from several sizes of each lead to."""
-    every = (*effects, *new)
-    likelihood, names = search.factory.likelihood(every), search.names(every)
-    own = [n for e in group for n in search.factory.parameters(e)]
-    sizes = [[f * search.records[n].delta for f in SIZES] for n in own]
+    every, known = (*base.effects, *new), base.fit.evidence
+    likelihood, names = models.likelihood(every), models.names(every)
+    own = [n for e in group for n in models.factory.parameters(e)]
+    sizes = [[f * models.factory.records[n].delta for f in SIZES] for n in own]
     tries = list(product(*sizes))
     if len(tries) > TRIES:
         tries = [tries[i] for i in np.random.default_rng(0).choice(len(tries), TRIES, replace=False)]
-    starts = [{**dict.fromkeys(names, 0.0), **base.values, **dict(zip(own, one, strict=True))} for one in tries]
+    starts = [{**dict.fromkeys(names, 0.0), **base.fit.values, **dict(zip(own, one, strict=True))} for one in tries]
     thetas = [[start[n] for n in names] for start in starts]
     begun = []
-    for start in most_promising(likelihood, base.evidence, names, thetas, BEGUN, base.evidence.r):
+    for start in most_promising(likelihood, known, names, thetas, BEGUN, known.r):
         try:
-            begun.append(search.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
+            begun.append(models.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
         except SimulationError:
             continue
     begun.sort(key=lambda fit: fit.misfit)
-    ended = [search.refit(every, fit.values, fit.evidence) for fit in begun[:ENDED]]
+    ended = [models.refit(every, fit.values, fit.evidence) for fit in begun[:ENDED]]
     return min(ended, key=lambda fit: fit.misfit, default=None)

@@ -14,6 +14,7 @@ from ..estimation.marginal import Support
 from ..estimation.score import Score
 from ..estimation.statistics import RESAMPLES, difference_blocks, resampled_totals
 from ..evidence.evidence import Evidence
+from ..models.hypothesis import Model
 from ..policy import DEFAULT, SearchPolicy
 from .candidate import Candidate, ranked
 
@@ -47,6 +48,11 @@ class Round:
     odds: float = 1.0
     explained: float = 0.0
     policy: SearchPolicy = DEFAULT
+
+    @property
+    def model(self) -> Model:
+        """That which it started from."""
+        return Model(self.effects, self.fit, self.heldout)
 
     @cached_property
     def every(self) -> tuple[Candidate, ...]:

@@ -13,6 +13,8 @@ from ..estimation.score import Projector, Score, score
 from ..estimation.statistics import cosines
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
+from ..models.factory import ModelFactory
+from ..models.hypothesis import Model
 from ..models.models import Models
 from ..parallel import parallel_map
 
@@ -50,163 +52,151 @@ class Screened:
         return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
 
 
-class Screen(Models):
-    """Scores of effects that a model lacks."""
+def screen(models: Models, base: Model, among: Iterable[str] | None = None) -> list[Screened]:
+    """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or may
+    mislead."""
+    return _screened(models, base, among)[0]
 
-    def screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> list[Screened]:
-        """Score tests of every effect not yet in the model: by slope at zero where that is cheap, by secant where it is not or
-        may mislead."""
-        return self._screen(base, effects, among)[0]
 
-    def screen_groups(self, base: Fit, effects: Sequence[str]) -> tuple[list[Screened], list[Screened]]:
-        """The same, and score tests of effects that may show only together: of groups none of which is in the model, where they
-        promise more than one of them does alone."""
-        w = self.factory
-        screened, here = self._screen(base, effects)
-        alone = {s.score.effect: s.score.drop for s in screened}
-        groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
-        joined = self._by_secants(w.rerun((*effects, *groups)), base, here, groups) if groups else []
-        more = (s for s in joined if s.score.drop > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
-        return screened, sorted(more, key=lambda s: -s.score.drop)
+def screen_groups(models: Models, base: Model) -> tuple[list[Screened], list[Screened]]:
+    """The same, and score tests of effects that may show only together: of groups none of which is in the model, where they
+    promise more than one of them does alone."""
+    w = models.factory
+    screened, here = _screened(models, base)
+    alone = {s.score.effect: s.score.drop for s in screened}
+    groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
+    joined = _by_secants(models, models.rerun((*base.effects, *groups)), base.fit, here, groups) if groups else []
+    more = (s for s in joined if s.score.drop > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
+    return screened, sorted(more, key=lambda s: -s.score.drop)
 
-    def _screen(self, base: Fit, effects: Sequence[str], among: Iterable[str] | None = None) -> tuple[list[Screened], Evidence]:
-        w = self.factory
-        free = [e for e in (among if among is not None else w.catalogue) if e not in effects and w.parameters(e)]
-        found, here = self._by_slopes(effects, base, [e for e in free if e in w.light])
-        for group in (w.heavy, w.demanding):
-            more = [e for e in free if e in group]
-            if more:
-                found += self._by_secants(w.rerun((*effects, *more)), base, here, more)
-        return sorted(found, key=lambda s: -s.score.drop), here
 
-    def _by_slopes(self, effects: Sequence[str], base: Fit, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
-        """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
-        w = self.factory
-        likelihood, names = w.wide(effects), [n for e in light for n in w.parameters(e)]
-        here = likelihood.evidence(w.campaign.fit, base.values, [*base.names, *names])
-        off, unbent = self.off(likelihood, base, here), self._slopes_at_prior_mean(likelihood, base, names)
+def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
+    """Takes what calibration can imitate off any columns."""
+    prior = prior_of(likelihood, base.names)
+    rows = prior.rows(np.array([base.values[n] for n in base.names]))
+    return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
 
-        def screened(effect: str) -> Screened:
-            own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
-            tangent = self._score(here, off, effect, here.S[:, own])
-            bent = [] if self.linear(effect) else self._secants(likelihood, here, base.values, effect)
-            secants = [self._score(here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
-            return self._screened([tangent, *secants], here)
 
-        confounded = [e for e in light if self._is_an_offset(e, here)]
-        found = parallel_map(screened, [e for e in light if e not in confounded])
-        # Beside unrecorded forces an offset without its nuisance would be made up for by these.
-        for effect in [] if w.leads else confounded:
-            found += self._by_slopes(effects, self.rival_of(effect, effects, base, None)[0], [effect])[0]
-        return found, here
+def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
+    """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
+    deviations."""
+    if base.evidence.rms < AT_THE_FLOOR:
+        return []
+    prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
+    off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
+    straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
+    return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
 
-    def _by_secants(self, likelihood: Likelihood, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
-        """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size,
-        and the filters of the model without them serve: at zero they change nothing."""
-        at = []
-        for values in (base.values, *self.at_prior_mean(likelihood, base, SLIGHTLY)):
-            try:
-                at.append((values, likelihood.resimulated(here, values)))
-            except SimulationError:
-                if not at:
-                    return []
-        off = self.off(likelihood, base, here)
 
-        def screened(effect: str) -> Screened | None:
-            by = [
-                [self._score(at[0][1], off, effect, S) for S in self._secants(likelihood, e, values, effect)]
-                for values, e in at
-            ]
-            scores = [score for group in by for score in group]
-            if not scores:
-                return None
-            best = self._screened(scores, here)
-            return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
+def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -> tuple[list[Screened], Evidence]:
+    """Scores, the most promising first, and the evidence for the model as it is."""
+    w = models.factory
+    free = [e for e in (among if among is not None else w.catalogue) if e not in base.effects and w.parameters(e)]
+    light = [e for e in free if e in w.light]
+    found, here = _by_slopes(models, base, [e for e in light if e not in models.doubles])
+    # Beside unrecorded forces an offset without its nuisance would be made up for by these.
+    for effect in [] if w.leads else [e for e in light if e in models.doubles]:
+        found += _by_slopes(models, models.rival_of(effect, base), [effect])[0]
+    for group in (w.heavy, w.demanding):
+        more = [e for e in free if e in group]
+        if more:
+            found += _by_secants(models, models.rerun((*base.effects, *more)), base.fit, here, more)
+    return sorted(found, key=lambda s: -s.score.drop), here
 
-        return [s for s in parallel_map(screened, effects) if s]
 
-    def off(self, likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
-        """Takes what calibration can imitate off any columns."""
-        prior = prior_of(likelihood, base.names)
-        rows = prior.rows(np.array([base.values[n] for n in base.names]))
-        return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
+def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
+    """Scores of effects that make no simulation dearer, and the evidence with sensitivities by all of them."""
+    w, fit = models.factory, base.fit
+    likelihood, names = models.wide(base.effects), [n for e in light for n in w.parameters(e)]
+    here = likelihood.evidence(w.campaign.fit, fit.values, [*fit.names, *names])
+    off, unbent = projector(likelihood, fit, here), _slopes_at_prior_mean(likelihood, fit, names)
 
-    def _screened(self, scores: Sequence[Score], here: Evidence) -> Screened:
-        """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
-        best = max(scores, key=lambda s: s.drop)
-        return Screened(replace(best, p=scores[0].p), here, self.deltas(best.names), self.linear(best.effect))
+    def screened(effect: str) -> Screened:
+        own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
+        tangent = _score(w, here, off, effect, here.S[:, own])
+        bent = [] if w.linear(effect) else _secants(w, likelihood, here, fit.values, effect)
+        secants = [_score(w, here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
+        return _most_promising(w, [tangent, *secants], here)
 
-    def _slopes_at_prior_mean(self, likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
-        """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent
-        them: what it bent to imitate an effect may be what the effect works through."""
-        at_prior_mean = self.at_prior_mean(likelihood, base, BENT) if names else []
+    return parallel_map(screened, light), here
+
+
+def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
+    """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size, and
+    the filters of the model without them serve: at zero they change nothing."""
+    w, at = models.factory, list[tuple[Mapping[str, float], Evidence]]()
+    for values in (base.values, *at_prior_mean(likelihood, base, SLIGHTLY)):
         try:
-            return [likelihood.evidence(self.factory.campaign.fit, values, names).S for values in at_prior_mean]
+            at.append((values, likelihood.resimulated(here, values)))
         except SimulationError:
-            return []
+            if not at:
+                return []
+    off = projector(likelihood, base, here)
 
-    @staticmethod
-    def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
-        """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
-        deviations."""
-        if base.evidence.rms < AT_THE_FLOOR:
-            return []
-        prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
-        off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
-        straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
-        return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
+    def screened(effect: str) -> Screened | None:
+        by = [[_score(w, at[0][1], off, effect, S) for S in _secants(w, likelihood, e, values, effect)] for values, e in at]
+        scores = [score for group in by for score in group]
+        if not scores:
+            return None
+        best = _most_promising(w, scores, here)
+        return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
 
-    def _is_an_offset(self, effect: str, evidence: Evidence) -> bool:
-        """Is this effect the very thing that a nuisance of the model stands for? It is never tested beside that."""
-        offsets = [n for n in self.offsets if n in evidence.by]
-        if not offsets:
-            return False
-        own = evidence.S[:, [evidence.by.index(n) for n in self.factory.parameters(effect)]]
-        columns = evidence.S[:, [evidence.by.index(n) for n in offsets]]
-        rest = columns - own @ np.linalg.lstsq(own, columns, rcond=None)[0]
-        same = np.linalg.norm(rest, axis=0) < 1e-6 * np.linalg.norm(columns, axis=0)
-        if same.any():
-            self.confounded[effect] = frozenset(n for n, s in zip(offsets, same, strict=True) if s)
-        return bool(same.any())
+    return [s for s in parallel_map(screened, effects) if s]
 
-    def _score(self, evidence: Evidence, off: Projector, effect: str, S: np.ndarray) -> Score:
-        names = self.factory.parameters(effect)
-        return score(evidence, off, effect, names, S, self.deltas(names), self.one_sided(names))
 
-    def _secants(self, likelihood: Likelihood, known: Evidence, values: Mapping[str, float], effect: str) -> list[np.ndarray]:
-        """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
-        (N, k) per unit, each. `known` is the evidence at `values`, where it is off. Of a group each member is tried beside
-        those before it, by which it acts."""
-        records = [self.records[n] for n in self.factory.parameters(effect)]
-        found = []
-        for sign in (1.0,) if self.linear(effect) else (1.0, -1.0):
-            sizes = {r.name: sign * r.delta for r in records if r.lower <= sign * r.delta}
-            try:
-                columns = self._one_by_one(likelihood, known, values, sizes, self.factory.members(effect))
-            except SimulationError:
-                continue
-            if len(columns) == len(records):
-                found.append(np.stack(columns, axis=1))
-        return found
+def _most_promising(w: ModelFactory, scores: Sequence[Score], here: Evidence) -> Screened:
+    """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
+    best = max(scores, key=lambda s: s.drop)
+    return Screened(replace(best, p=scores[0].p), here, w.deltas(best.names), w.linear(best.effect))
 
-    def _one_by_one(
-        self,
-        likelihood: Likelihood,
-        known: Evidence,
-        values: Mapping[str, float],
-        sizes: Mapping[str, float],
-        members: Sequence[str],
-    ) -> list[np.ndarray]:
-        """What each parameter does (N,) per unit at its size, beside the members before its own at theirs."""
-        columns: list[np.ndarray] = []
-        before, r = dict(values), known.r
-        for i, member in enumerate(members):
-            own = {n: sizes[n] for n in self.factory.parameters(member) if n in sizes}
-            columns += [(r - likelihood.resimulated(known, {**before, n: size}).r) / size for n, size in own.items()]
-            before |= own
-            if i < len(members) - 1:
-                r = likelihood.resimulated(known, before).r
-        return columns
+
+def _slopes_at_prior_mean(likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
+    """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent them:
+    what it bent to imitate an effect may be what the effect works through."""
+    unbent = at_prior_mean(likelihood, base, BENT) if names else []
+    try:
+        return [likelihood.evidence(likelihood.campaign.fit, values, names).S for values in unbent]
+    except SimulationError:
+        return []
+
+
+def _score(w: ModelFactory, evidence: Evidence, off: Projector, effect: str, S: np.ndarray) -> Score:
+    names = w.parameters(effect)
+    return score(evidence, off, effect, names, S, w.deltas(names), w.one_sided(names))
+
+
+def _secants(
+    w: ModelFactory, likelihood: Likelihood, known: Evidence, values: Mapping[str, float], effect: str
+) -> list[np.ndarray]:
+    """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
+    (N, k) per unit, each. `known` is the evidence at `values`, where it is off. Of a group each member is tried beside those
+    before it, by which it acts."""
+    records = [w.records[n] for n in w.parameters(effect)]
+    found = []
+    for sign in (1.0,) if w.linear(effect) else (1.0, -1.0):
+        sizes = {r.name: sign * r.delta for r in records if r.lower <= sign * r.delta}
+        members = [{n: sizes[n] for n in w.parameters(member) if n in sizes} for member in w.members(effect)]
+        try:
+            columns = _one_by_one(likelihood, known, values, members)
+        except SimulationError:
+            continue
+        if len(columns) == len(records):
+            found.append(np.stack(columns, axis=1))
+    return found
+
+
+def _one_by_one(
+    likelihood: Likelihood, known: Evidence, values: Mapping[str, float], members: Sequence[Mapping[str, float]]
+) -> list[np.ndarray]:
+    """What each parameter of some effects does (N,) per unit at its size, beside the members before its own at theirs."""
+    columns: list[np.ndarray] = []
+    before, r = dict(values), known.r
+    for i, own in enumerate(members):
+        columns += [(r - likelihood.resimulated(known, {**before, n: size}).r) / size for n, size in own.items()]
+        before |= own
+        if i < len(members) - 1:
+            r = likelihood.resimulated(known, before).r
+    return columns
 
 
 def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:

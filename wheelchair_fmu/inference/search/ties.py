@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...errors import SimulationError
-from ..estimation.fit import Fit
 from ..estimation.statistics import difference_blocks, resampled_totals
-from ..evidence.evidence import Evidence
+from ..models.hypothesis import Model
+from ..models.models import Models
 from .candidate import Candidate, ranked
+from .judge import judge
+from .refitting import candidate
 from .rounds import Round
-from .screen import shortlist
-from .search import ALIKE, SHORTLIST, Search
+from .screen import screen, shortlist
+from .search import ALIKE, SHORTLIST
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
@@ -42,39 +44,34 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     return tuple(group)
 
 
-def beside(
-    search: Search,
-    effect: str,
-    effects: Sequence[str],
-    final: Fit,
-    held: Evidence,
-    before: Round | None,
-    calibrated: float = 0.0,
-) -> Round | None:
-    """One of the `effects` of a `final` model searched for again, beside all the others. `before` is the round that found it,
-    if that knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or
-    where the model cannot run without it."""
-    w, others = search.factory, tuple(e for e in effects if e != effect)
+def beside(models: Models, effect: str, final: Model, before: Round | None, calibrated: float = 0.0) -> Round | None:
+    """One effect of a `final` model searched for again, beside all the others. `before` is the round that found it, if that
+    knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or where
+    the model cannot run without it."""
+    others = tuple(e for e in final.effects if e != effect)
     try:
-        base = search.refit(others, final.values)  # runs start where the final model wants them, for rivals as well
-        base_held = search.heldout(w.likelihood(others), base.values)
+        base = models.model(others, final.fit.values)  # runs start where the final model wants them, for rivals as well
     except SimulationError:
         return None
-    base = replace(base, evidence=w.likelihood(others).restarted(base.evidence, base.values))
-    without, without_held = search.rival_of(effect, others, base, base_held)
-    as_known = search.compared(final, effect, without)
-    fall = without.misfit - as_known.misfit
-    if before and _stands(effect, effects, fall, before):
+    started = models.likelihood(others).restarted(base.fit.evidence, base.fit.values)
+    base = replace(base, fit=replace(base.fit, evidence=started))
+    without = models.rival_of(effect, base)
+    as_known = replace(final, fit=models.compared(final.fit, effect, without.fit))
+    fall = without.fit.misfit - as_known.fit.misfit
+    if before and _stands(effect, final.effects, fall, before):
         return None
-    screened = search.screen(base, others)
-    own = search.judge(without, without_held, as_known, held, effect, w.parameters(effect), len(screened))
+    screened = screen(models, base)
+    own = judge(models, without, as_known, effect, models.factory.parameters(effect), len(screened))
     promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
-    tried = (search.candidate(base, base_held, others, s, len(screened), least=HALF * fall) for s in promising)
-    candidates = ranked([own, *(c for c in tried if c)])
-    base = replace(base, evidence=base.evidence.summary())
-    scores = tuple(s.score for s in screened)
-    r = Round(others, base, base_held.summary(), scores, tuple(candidates), again=True, policy=search.policy)
-    return replace(r, explained=calibrated - base.misfit)
+    tried = (candidate(models, base, s, len(screened), least=HALF * fall) for s in promising)
+    candidates = tuple(ranked([own, *(c for c in tried if c)]))
+    bare, held, scores = (
+        replace(base.fit, evidence=base.fit.evidence.summary()),
+        base.heldout.summary(),
+        [s.score for s in screened],
+    )
+    explained = calibrated - base.fit.misfit
+    return Round(others, bare, held, tuple(scores), candidates, again=True, explained=explained, policy=models.policy)
 
 
 def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:

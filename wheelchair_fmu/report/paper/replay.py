@@ -12,6 +12,7 @@ from ...errors import Failure, SimulationError
 from ...inference.evidence.evidence import Evidence
 from ...inference.evidence.likelihood import Likelihood
 from ...inference.models.factory import ModelFactory
+from ...inference.models.setting import Setting
 from ...model.generic import library
 from ..content import TUNING, in_time, noise_told, used
 from .case import Case
@@ -63,9 +64,8 @@ def _likelihood(case: Case) -> Likelihood:
     campaign = used(moving(whole) if case.with_forces else whole, case.told)
     terms = {name: term for name, term in library().items() if name in case.effects}
     chair = replace(case.chair, catalogue={**terms, **case.chair.catalogue})
-    factory = ModelFactory(campaign, chair, case.fixed)
-    factory.noise_model, factory.leads = noise_told(case.told), case.with_forces
-    return factory.likelihood(case.effects)
+    factory = ModelFactory(campaign, chair, case.fixed, leads=case.with_forces)
+    return factory.likelihood(case.effects, Setting(noise_told(case.told)))
 
 
 def _values(case: Case, step: str) -> dict[str, float]:

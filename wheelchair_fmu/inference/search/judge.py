@@ -1,0 +1,69 @@
+"""What an effect does in a model that was fitted with it, and whether that is surely large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy import special
+
+from ..chance import chance_beyond
+from ..estimation.fit import Fit
+from ..estimation.marginal import support_of
+from ..estimation.score import RUNS
+from ..estimation.statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
+from ..models.hypothesis import Model
+from ..models.models import Models
+from .candidate import Candidate
+
+
+def judge(models: Models, base: Model, found: Model, effect: str, names: Sequence[str], tests: int) -> Candidate:
+    """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it; so many `tests`
+    were made with that of it."""
+    w, fit, held = models.factory, found.fit, found.heldout
+    delta, (estimate, covariance) = w.deltas(names), estimates(fit, names)
+    lower, upper = (np.array([getattr(w.records[n], side) for n in names]) for side in ("lower", "upper"))
+    one_sided, near = w.one_sided(names), 1e-6 * delta
+    along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
+    dispersion = float(np.mean(fit.evidence.r**2))
+    drop, correlation = (base.fit.misfit - fit.misfit) / dispersion, correlation_time(fit.evidence)
+    p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
+    if len(names) == 1 and one_sided[0]:
+        p /= 2
+    return Candidate(
+        effect=effect,
+        fit=replace(fit, evidence=fit.evidence.summary()),
+        drop=drop,
+        estimate=estimate,
+        covariance=covariance,
+        between=_between(fit, names, covariance),
+        delta=delta,
+        one_sided=one_sided,
+        dispersion=dispersion,
+        correlation=correlation,
+        p=min(1.0, tests * p),
+        gain=held_out_gain(base.heldout, held) if held.runs else None,
+        heldout=held.summary(),
+        lawful=not bool(np.all((estimate <= near) & one_sided)),
+        stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
+        policy=models.policy,
+    )
+
+
+def surely_large(models: Models, found: Fit, effect: str) -> bool:
+    """Is an effect of a fit with sensitivities surely large, rather than slight or nothing?"""
+    w = models.factory
+    names = w.parameters(effect)
+    delta, (estimate, covariance) = w.deltas(names), estimates(found, names)
+    between, fall = _between(found, names, covariance), models.weight(found, effect)
+    told = support_of(effect, estimate, (covariance, between), delta, w.one_sided(names), fall, 0.0, models.policy)
+    return float(special.expit(told.large - max(0.0, told.slight))) > models.policy.sure
+
+
+def _between(found: Fit, names: Sequence[str], otherwise: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) of some of a fit's parameters between runs, if there are enough of these."""
+    if len(found.evidence.runs) < RUNS:
+        return otherwise
+    at = [found.names.index(n) for n in names]
+    return between_runs(found)[np.ix_(at, at)]

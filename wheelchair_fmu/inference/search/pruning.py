@@ -1,0 +1,26 @@
+"""Backward: what of a model's effects the others have made needless."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+from ..estimation.fit import Fit
+from ..estimation.statistics import margin
+from ..models.models import Models
+
+PLAINLY = 100.0  # times what would be decisive
+
+
+def pruned(models: Models, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
+    """Leave out every effect but the last, and those to `keep`, that the others have made needless."""
+    leads = models.factory.leads
+    for effect in effects[:-1]:
+        weight = models.weight(found, effect)
+        plain = margin(found.evidence, models.policy) if leads else PLAINLY * models.policy.tied
+        if effect in keep or weight > plain:
+            continue  # by its standard errors it is so far from zero that nobody needs to try without
+        fewer = tuple(e for e in effects if e != effect)
+        without = models.fitted(fewer, found.values)
+        if leads or without.misfit - found.misfit < margin(found.evidence, models.policy):
+            return pruned(models, fewer, without, keep)
+    return effects, found

@@ -1,0 +1,151 @@
+"""The refit of one more effect, or of a group of them: from where it starts, and how far it is followed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import SimulationError
+from ...quantities import Parameter
+from ..estimation.fit import Fit
+from ..estimation.starts import most_promising, outlook
+from ..evidence.evidence import Evidence
+from ..evidence.likelihood import Likelihood
+from ..models.hypothesis import Model
+from ..models.models import Models
+from ..parallel import parallel_map
+from .candidate import Candidate
+from .judge import judge
+from .screen import BENT, SLIGHTLY, Screened, at_prior_mean
+
+BEYOND = 10.0  # times what slopes that say little promise of an effect, which it may do
+SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
+STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
+DIRECTIONS = 4  # pairs of signs, and of these
+ENDED = 3  # refits go on to their end
+HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
+# where less is promised no refit starts, and if no size at all promises so much, refits start from
+GRID = (1.0, 2.0, 4.0)  # of δ as well
+
+Start = tuple[dict[str, float], Evidence | None]  # values, and what is known there
+
+
+def candidate(
+    models: Models, base: Model, s: Screened, tests: int, rival: float = math.inf, least: float = -math.inf
+) -> Candidate | None:
+    """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
+    `least`; `rival` is the best misfit yet."""
+    effect = s.score.effect
+    effects, base = (*base.effects, effect), models.rival_of(effect, base)
+    likelihood = models.likelihood(effects)
+    starts = _starts(models, likelihood, base.fit, s, least)
+    if starts:
+        models.say(f"refitting {effect}")
+    found = _best_of(models, effects, starts, min(rival, base.fit.misfit))  # which it has as a special case
+    if found is None:
+        return None
+    found = models.compared(found, effect, base.fit)
+    found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
+    held = likelihood.restarted(likelihood.evidence(models.campaign.holdout, found.values), found.values)
+    return judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
+
+
+def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:
+    """The most likely model that these starts lead to, one step from each, and to the end from the best."""
+
+    def one_step(start: Start) -> Fit | None:
+        try:
+            return models.refit(effects, *start, rival=rival, most=1)
+        except SimulationError:
+            return None
+
+    begun = [f for f in parallel_map(one_step, starts) if f]
+    own, ended = models.factory.parameters(effects[-1]), list[Fit]()
+    for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
+        signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
+        if signs not in others:
+            ended.append(models.refit(effects, ahead.values, ahead.evidence, rival=rival))
+            rival = min(rival, ended[-1].misfit)
+    return min(ended, key=lambda f: f.misfit, default=None)
+
+
+def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, least: float) -> list[Start]:
+    """Where to start refits, and what is known there, where −2 log likelihood may fall by `least`: a linear effect from zero,
+    others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
+    w = models.factory
+    group = s.score.effect in w.groups
+    if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
+        return []
+    names = [*base.names, *w.parameters(s.score.effect)]
+    if w.leads:  # where forces make up for what is missing, slopes say about how much that is,
+        of_interest = dict(zip(s.score.names, map(float, s.delta), strict=True))
+        sizes = [_expected(models, s), *([of_interest] if group else [])]  # but where a member seems to be nothing
+        return [({**base.values, **size}, None) for size in sizes]
+    unbent = at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
+    calibrations = [[values[n] for n in base.names] for values in (base.values, *unbent)]
+    if s.linear and len(calibrations) == 1:
+        off = [base.values.get(n, 0.0) for n in names]
+        known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
+        return [(dict(zip(names, off, strict=True)), known)]
+    thetas = _sizes(models, likelihood, base, names, calibrations, s, least)
+    return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
+
+
+def _expected(models: Models, s: Screened) -> dict[str, float]:
+    """An effect's sizes as slopes have them, within bounds."""
+    names = models.factory.parameters(s.score.effect)
+    expected, *_ = sizes_to_try(s, [models.factory.records[n] for n in names])
+    return dict(zip(names, map(float, expected), strict=True))
+
+
+def _sizes(
+    models: Models,
+    likelihood: Likelihood,
+    base: Fit,
+    names: Sequence[str],
+    calibrations: Sequence[Sequence[float]],
+    s: Screened,
+    least: float,
+) -> list[tuple[float, ...]]:
+    """The most promising calibrations and sizes of an effect together, by `names`."""
+    w = models.factory
+    records = [w.records[n] for n in w.parameters(s.score.effect)]
+    known, calibrated = s.evidence.only(base.names), len(base.names)
+    members = [w.catalogue[member] for member in w.members(s.score.effect)]
+    states, laws = (any(getattr(record, what) for record in members) for what in ("rows", "needs"))
+    tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
+    many = len(records) > 1 and not s.linear
+    wanted = 1 if s.linear else DIRECTIONS if many else STARTS
+    best = most_promising(likelihood, known, names, tries, wanted, s.score.signature, _signs if many else None)
+    off = [base.values.get(n, 0.0) for n in names]
+    without, most = outlook(likelihood, known, names, off).misfit, np.inf
+    if s.linear:
+        return [o.theta for o in best if o.misfit <= without - HALFWAY * least]
+    if not (states or laws):  # with another law or more states runs may go another way altogether
+        most = without - least
+    if many and best:
+        most = min(most, without - HALFWAY * (without - best[0].misfit))
+    found = [o.theta for o in best if o.misfit <= most]
+    negligible = s.negligible and any(o.misfit < without - HALFWAY * s.score.drop for o in best)
+    if states and s.nonlinear_candidate:  # the error may fall only close to the truth
+        return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
+    return [] if negligible else found
+
+
+def _signs(sizes: Sequence[float]) -> tuple[float, ...]:
+    return tuple(np.sign(sizes))
+
+
+def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
+    """Sizes (k,) of an effect's parameters from which a refit may start: the expected change, and multiples of δ of all of
+    them, of one against the others, and of one alone, with both signs where that is lawful."""
+    lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
+    expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
+    several, both = len(records) > 1, bool((lower < 0).all())
+    alone = [*np.diag(s.delta)] if several else []
+    against = [s.delta - 2 * one for one in alone] if both else []
+    multiples = (f * d for d in (s.delta, *alone, *against) for f in SIZES if f > 0 or both)
+    return [np.clip(size, lower, upper) for size in (expected, *multiples)]
