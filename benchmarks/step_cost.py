@@ -2,7 +2,7 @@
 
 The host is the one of the tests, compiled here. It times each of 2 000 steps in five repeats, keeps each step's least, and
 prints median and worst of these; it is run five times. As FMUs are built their effects are off, for which there is a
-shorter step; one more row has an effect on.
+shorter step; further rows have an effect on, and wheels whose spin is a state.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from wheelchair_fmu.engine import compiler
 from wheelchair_fmu.engine.kernel import kernel
 from wheelchair_fmu.fmu.build import with_chosen_effects
 from wheelchair_fmu.fmu.native import headers
+from wheelchair_fmu.model.choice import Choice
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.studies import fmu_of
 
@@ -30,7 +31,11 @@ OUTPUTS = ("chair.x", "chair.y", "chair.psi", "chair.u", "chair.v", "chair.psi_d
 STEPS, LENGTH, RUNS = 2000, 1e-3, 5
 MEDIAN_TARGETS = {"default": 2.0, "all": 4.0}  # µs
 WORST_TARGET = 10.0  # µs
-ONE_ON = Variant().with_values({"effect.rolling_resistance_asymmetry.D": 1.0})
+OTHERS = {
+    "one of them on": Variant().with_values({"effect.rolling_resistance_asymmetry.D": 1.0}),
+    'wheel = "spinning"': Variant(Choice(wheel="spinning")),
+    'caster = "slipping"': Variant(Choice(caster="slipping")),
+}
 
 
 def rows() -> Iterator[Row]:
@@ -50,8 +55,9 @@ def rows() -> Iterator[Row]:
                 "operands, the C library's functions, and FMI's calls",
             )
             yield Row(f"FMU step, --effects {effects}: worst", "µs", worsts, WORST_TARGET)
-        medians = [run_host(host, Path(folder), "default", "time", STEPS, ONE_ON)[0] / 1e3 for _ in range(RUNS)]
-        yield Row("FMU step, --effects default, one of them on: median", "µs", medians)
+        for what, variant in OTHERS.items():
+            medians = [run_host(host, Path(folder), "default", "time", STEPS, variant)[0] / 1e3 for _ in range(RUNS)]
+            yield Row(f"FMU step, --effects default, {what}: median", "µs", medians)
 
 
 def host_program(folder: Path) -> Path:
@@ -69,7 +75,8 @@ def _run(host: Path, folder: Path, effects: str) -> tuple[float, float]:
 
 def run_host(host: Path, folder: Path, effects: str, mode: str, steps: int, variant: Variant = Variant()) -> list[float]:
     """What the host prints in this mode, over so many steps of a variant's FMU with these effects."""
-    archive, place = fmu_of(variant, effects, with_starts=True), folder / f"{effects}{len(variant.values)}"
+    archive = fmu_of(variant, effects, with_starts=True)
+    place = folder / archive.stem
     if not place.exists():
         fmpy.extract(str(archive), str(place))
     description = fmpy.read_model_description(str(archive))

@@ -185,6 +185,7 @@ class Output(Quantity):
     boolean: bool = False  # written as an inequality; `margin` is the unit of its two sides
     margin: Unit = ONE
     limit: str = ""  # what has happened where it is true, if the model holds no longer there
+    instead: str = ""  # which model would hold there, if there is one: "or choose ..."
 
     def __post_init__(self) -> None:
         super().__post_init__()

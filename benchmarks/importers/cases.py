@@ -13,11 +13,14 @@ from wheelchair_fmu.engine.simulate import Simulator, Trajectory
 from wheelchair_fmu.fmu.build import with_chosen_effects
 from wheelchair_fmu.fmu.reference import OUTPUTS
 from wheelchair_fmu.fmu.variables import GRID, TOLERANCE
+from wheelchair_fmu.model.choice import Choice
 from wheelchair_fmu.model.variant import Variant
 
-from .rows import BOUND, REFERENCE, TWO
+from .rows import BOUND, REFERENCE, SLIDES, TWO
 
 STEP = 0.01  # s
+WET = Variant(Choice(wheel="spinning")).with_values({"tyre.mu": 0.4})
+RIMS = ("sensor.wheel_speed_l", "sensor.wheel_speed_r")
 LEAVES = -1e-12  # of a brake that is meant to be 0, as an interpolation leaves it
 
 
@@ -40,7 +43,8 @@ def cases(archive: Path, folder: Path) -> dict[str, Case]:
         rows = list(csv.DictReader(file))
     end = {name: float(value) for name, value in rows[-1].items() if name != "time"}
     given = Case(folder / "reference_in.csv", folder / "reference.csv", end)
-    return {REFERENCE: given, TWO: Case(given.inputs, given.results, coupled()), BOUND: at_bound(folder)}
+    two = Case(given.inputs, given.results, coupled())
+    return {REFERENCE: given, TWO: two, BOUND: at_bound(folder), SLIDES: on_a_wet_floor(folder)}
 
 
 def coupled() -> dict[str, float]:
@@ -59,6 +63,19 @@ def at_bound(folder: Path) -> Case:
     case = Case(folder / "bound_in.csv", folder / "bound.csv", {name: float(run[name][-1]) for name in OUTPUTS})
     _write(case.inputs, {"time": time, **pushes, "brake.rl": LEAVES * time / time[-1]})
     _write(case.results, {"time": time, **{name: run[name] for name in OUTPUTS}})
+    return case
+
+
+def on_a_wet_floor(folder: Path) -> Case:
+    """A push that spins both wheels, the left one faster; then brakes that lock the right one first."""
+    time = np.arange(201) * STEP
+    inputs = {"push.F_rl": np.where(time < 0.5, 140.0, 0.0), "push.F_rr": np.where(time < 0.5, 120.0, 0.0)}
+    inputs |= {"brake.rl": np.where(time < 1.4, 0.0, 0.8), "brake.rr": np.where(time < 1.2, 0.0, 0.8)}
+    run = _run(Simulator(with_chosen_effects(WET)), time, inputs)
+    names = (*OUTPUTS, *RIMS)
+    case = Case(folder / "wet_in.csv", folder / "wet.csv", {name: float(run[name][-1]) for name in names})
+    _write(case.inputs, {"time": time, **inputs})
+    _write(case.results, {"time": time, **{name: run[name] for name in names}})
     return case
 
 

@@ -19,8 +19,8 @@ from wheelchair_fmu.studies.ssp import sources
 from wheelchair_fmu.studies.ssp.building import build
 from wheelchair_fmu.studies.ssp.running import run
 
-from .cases import Case, cases, strokes
-from .rows import STROKES, SYSTEMS, TWO, Result, Row, fmu_rows, ssp_rows
+from .cases import WET, Case, cases, strokes
+from .rows import SLIDES, STROKES, SYSTEMS, TWO, Result, Row, fmu_rows, ssp_rows
 
 HERE = Path(__file__).parent
 HOST = HERE.parents[1] / "tests" / "fmu" / "trajectory.c"
@@ -32,7 +32,8 @@ def fmu_results() -> Iterator[Result]:
     with TemporaryDirectory() as place:
         folder = Path(place)
         archives = build_each({"2": folder / "chair.fmu", "3": folder / "chair.fmi3.fmu"})
-        for fmi, archive in zip(("2", "3"), archives, strict=True):
+        wet = build_each({"2": folder / "wet.fmu", "3": folder / "wet.fmi3.fmu"}, WET)
+        for fmi, archive, spinning in zip(("2", "3"), archives, wet, strict=True):
             known = cases(archive, folder)
             for row in fmu_rows(fmi):
                 if row.reason:
@@ -40,7 +41,7 @@ def fmu_results() -> Iterator[Result]:
                 elif row.run == STROKES:
                     yield plain_host(row, archive, folder)
                 else:
-                    yield on_fmu(row, archive, known[row.run])
+                    yield on_fmu(row, spinning if row.run == SLIDES else archive, known[row.run])
 
 
 def ssp_results() -> Iterator[Result]:

@@ -9,6 +9,7 @@ REFERENCE = "the archive's reference inputs, 5 s"
 BOUND = "a brake that leaves its lower bound by 1e-12, 1 s"
 TWO = "two chairs in one process, coupled, 3 s"
 STROKES = "strokes that turn right and left, 4 s"
+SLIDES = "wheels with spin as a state, on a wet floor: they spin, then lock, 2 s"
 CS, ME = "CoSimulation", "ModelExchange"
 SYSTEMS = {"slalom": 20.0, "cross-slope": 10.0}  # s: while the chair still moves, so that a difference shows
 ALLOWED = 1e-5  # of any output at the end, relative to 1 + its size
@@ -77,12 +78,12 @@ SSP_HEAD = ("importer", "version", "system", "result")
 
 
 def fmu_rows(fmi: str) -> tuple[Row, ...]:
-    """What is done with an archive of one version of FMI."""
-    mine = [Row("FMPy", "fmpy", fmi, interface, run, here=True) for interface in (CS, ME) for run in (REFERENCE, BOUND)]
+    """What is done with the archives of one version of FMI."""
+    mine = [Row("FMPy", "fmpy", fmi, interface, run, here=True) for interface in (CS, ME) for run in (REFERENCE, BOUND, SLIDES)]
     theirs = [
         Row(tool, script, fmi, CS, run)
         for tool, script in OTHERS
-        for run in (REFERENCE, BOUND, *([TWO] if tool in COUPLED else []))
+        for run in (REFERENCE, BOUND, *([TWO] if tool in COUPLED else []), SLIDES)
     ]
     lost = [Row(tool, "", fmi, CS, REFERENCE, reason=reason) for tool, reason in NOT_HAD.items()]
     return (*mine, Row("plain C host", "", fmi, CS, STROKES, here=True), *theirs, *lost)

@@ -181,7 +181,8 @@ EFFECTS: dict[str, Effect] = {
             "M_f": Parameter(
                 "chair.turn_f", "N m", 0.1, "each caster on the spot, opposes its turning on the floor", pattern=0.5
             ),
-        }
+        },
+        sees="both-ways",  # a circle and a run backward: everyday turns leave M unsure by more than δ
     ),
     "longitudinal_slip": Effect(
         _one("compliance", "chair.slip_compliance", "1/N", 1e-4, "a driven wheel turns faster than its hub moves")

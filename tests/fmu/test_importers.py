@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 from benchmarks.importers import page
-from benchmarks.importers.cases import cases
+from benchmarks.importers.cases import WET, cases
 from benchmarks.importers.driving import OTHERS, on_fmu, on_ssp, plain_host
-from benchmarks.importers.rows import FMU_HEAD, SSP_HEAD, STROKES, Row, fmu_rows, head, ssp_rows
+from benchmarks.importers.rows import FMU_HEAD, SLIDES, SSP_HEAD, STROKES, Row, fmu_rows, head, ssp_rows
+from wheelchair_fmu.fmu.build import build
+from wheelchair_fmu.studies import fmu_of
 
 needs_others = pytest.mark.skipif(not OTHERS, reason="no $IMPORTERS_PYTHON: `make importers` sets it up")
 ROWS = {"fmu": (*fmu_rows("2"), *fmu_rows("3")), "ssp": ssp_rows()}
@@ -29,12 +31,21 @@ def _named(row: Row) -> str:
     return " ".join(row.key)
 
 
+@pytest.mark.parametrize("row", [r for r in fmu_rows("2") if r.here and r.run == SLIDES], ids=_named)
+def test_wheels_whose_spin_is_a_state_slide_in_an_importer_as_in_the_engine(row, native, tmp_path: Path):
+    case = cases(native.path, tmp_path)[SLIDES]
+    assert abs(case.expected["sensor.wheel_speed_l"]) < 1e-4 < 0.5 < case.expected["chair.u"]  # locked, and still moving
+    result = on_fmu(row, fmu_of(WET, with_starts=True), case)
+    assert result.good, result.verdict
+
+
 @pytest.mark.nightly
 @needs_others
 @pytest.mark.parametrize("row", [r for r in ROWS["fmu"] if r.script and NOT_THERE.get(r.tool) != r.fmi], ids=_named)
 def test_others_get_what_is_right(row, native, native3, tmp_path: Path):
     archive = (native if row.fmi == "2" else native3).path
-    result = on_fmu(row, archive, cases(archive, tmp_path)[row.run])
+    driven = build(WET, tmp_path / "wet.fmu", fmi=row.fmi) if row.run == SLIDES else archive
+    result = on_fmu(row, driven, cases(archive, tmp_path)[row.run])
     assert result.good, result.verdict
 
 
@@ -42,9 +53,9 @@ def test_others_get_what_is_right(row, native, native3, tmp_path: Path):
 @needs_others
 @pytest.mark.parametrize("row", [r for r in ROWS["ssp"] if r.script], ids=_named)
 def test_others_run_the_same_system(row, tmp_path: Path):
-    from wheelchair_fmu.studies.ssp.building import build
+    from wheelchair_fmu.studies.ssp.building import build as build_system
 
-    result = on_ssp(row, build(row.run, tmp_path / f"{row.run}.ssp"))
+    result = on_ssp(row, build_system(row.run, tmp_path / f"{row.run}.ssp"))
     assert result.good, result.verdict
 
 

@@ -70,10 +70,13 @@ def test_bad_values_are_refused_while_stepping_too(native):
         assert c.step(0.01, 10).outputs() == untouched.step(0.01, 10).outputs()
 
 
+GRIPS = {"chair.m": 900.0, "tyre.mu": 3.0}  # a chair that no push spins the wheels of
+
+
 @pytest.mark.parametrize("archive", ["native", "native3", "in_python"])
 def test_an_input_beyond_a_bound_is_clamped_with_one_warning(archive, request):
     with chair(request.getfixturevalue(archive), logging=True) as c:
-        c.start({"push.F_rl": 2500.0, "push.F_rr": 2000.0}).step(0.01)
+        c.start({**GRIPS, "push.F_rl": 2500.0, "push.F_rr": 2000.0}).step(0.01)
         for i in range(3):
             c.set({"push.F_rl": 3000.0 + i, "brake.rl": -0.25})
             assert c.get("push.F_rl", "brake.rl") == [2000.0, 0.0]
@@ -86,7 +89,7 @@ def test_an_input_beyond_a_bound_is_clamped_with_one_warning(archive, request):
             "is out of bounds",
         ]
         with chair(request.getfixturevalue(archive), name="other") as other:  # which was given the bounds themselves
-            other.start({"push.F_rl": 2000.0, "push.F_rr": 2000.0}).step(0.01, 4)
+            other.start({**GRIPS, "push.F_rl": 2000.0, "push.F_rr": 2000.0}).step(0.01, 4)
             assert c.outputs() == other.outputs() and other.sentences == []
         c.fmu.reset()
         c.set({"brake.rl": -1.0})
@@ -219,6 +222,18 @@ def test_leaving_the_range_warns_once(native):
         slipping = [t for s, k, t in c.said if "the tyre law is not meant for so much slip" in t]
         assert len(lifted) == 1 and len(slipping) == 1 and len(c.said) == 2
         assert {k for _, k, _ in c.said} == {"logStatusWarning"}
+
+
+def test_a_push_that_would_spin_a_wheel_warns_once(native):
+    """The wheel rolls on all the same; who wants it to spin is told which law it is that has it."""
+    with chair(native) as c:
+        c.start({"tyre.mu": 0.3, "push.F_rr": 80.0})
+        c.step(0.01, 3)
+        (said,) = c.sentences
+        assert "push.beyond_friction is true: a rear wheel is pushed beyond friction" in said
+        assert said.endswith(
+            'push or turn less, or choose the law of wheels that spin, wheel = "spinning" in the [laws] of a variant'
+        )
 
 
 def test_a_gentle_ride_warns_of_nothing(native, in_python):

@@ -15,3 +15,10 @@ def test_a_wheel_off_the_ground_is_said_of_each_run(sample, height, runs):
     said = beyond(likelihood, likelihood.evidence(sample.fit, {"effect.longitudinal_load_transfer.h": height}))
     assert [words.partition(":")[0] for words in said] == runs
     assert all("a wheel has left the ground for " in words for words in said)
+
+
+def test_a_push_beyond_friction_is_said_with_the_law_that_has_it(sample):
+    likelihood = ModelFactory(sample, Variant().with_values({"tyre.mu": 0.05})).likelihood(())
+    said = beyond(likelihood, likelihood.evidence(sample.fit, {}))
+    assert any(words.startswith("straight-strokes: as fitted, a rear wheel is pushed beyond friction") for words in said)
+    assert all(words.endswith('wheel = "spinning" in the [laws] of a variant') for words in said)

@@ -70,6 +70,19 @@ def test_a_push_beyond_friction_spins_the_wheels(push):
     assert rim == pytest.approx((push - held) / SPUN, rel=1e-3)
 
 
+@pytest.mark.parametrize("side", ["l", "r"])
+@pytest.mark.parametrize("push", [1.0, -1.0])
+def test_the_law_without_spin_says_when_a_push_would_spin_a_wheel(side, push):
+    """At μN and not before, whichever way; a brake takes its part of the push. Wheels that can spin need no such word."""
+    for share, said in ((0.99, 0), (1.01, 1)):
+        inputs = {f"push.F_r{side}": push * share * 0.3 * N_R}
+        for choice in (Choice(), SPINNING):
+            result = run({"tyre.mu": 0.3, "start.u": push}, inputs, T=0.1, n=3, choice=choice)
+            assert np.all(result["push.beyond_friction"] == (said if choice == Choice() else 0))
+    braked = {f"push.F_r{side}": push * 0.35 * N_R, f"brake.r{side}": 0.1 * N_R / 300}
+    assert not run({"tyre.mu": 0.3, "start.u": push}, braked, T=0.1, n=3)["push.beyond_friction"].any()
+
+
 def test_wheels_that_spin_have_no_side_grip():
     """Friction goes with the patch's way, which is all but along the wheel."""
     aside, spin = 0.1, 20.0

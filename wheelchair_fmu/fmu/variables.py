@@ -149,7 +149,7 @@ class Interface:
                     (0.5,) * len(slip),
                     None,
                     0.0,
-                    f"{o.limit} and the model no longer holds; push or turn less",
+                    f"{o.limit}, and the model no longer holds; push or turn less{o.instead and f', or {o.instead}'}",
                 )
                 for o in self.model.outputs
                 if o.limit

@@ -466,8 +466,11 @@ ROWS = (
 @stage(
     define("curvature", PER_M, "curvature 1/R_c of the CM's path, positive to the right", "-"),
     define("lifted", ONE, "1 where a wheel has left the ground"),
+    define("overdriven", ONE, "1 where a rear wheel is pushed beyond friction and rolls on all the same"),
     define("rim_needed", N, "total push at the rims that keeps u constant"),
 )
-def results(u, v, psi_dot, v_eps, N_f, N_r, needed, R, R_rim):
+def results(u, v, psi_dot, v_eps, N_f, N_r, mu, creeping, needed, R, R_rim):
     curvature = psi_dot / cs.sqrt(u * u + v * v + v_eps * v_eps)  # (23)
-    return curvature, cs.fmin(cs.mmin(N_f), cs.mmin(N_r)) <= 0, needed * R / R_rim
+    lifted = cs.fmin(cs.mmin(N_f), cs.mmin(N_r)) <= 0
+    overdriven = cs.mmin(mu * cs.fmax(N_r, 0) - cs.fabs(creeping)) < 0
+    return curvature, lifted, overdriven, needed * R / R_rim

@@ -57,6 +57,16 @@ OUTPUTS = (
         margin=N,
         limit="a wheel has left the ground",
     ),
+    Output(
+        "push.beyond_friction",
+        ONE,
+        "true where a rear wheel is pushed by more than tyre.mu times its load: it would spin, and in this model it rolls on",
+        symbol="overdriven",
+        boolean=True,
+        margin=N,
+        limit="a rear wheel is pushed beyond friction, tyre.mu times its load, and would spin",
+        instead='choose the law of wheels that spin, wheel = "spinning" in the [laws] of a variant',
+    ),
     Output("caster.fl", RAD, "angle δ_fl of the left caster from straight trailing", "-caster.fr", symbol="delta", nominal=0.1),
     Output(
         "caster.fr",
