@@ -15,6 +15,7 @@ from wheelchair_fmu.report.advice import INSPECT, inspect
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, exceeds, near_rivals
+from wheelchair_fmu.report.words import headline
 
 EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
@@ -133,7 +134,7 @@ def test_the_chance_that_a_size_matters(row, expected):
 def test_what_is_left_is_told_in_units_of_sensors_where_it_is_known():
     physical = {"yaw_rate": {"heldout_rms": 0.35, "unit": "deg/s", "share_of_sd": 0.04, "constant_rms": 8.6}}
     assert tale(told("missing", [DRAG], physical=physical)).physical == [
-        "The yaw rate is foretold to 0.35 °/s, 4 % of how much it varies."
+        "The yaw rate is predicted to within 0.35 °/s, 4 % of how much it varies."
     ]
     assert SAMPLE["physical"]["yaw_rate"]["unit"] == "deg/s"  # a diagnosis has it in the unit in which it is told
     assert not tale(told("missing", [DRAG], physical={})).physical
@@ -200,3 +201,27 @@ def test_a_campaign_without_runs_held_out_is_told_by_those_it_was_fitted_to(case
     story = tale({**CASES[case], "ladder": ladder, "ranking": ranking})
     lines = texts([*story.cards, *story.screens])
     assert not [line for line in lines if "kept back" in line or "None" in line]
+
+
+def test_values_to_be_measured_again_have_names_and_the_headline_stays_short():
+    """A search that bends what was given: no code names, no “measure … measured”, a headline that fits above the cards."""
+    bent = {**SAMPLE["calibration"]["chair.m"], "beyond": True}
+    following = {"manoeuvre": "chair.m measured again", "separates": [], "repeats": 1, "why": ""}
+    calibration = {**SAMPLE["calibration"], "chair.m": bent}
+    diagnosis = told("outside", [DRAG], ladder=LEVEL, calibration=calibration, next_experiment=following, leftover=None)
+    records = {**RECORDS, "chair.m": RECORDS[f"effect.{DRAG}.D"]}  # any record has a meaning
+    story = story_of(diagnosis, TITLES, records, UNITS)
+    lines = texts([*story.cards, *story.screens])
+    assert not [line for line in lines if "chair.m" in line or "measured again" in line]
+    assert story.following[0] == f"Next, measure the {records['chair.m'].meaning} again."
+    assert len(headline(diagnosis, TITLES, records)) < 90
+    answers = [c["answer"] for c in story.screens[1]["choices"] if c["right"]]
+    assert answers and not [a for a in answers if a.startswith("Yes")]  # what does not suffice is no answer
+
+
+def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
+    row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
+    size = {**row["parameters"]["D"], "estimate": 1.6, "se": 1.2}
+    ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
+    line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
+    assert line.endswith("a size that these runs leave open.")

@@ -20,7 +20,7 @@ from ..report.page import page
 from ..report.paper.case import checked
 from ..report.paper.folder import supplement
 from ..report.tale import story_of
-from ..report.words import particulars, sentence
+from ..report.words import headline, particulars
 from .lacking import missing
 
 Story = dict[str, Any]
@@ -43,7 +43,7 @@ def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str
     colour = noise_told(told, measured.noise)
     tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
     return page(
-        content(measured, chair, colour, told, fixed), sentence(told, titles, records), particulars(told, records, titles), tale
+        content(measured, chair, colour, told, fixed), headline(told, titles, records), particulars(told, records, titles), tale
     )
 
 

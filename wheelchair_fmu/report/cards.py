@@ -83,7 +83,7 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"
     only = [f"The error comes down only where {listed(bent, 'and')} {come} out as nobody would measure it."] if bent else []
-    return "Something that no effect in the catalogue describes", helped or only
+    return "Something that no effect in the catalogue describes", [*helped, *only]
 
 
 def _how_sure(t: Told) -> tuple[str, list[str]]:

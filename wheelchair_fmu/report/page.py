@@ -54,7 +54,7 @@ POLICY = (
 def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], story: Story) -> str:
     """The page as HTML, from what `content.content` gives; `sentence`, `particulars` and `story` are there before any script
     runs."""
-    carried = {**content, "story": {"screens": story.screens, "physical": story.physical}}
+    carried = {**content, "story": {"screens": story.screens, "physical": story.physical, "following": story.following}}
     words = json.dumps(carried, ensure_ascii=False)
     places = {
         "title": f"{escape(content['name'])}: {escape(sentence)}",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from .told import Told, actions, fall_words, near_rivals, rival_words, sized, together_words, why_not
-from .words import STILL, listed
+from .words import STILL, listed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
 TRIED = 6  # effects in the picture of the rivals
@@ -74,6 +74,8 @@ def _answer(t: Told, effect: str) -> str:
     error = "" if comes is None else f" The error comes to {comes:.2f}{_once(t, effect)}."
     if effect in t.found:
         tied = t.verdict == "tie" and any(effect in tie for tie in t.diagnosis["ties"])
+        if t.verdict == "outside":
+            return f"It helps, but does not suffice.{error}"
         return ("It may be: this or its rival." if tied else "Yes.") + error
     if any(effect == r["effect"] for r in near_rivals(t)):
         return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
@@ -92,7 +94,7 @@ def _once(t: Told, effect: str) -> str:
     if partners:
         return f" together with {listed([t.title(e) for e in partners], 'and')}"
     later = t.found and t.rows[t.found[0]]["heldout_before"] != t.rows[effect]["heldout_before"] and effect != t.found[0]
-    return f" once {t.title(t.found[0])} is in" if later else ""
+    return f" together with {t.title(t.found[0])}" if later else ""
 
 
 def _put(t: Told, before: float, after: float) -> dict[str, Any]:
@@ -156,7 +158,7 @@ def _rivals(t: Told) -> dict[str, Any]:
     elif t.verdict == "outside":
         title, lines = (
             "Why nothing in the catalogue",
-            ["Each of the likeliest was put in and its size fitted; this is the error that each leaves."],
+            ["Each of the likeliest was put in and its size fitted; this is the error that each leaves.", *_bent(t)],
         )
     elif len(bars(t)) > 1:
         title, lines = (
@@ -169,6 +171,15 @@ def _rivals(t: Told) -> dict[str, Any]:
             ["Every effect of the catalogue was held against what the model leaves over. Not one of them shows in it."],
         )
     return {"title": title, "lines": lines, "bars": bars(t)}
+
+
+def _bent(t: Told) -> list[str]:
+    """Why what helps is not the answer all the same."""
+    bent = strained(t.diagnosis, t.records)
+    if not t.found or not bent:
+        return []
+    come = "come" if len(bent) > 1 else "comes"
+    return [f"With what helps most in the model, {listed(bent, 'and')} {come} out as nobody would measure it."]
 
 
 def _unmoved(t: Told) -> list[str]:

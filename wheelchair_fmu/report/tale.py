@@ -9,7 +9,7 @@ from typing import Any
 from ..quantities import Quantity, Unit
 from .cards import cards
 from .screens import screens
-from .told import Told, capital
+from .told import Told, capital, next_words
 from .words import spoken
 
 CHANNELS = {
@@ -31,6 +31,7 @@ class Story:
     cards: Sequence[Mapping[str, Any]]
     screens: Sequence[Mapping[str, Any]]
     physical: Sequence[str] = ()
+    following: Sequence[str] = ()  # what to measure next, and why
 
 
 def story_of(
@@ -38,7 +39,7 @@ def story_of(
 ) -> Story:
     """All of it; `records` are effects' parameters, and `units` those of channels, by name."""
     t = Told(diagnosis, titles, records)
-    return Story(cards(t), screens(t), physical_words(t, units))
+    return Story(cards(t), screens(t), physical_words(t, units), next_words(t))
 
 
 def channel_words(channel: str) -> str:
@@ -53,7 +54,7 @@ def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
     for name, v in left.items():
         if name in units and v.get("heldout_rms") is not None:
             error = spoken(v["heldout_rms"], None, Unit(v["unit"]))  # in the unit that it names already
-            said.append(f"{capital(channel_words(name))} is foretold to {error}{_share(v.get('share_of_sd'))}.")
+            said.append(f"{capital(channel_words(name))} is predicted to within {error}{_share(v.get('share_of_sd'))}.")
     return said
 
 

@@ -9,10 +9,11 @@ from typing import Any
 
 from ..quantities import Quantity
 from .advice import inspect
-from .words import STILL, listed, probability_words, spoken, title_of
+from .words import AGAIN, STILL, listed, probability_words, spoken, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
+SURE = 1.96  # standard errors from nought, within which a size may as well be none
 
 
 @dataclass(frozen=True)
@@ -183,7 +184,9 @@ def size_lines(t: Told, effect: str) -> list[str]:
 
 def sized(t: Told, effect: str) -> str:
     sizes = " and ".join(spoken(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
-    return f"{capital(t.title(effect))}: {sizes}, {_times(t.multiple(effect))} the size that would matter."
+    sure = any(not v["se"] or abs(v["estimate"]) > SURE * v["se"] for _, v, _ in t.sizes(effect))
+    size = f"{_times(t.multiple(effect))} the size that would matter" if sure else "a size that these runs leave open"
+    return f"{capital(t.title(effect))}: {sizes}, {size}."
 
 
 def _interest(t: Told, effect: str) -> str:
@@ -212,7 +215,7 @@ def _lower(words: str) -> str:
 def actions(t: Told) -> list[str]:
     """What to do, the first thing first: inspect, measure, add."""
     found, following = t.found, t.diagnosis.get("next_experiment")
-    measure = [_measure(following)] if following else []
+    measure = [f"Measure {_what_next(t)}: {_why_next(t)}."] if following else []
     if t.verdict == "tie":
         return [*measure, *(inspect(e, t.title(e)) for e in found)] or ["Measure again where the causes differ."]
     if t.verdict == "missing":
@@ -244,7 +247,31 @@ def actions(t: Told) -> list[str]:
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
 
 
-def _measure(following: Mapping[str, Any]) -> str:
+def next_words(t: Told) -> list[str]:
+    """What to measure next and what that is for, in two sentences; none where nothing is to be measured."""
+    return [f"Next, measure {_what_next(t)}.", f"{capital(_why_next(t))}."] if t.diagnosis.get("next_experiment") else []
+
+
+def _what_next(t: Told) -> str:
+    following = t.diagnosis["next_experiment"]
     times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
-    more = "them apart" if len(following["separates"]) > 1 else "more"
-    return f"Measure {following['manoeuvre']}{times}: it would tell {more}."
+    return f"{to_measure(following['manoeuvre'], t.records)}{times}"
+
+
+def _why_next(t: Told) -> str:
+    following = t.diagnosis["next_experiment"]
+    effects = following["separates"]
+    if following["manoeuvre"].endswith(AGAIN):
+        return "with what was given, the model cannot follow these runs"
+    if not effects:
+        return str(following["why"]) or "it would tell more"
+    if t.verdict in ("adequate", "cannot_see"):
+        more = "effects" if len(effects) > 1 else "effect"
+        return f"it would show {number(len(effects)).lower()} {more} that these runs could not"
+    if set(effects) <= set(t.diagnosis["effects"]):
+        return "it would tell them apart"
+    return (
+        f"it would tell {listed([t.title(e) for e in effects], 'and')} apart"
+        if 1 < len(effects) <= NAMED
+        else "it would tell more"
+    )

@@ -13,6 +13,8 @@ from ..quantities import DisplayUnit, Quantity, Unit
 HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a probability below which the data show something like the effect
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
+NOTHING = "Something is left that no effect in the catalogue explains."
+AGAIN = " measured again"  # the end of a next experiment that is no manoeuvre but values of the chair
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
@@ -38,11 +40,28 @@ def outside(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity] | None
     bent = strained(diagnosis, records or {})
     last, left = diagnosis["ladder"][-1], (diagnosis.get("leftover") or {}).get("proposal")
     if not bent or left or max(last["fit"], last.get("heldout") or 0.0) > DEFAULT.a_little:
-        return "Something is left that no effect in the catalogue explains."
+        return NOTHING
     return (
         f"The error comes down to the noise only with {listed(bent, 'and')} as nobody would have measured it: "
         "what was given is wrong, or it stands in for what the model lacks."
     )
+
+
+def headline(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity] | None = None) -> str:
+    """The verdict in a sentence short enough to stand above a page; what it rests on stands below it."""
+    if diagnosis["verdict"] != "outside":
+        return sentence(diagnosis, titles, records)
+    if outside(diagnosis, records).startswith(NOTHING):
+        return NOTHING
+    return "The model follows these runs only with values that nobody would have measured."
+
+
+def to_measure(manoeuvre: str, records: Mapping[str, Quantity]) -> str:
+    """What is to be measured next, after the word “measure”; values of the chair by what they are."""
+    values = manoeuvre.removesuffix(AGAIN)
+    if values == manoeuvre:
+        return manoeuvre
+    return f"{listed([f'the {records[n].meaning}' if n in records else n for n in values.split(' and ')], 'and')} again"
 
 
 def strained(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> list[str]:
@@ -98,7 +117,7 @@ def particulars(
     following = diagnosis.get("next_experiment")
     if following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
-        said.append(f"Measure {following['manoeuvre']} next{times}.")
+        said.append(f"Next, measure {to_measure(following['manoeuvre'], records)}{times}.")
     return [*said, *(f"Note: {named(note, titles, records)}." for note in diagnosis.get("notes", ()))]
 
 

@@ -47,9 +47,10 @@ class Calibrated:
     @property
     def words(self) -> str:
         """What there is to say of it; empty where it is as it was given."""
-        unit = self.record.unit.name
-        told = f"{self.record.name} comes out at {self.value:.4g} {unit}"
-        given = f"{abs(self.off):.1f} standard deviations from the {self.prior:.4g} ± {self.prior_sd:.2g} {unit} given"
+        unit = "" if self.record.unit.name == "1" else f" {self.record.unit.name}"
+        value, prior, sd = (f"{float(f'{v:.{d}g}'):.9g}" for v, d in ((self.value, 4), (self.prior, 4), (self.prior_sd, 2)))
+        told = f"{self.record.name} comes out at {value}{unit}"
+        given = f"{abs(self.off):.1f} standard deviations from the {prior} ± {sd}{unit} given"
         if self.beyond:
             return (
                 f"{told}, {given}, where the search stops: the value given is wrong, or it stands in for what the model lacks"

@@ -113,7 +113,7 @@ class App {
     this.pending = false;
     const held = !exact && this.took < AT_ONCE; // then the curve waits for the numbers, and both are of the same values
     this.running = { exact, held, left: new Set([this.shown.run, ...rest]), began: performance.now(), one: null };
-    this.say(...(exact ? ["making the numbers exact …", "busy"] : held ? ["about, while it moves", "quick"] : ["simulating …", "busy"]));
+    this.say(...(exact ? ["making the numbers exact …", "busy"] : ["about, while it moves", "quick"])); // the same all along: nothing flickers
     this.pool.ask([...this.running.left], this.values, exact, (run) => exact || run === this.shown.run);
   }
 
@@ -239,8 +239,13 @@ class App {
   /** [low, high] about the shown channel of a result of the shown run: 95 % of readings lie between them where the model is right;
    *  `variance` is what the uncertainty of its values adds. */
   band(result, variance = this.doubt()?.[this.shown.channel]) {
-    const { channel } = this.shown, mean = result.predicted[channel];
-    return [-1, 1].map((way) => mean.map((v, i) => v + way * NORMAL * Math.sqrt(result.sd[channel][i] ** 2 + (variance ? variance[i] : 0))));
+    const { channel } = this.shown, mean = result.predicted[channel], sd = result.sd[channel], low = mean.slice(), high = mean.slice();
+    for (let i = 0; i < mean.length; i++) {
+      const half = NORMAL * (variance ? Math.sqrt(sd[i] * sd[i] + variance[i]) : sd[i]);
+      low[i] -= half;
+      high[i] += half;
+    }
+    return [low, high];
   }
 
   /** [{channel, unit, values: [{step, value, times}]}] of runs held out, as they are known. */

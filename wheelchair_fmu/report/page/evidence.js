@@ -50,7 +50,7 @@ function line(campaign, row, record, later) {
     h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed"].includes(row.verdict) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed", "small"].includes(row.verdict) && !campaign.diagnosis.effects.includes(row.effect) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : campaign.diagnosis.verdict === "outside" && row.verdict === "missing" ? "helps, does not suffice" : VERDICTS[row.verdict] ?? row.verdict)));
 }
 
 /** Effects that were refitted several at once. */
@@ -89,13 +89,11 @@ const alike = (cosine) => (cosine >= 0.995 && cosine < 1 ? cosine.toFixed(4) : c
 function ties(section, campaign) {
   const { diagnosis } = campaign, named = (id) => titleOf(campaign, id);
   for (const group of diagnosis.ties) section.append(h("p", {}, `This campaign cannot tell these apart: ${listed(group.map(named))}.`));
+  section.querySelector("h2").textContent = diagnosis.ties.length ? "What cannot be told apart, and what to measure next" : `Rivals, and what ${diagnosis.next_experiment ? "to measure next" : "is left"}`;
   const told = campaign.story.screens.find((s) => s.kind === "rivals").lines;
-  if (!diagnosis.ties.length) section.append(...(diagnosis.effects.length ? told.map((line) => h("p", {}, line)) : [h("p", {}, "No effect was found, so none is tied.")]));
-  const next = diagnosis.next_experiment;
-  if (next) {
-    const times = next.repeats === 1 ? "" : `, ${next.repeats} times`;
-    section.append(h("p", { class: "next" }, h("b", {}, `Measure ${next.manoeuvre} next${times}.`), ` It would tell ${next.separates.length > 1 ? "apart" : "of"} ${listed(next.separates.map(named))}.`));
-  }
+  if (!diagnosis.ties.length) section.append(...(diagnosis.verdict === "outside" ? [] : diagnosis.effects.length ? told.map((line) => h("p", {}, symbols(line))) : [h("p", {}, "No effect was found, so none is tied.")]));
+  const [next, why] = campaign.story.following ?? [];
+  if (next) section.append(h("p", { class: "next" }, h("b", {}, symbols(next)), " ", why));
   const left = diagnosis.leftover;
   if (left?.where) {
     const { run, channel, rms: size } = left.where, where = `${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;

@@ -8,12 +8,16 @@ import { Heat, QUIET, heat } from "page/heat";
 import { profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { between, display, rms, significant, unitText, withError } from "page/numbers";
+import { between, degrees, display, rms, significant, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
 import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
+
+/** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
+ *  rises at once, and a picture of it would say nothing of how sure a size is. */
+const bowl = (heights, level) => heights.filter((v) => v !== null && v < 2 * level).length > 3;
 
 export class Figures {
   /** `app` has shown, results, now, before(), timeline and motion. */
@@ -76,7 +80,7 @@ export class Figures {
     return {
       draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(r.value, 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(Math.abs(r.value), 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
   }
 
@@ -99,7 +103,7 @@ export class Figures {
 
   /** How the likelihood falls off about the estimates, of each size and of two rivals together. */
   landscape() {
-    const { landscape: told } = this.campaign, curves = told?.profiles ?? [], joint = told?.pair;
+    const { landscape: told } = this.campaign, curves = (told?.profiles ?? []).filter((c) => bowl(c.heights, c.level)), joint = told?.pair && bowl(told.pair.heights.flat(), told.pair.level) ? told.pair : null;
     byId("profiles").hidden = !curves.length;
     byId("joint").hidden = !joint;
     if (curves.length) this.add("profiles", "How sure each size is", this.profiled(curves));
@@ -135,11 +139,11 @@ export class Figures {
   }
 
   lacking(missing) {
-    const all = missing.panels.map((p) => ({ label: `${p.variable} [${unitText(p.unit) || "1"}]`, xs: p.knots, ys: p.estimate, ses: p.se }));
+    const all = missing.panels.map((p) => { const { factor, unit } = degrees(p.unit); return { label: `${capital(p.variable)} [${unitText(unit) || "1"}]`, xs: p.knots.map((v) => v * factor), ys: p.estimate, ses: p.se }; });
     return {
       draw: (width, look) => panels(width, look, all, unitText(missing.unit)),
       columns: () => ({ variable: all.flatMap((p) => p.xs.map(() => p.label)), at: all.flatMap((p) => p.xs), [`missing [${missing.unit}]`]: all.flatMap((p) => p.ys), se: all.flatMap((p) => p.ses) }),
-      caption: () => `${capital(missing.words)} as the runs would have it, a free function of one variable after another, with its 95 % band; where nothing is drawn the runs say nothing. A line that leaves zero shows what it goes with.`,
+      caption: () => `${capital(missing.words)} as the runs would have it, a free function of one variable after another, with its 95 % band, as far as the runs tell it. A line that leaves zero shows what it goes with.`,
     };
   }
 
@@ -221,8 +225,12 @@ export class Figures {
     };
   }
 
-  /** What follows a change at once. */
+  /** What follows a change at once, where it is in sight. */
   follow() {
+    if (this.heatWhere.seen) this.heats();
+  }
+
+  heats() {
     this.heatWhere.show(this.placed(), ([run, channel]) => run === this.app.shown.run && channel === this.app.shown.channel);
   }
 
@@ -231,6 +239,7 @@ export class Figures {
     const { campaign, app } = this;
     this.rows = excessBy(campaign.regimes, campaign.runs, app.results);
     this.against = against(campaign.regimes, campaign.runs, app.results, app.shown.channel);
+    this.heats();
     for (const id of ["path", "overlay", "where"]) this.all[id].said();
     for (const id of ["staircase", "physical", "regimes"]) this.all[id].redraw();
   }

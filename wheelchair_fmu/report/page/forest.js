@@ -12,7 +12,7 @@ function places(width, look, rows) {
   const left = narrow ? 12 : Math.min(0.48 * width, 14 + Math.max(...rows.map((r) => long(r.name, look, 12, weight(r))))), right = narrow ? 12 : noted + 20;
   let y = 24;
   const all = rows.map((r) => {
-    const name = broken(r.name, narrow ? width - 2 * left - long(r.note, look, 11) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 || r.under ? (narrow ? 14 : 10) : 0), top = y;
+    const name = broken(r.name, narrow ? width - 2 * left - Math.max(long(r.note, look, 11), long(r.under ?? "", look, 11)) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 || r.under ? (narrow ? 14 : 10) : 0), top = y;
     y += high;
     return { name, top, high, middle: narrow ? top + high - 14 : top + high / 2 };
   });
@@ -26,9 +26,13 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
   const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
-  drawn.push(svg("rect", { x: across(-band), y: 24, width: across(band) - across(-band), height: end - 24, fill: look.band }));
-  for (const [v, words] of ticked(ticks(low, most, Math.max(4, (width - left - right) / 70)))) drawn.push(line(across(v), 24, across(v), end, look.line), text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
-  drawn.push(line(across(0), 24, across(0), end, look.faint), text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
+  const strips = narrow ? all.map(({ middle }) => [middle - 9, middle + 9]) : [[24, end]], marks = ticked(ticks(low, most, Math.max(4, (width - left - right) / 70))); // no line runs through words
+  for (const [from, to] of strips) {
+    drawn.push(svg("rect", { x: across(-band), y: from, width: across(band) - across(-band), height: to - from, fill: look.band }));
+    for (const [v] of marks) drawn.push(line(across(v), from, across(v), to, v === 0 ? look.faint : look.line));
+  }
+  for (const [v, words] of marks) drawn.push(text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
+  drawn.push(text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
   return canvas(width, end + 40, drawn);
@@ -75,7 +79,7 @@ export function panels(width, look, all, unit) {
   const values = all.flatMap((p) => p.ys.flatMap((v, i) => (v === null ? [] : [v - 2 * p.ses[i], v + 2 * p.ses[i]]))), [low, most] = [Math.min(0, ...values), Math.max(0, ...values)];
   all.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * high + 10, w = wide - 58, hh = high - 58, there = p.xs.map((_, i) => i).filter((i) => p.ys[i] !== null);
-    const [from, to] = [p.xs[0], p.xs.at(-1)], across = (v) => x0 + (w * (v - from)) / (to - from), down = (v) => y0 + hh * (1 - (v - low) / (most - low || 1));
+    const shown = there.length > 1 ? there : p.xs.map((_, i) => i), [from, to] = [p.xs[shown[0]], p.xs[shown.at(-1)]], across = (v) => x0 + (w * (v - from)) / (to - from), down = (v) => y0 + hh * (1 - (v - low) / (most - low || 1));
     for (const [v, words] of ticked(ticks(low, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), v === 0 ? look.faint : look.line), text(x0 - 5, down(v) + 4, words, look.faint, "end", { "font-size": 10.5 }));
     for (const [v, words] of ticked(ticks(from, to, 4))) drawn.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
     if (there.length) {

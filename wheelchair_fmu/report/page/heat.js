@@ -21,6 +21,7 @@ export class Heat {
     place.replaceChildren(h("div", { class: "wide plainly", tabindex: 0, role: "region", "aria-label": caption },
       h("table", { class: "heat" }, h("caption", { class: "unseen" }, caption), h("thead", {}, h("tr", {}, h("td"), heads.map((t) => h("th", { scope: "col" }, t)))), this.body)));
     this.cells = [];
+    new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; }).observe(place);
   }
 
   show(rows, chosen = null) {

@@ -11,9 +11,9 @@ export function profiles(width, look, all, level) {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 70;
     const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - v / most), curve = smooth(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))));
     for (const [v, words] of ticked(ticks(0, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, words, look.faint, "end", { "font-size": 11 }));
-    for (const [v, words] of ticked(ticks(from, to, w / 80))) drawn.push(text(across(v), y0 + hh + 16, words, look.faint, "middle", { "font-size": 11 }));
+    for (const [v, words] of ticked(ticks(from, to, Math.max(3, w / 80)))) drawn.push(text(across(v), y0 + hh + 16, words, look.faint, "middle", { "font-size": 11 }));
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
-    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : y)), look.accent, { "stroke-width": 2 }));
+    drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : Math.min(y, y0 + hh))), look.accent, { "stroke-width": 2 }));
     broken(p.label, wide - 12, look, 12, 400, 2).forEach((t, k) => drawn.push(text(x0 + w / 2, y0 + hh + 34 + 14 * k, t, look.ink, "middle")));
     if (n % abreast === 0) drawn.push(text(0, 0, "worse fit", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });

@@ -6,6 +6,7 @@ import { channelOf } from "page/words";
 
 const LEFT = 54, RIGHT = 8;
 const MOST = 1500; // points of a curve
+const ROOM = 0.12; // of the curves' height that a band may add at either side
 
 /** Panels above one another with one time: [{label, lines: [[name, values, colour, width, dash]], edges, band, height}]; the area
  *  between `edges` [low, high] is shaded, and from −`band` to `band`. */
@@ -17,6 +18,10 @@ export function lines(width, look, time, [from, to], panels) {
   for (const panel of panels) {
     let [low, high] = panel.reach ?? extent(...panel.lines.map(([, v]) => inside.map((i) => v[i])));
     if (low === high) [low, high] = [low - 1, high + 1];
+    if (panel.edges) { // room for the band, as far as it leaves the curves their size
+      const [from, to] = extent(...panel.edges.map((edge) => shown.map((i) => edge[i]))), most = ROOM * (high - low);
+      [low, high] = [Math.min(low, Math.max(from, low - most)), Math.max(high, Math.min(to, high + most))];
+    }
     const down = (v) => top + panel.height * (1 - (v - low) / (high - low));
     if (panel.band) drawn.push(svg("rect", { x: LEFT, width: width - LEFT - RIGHT, y: down(panel.band), height: down(-panel.band) - down(panel.band), fill: look.band }));
     if (panel.edges) drawn.push(svg("path", { d: area(xs, ...panel.edges.map((edge) => shown.map((i) => down(Math.min(Math.max(edge[i], low), high))))), fill: look.band }));
@@ -32,7 +37,7 @@ export function lines(width, look, time, [from, to], panels) {
       drawn.push(course(xs, ys, look[colour], { "stroke-width": thick, "stroke-dasharray": dash?.join(" ") }));
     }
     drawn.push(text(0, 0, panel.label, look.ink, "middle", { transform: `translate(11 ${top + panel.height / 2}) rotate(-90)` }));
-    top += panel.height + 14;
+    top += panel.height + 20;
   }
   for (const t of marks) drawn.push(text(across(t), top + 4, tick(t), look.faint, "middle", { "font-size": 11 }));
   drawn.push(text((LEFT + width - RIGHT) / 2, top + 20, "time [s]", look.ink, "middle"));

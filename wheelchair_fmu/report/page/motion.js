@@ -35,30 +35,21 @@ export function rolled(time, results, tread) {
 }
 
 /** The force (N) and moment (N m) that the model would need more, for its speed and yaw rate to change as was measured:
- *  mass and moment of inertia times the rate at which model and readings part; null where that was not measured. */
-export function lacking(run, result, { mass, inertia }) {
-  const { time, channels } = run, { predicted } = result, sides = ["wheel_speed_l", "wheel_speed_r"].filter((c) => channels[c]);
-  const apart = (names) => time.map((_, i) => names.reduce((sum, c) => sum + channels[c][i] - predicted[c][i], 0) / names.length);
-  return {
-    force: sides.length === 2 ? rate(time, apart(sides)).map((a) => a * mass) : null,
-    moment: channels.yaw_rate ? rate(time, apart(["yaw_rate"])).map((a) => a * inertia) : null,
-  };
+ *  mass and moment of inertia times the rate at which model and readings part, by sample; null where that was not measured. */
+export function lacking({ time, channels }, { predicted }, { mass, inertia }) {
+  const sides = ["wheel_speed_l", "wheel_speed_r"].filter((c) => channels[c]);
+  const parting = (names) => (i) => slope(time, i, (k) => names.reduce((sum, c) => sum + channels[c][k] - predicted[c][k], 0) / names.length);
+  const speed = parting(sides), turn = parting(["yaw_rate"]);
+  return { force: sides.length === 2 ? (i) => mass * speed(i) : null, moment: channels.yaw_rate ? (i) => inertia * turn(i) : null };
 }
 
-/** The slope of a noisy series: between its means over SMOOTH before and after. */
-function rate(time, values) {
-  const n = time.length, sum = new Float64Array(n + 1), count = new Float64Array(n + 1);
-  for (let i = 0; i < n; i++) {
-    const there = Number.isFinite(values[i]);
-    sum[i + 1] = sum[i] + (there ? values[i] : 0);
-    count[i + 1] = count[i] + (there ? 1 : 0);
-  }
-  const out = new Float64Array(n), mean = (a, b) => (sum[b] - sum[a]) / (count[b] - count[a]);
-  for (let i = 0, low = 0, high = 0; i < n; i++) {
-    while (time[low] < time[i] - SMOOTH) low++;
-    while (high < n - 1 && time[high + 1] <= time[i] + SMOOTH) high++;
-    const span = (time[high] - time[low]) / 2;
-    out[i] = span > 0 && i > low && high > i ? (mean(i, high + 1) - mean(low, i)) / span : NaN;
-  }
-  return out;
+/** The slope of a noisy series `at` sample `i`: between its means over SMOOTH before and after. */
+function slope(time, i, at) {
+  const mean = (way) => {
+    let sum = 0, count = 0, k = i;
+    for (; k >= 0 && k < time.length && Math.abs(time[k] - time[i]) <= SMOOTH; k += way) { const v = at(k); if (Number.isFinite(v)) { sum += v; count++; } }
+    return { value: sum / count, end: time[k - way] };
+  };
+  const [before, after] = [-1, 1].map(mean), span = (after.end - before.end) / 2;
+  return after.end > time[i] && before.end < time[i] ? (after.value - before.value) / span : NaN;
 }

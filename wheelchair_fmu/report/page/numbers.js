@@ -11,6 +11,9 @@ export const unitText = (unit) => UNITS[unit] ?? unit;
 /** How a quantity is shown: {unit, factor} from SI. */
 export const display = (record) => record?.display?.[0] ?? { unit: record?.unit ?? "1", factor: 1 };
 
+/** The same of a unit alone: angles are told in degrees. */
+export const degrees = (unit) => (/^rad(\/s)?$/.test(unit) ? { unit: unit.replace("rad", "deg"), factor: 180 / Math.PI } : { unit, factor: 1 });
+
 /** `value` with so many significant digits, without an exponent where that is short. */
 export function significant(value, digits = 3) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
@@ -18,6 +21,13 @@ export function significant(value, digits = 3) {
   const size = Math.floor(Math.log10(Math.abs(value)));
   if (size < -4 || size > 5) return minus(value.toExponential(digits - 1).replace("e-", "e−").replace("e+", "e"));
   return minus(value.toFixed(Math.max(0, digits - 1 - size)));
+}
+
+/** `value` to the decimal place at which `noise` begins, so that readings of one channel stand under one another. */
+export function toPlace(value, noise) {
+  if (!Number.isFinite(value)) return "–";
+  const place = noise > 0 ? Math.min(8, Math.max(0, -Math.floor(Math.log10(noise) + 1e-9))) : 3;
+  return minus(value.toFixed(place)).replace(/^−(0(\.0*)?)$/, "$1");
 }
 
 /** "1.607 ± 0.008 N": the error to two digits at most, the estimate to the same place. */
@@ -49,6 +59,7 @@ export function between(from, to, record) {
 export function probability(p) {
   if (p === null || p === undefined) return "–";
   if (p < 1e-6) return "< 10⁻⁶";
+  if (p < 1e-4) return p.toExponential(0).replace(/e-(\d)/, (_, power) => ` × 10⁻${"⁰¹²³⁴⁵⁶⁷⁸⁹"[power]}`);
   return p < 0.001 ? significant(p, 1) : p.toFixed(p < 0.1 ? 3 : 2);
 }
 

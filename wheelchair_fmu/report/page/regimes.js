@@ -45,7 +45,7 @@ function total(run) {
 
 /** Small panels of these, all of one height of error. */
 export function drawn(width, look, panels) {
-  const abreast = Math.max(1, Math.min(panels.length, 3, Math.floor(width / 165))), wide = width / abreast, high = 190, out = [];
+  const abreast = Math.max(1, Math.min(panels.length, width < 900 ? (panels.length === 4 ? 2 : 3) : 5, Math.floor(width / 165))), wide = width / abreast, high = 190, out = [];
   const [low, most] = [-1, 1].map((way) => way * 1.05 * Math.max(3, ...panels.flatMap((p) => [...p.lows, ...p.highs].map((v) => way * v))));
   panels.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 44, y0 = Math.floor(n / abreast) * high + 8, w = wide - 56, hh = high - 58, [from, to] = [p.xs[0], p.xs.at(-1)];

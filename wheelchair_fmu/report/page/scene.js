@@ -1,20 +1,21 @@
 // The chair from above on a canvas: the whole path, and close by the model's chair with the measured one as a ghost, its wheels
 // and casters turning, and arrows of what pushes it.
 
-import { h, sized } from "page/dom";
+import { h, sized, write } from "page/dom";
 import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
-const LEGEND = 84; // px
-const FONT = "11.5px system-ui, sans-serif";
 
 export class Scene {
   constructor(place, campaign) {
     this.geometry = campaign.geometry;
     this.canvas = h("canvas", { class: "scene", role: "img" });
-    this.paths = h("canvas", { "aria-hidden": "true" }); // behind it the overview, which only changes with the run and the model
-    place.append(h("div", { class: "scenery" }, this.paths, this.canvas));
+    this.paths = h("canvas", { "aria-hidden": "true" }); // the overview, which only changes with the run and the model
+    this.dots = ["measured", "model"].map((name) => h("i", { class: "dot", style: `background:var(--${name})` }));
+    this.key = h("ul", { class: "legend" });
+    this.amount = h("b");
+    place.append(h("div", { class: "scenery" }, this.paths, this.canvas, this.dots), this.key);
     this.room = sized(place);
   }
 
@@ -25,24 +26,28 @@ export class Scene {
     this.canvas.setAttribute("aria-label", `The chair from above in ${name}: it goes ${round(model.x.at(-1))} m forward and ${round(model.y.at(-1))} m to the right in ${round(motion.time.at(-1) - motion.time[0])} s`);
     this.fit();
     this.trace();
+    this.legend();
   }
 
   fit() {
-    const width = Math.max(260, this.room()[0]), height = Math.round(Math.min(620, Math.max(400, width * 1.45))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.room()[0]), height = Math.round(Math.min(536, Math.max(316, width * 1.45 - 84))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
-    this.lying = xs[1] - xs[0] > ys[1] - ys[0];
-    if (this.width !== width || this.height !== height || this.scale !== scale) {
-      Object.assign(this, { width, height, scale });
-      for (const c of [this.canvas, this.paths]) [c.width, c.height] = [width * scale, height * scale];
+    const lying = xs[1] - xs[0] > ys[1] - ys[0];
+    if (this.width !== width || this.height !== height || this.scale !== scale || this.lying !== lying) {
+      Object.assign(this, { width, height, scale, lying });
+      const part = 0.36, [w, high] = lying ? [width, Math.round(height * part)] : [Math.round(width * part), height];
+      this.over = { w, h: high };
+      this.near = lying ? { w: width, h: height - high } : { w: width - w, h: height };
+      for (const [c, { w, h }] of [[this.paths, this.over], [this.canvas, this.near]]) {
+        [c.width, c.height] = [Math.round(w * scale), Math.round(h * scale)];
+        Object.assign(c.style, { width: `${w}px`, height: `${h}px` });
+      }
+      Object.assign(this.canvas.style, { left: `${lying ? 0 : w}px`, top: `${lying ? high : 0}px` });
       this.canvas.parentNode.style.height = `${height}px`;
     }
-    const inner = height - LEGEND, part = 0.36;
-    this.over = this.lying ? { x: 0, y: 0, w: width, h: Math.round(inner * part) } : { x: 0, y: 0, w: Math.round(width * part), h: inner };
-    this.near = this.lying ? { x: 0, y: this.over.h, w: width, h: inner - this.over.h } : { x: this.over.w, y: 0, w: width - this.over.w, h: inner };
-    const [[left, right], [top, bottom]] = this.lying ? [xs, ys] : [ys, [-xs[1], -xs[0]]], room = 0.5, edge = 26;
-    const zoom = Math.min((this.over.w - 2 * edge) / (right - left + 2 * room), (this.over.h - 2 * edge) / (bottom - top + 2 * room));
-    this.zoom = zoom;
+    const [[left, right], [top, bottom]] = lying ? [xs, ys] : [ys, [-xs[1], -xs[0]]], room = 0.5, edge = 26;
+    this.zoom = Math.min((this.over.w - 2 * edge) / (right - left + 2 * room), (this.over.h - 2 * edge) / (bottom - top + 2 * room));
     this.middle = [(left + right) / 2, (top + bottom) / 2];
   }
 
@@ -53,17 +58,16 @@ export class Scene {
 
   overview(x, y) {
     const [right, down] = this.turned(x, y), { over } = this;
-    return [over.x + over.w / 2 + this.zoom * (right - this.middle[0]), over.y + over.h / 2 + this.zoom * (down - this.middle[1])];
+    return [over.w / 2 + this.zoom * (right - this.middle[0]), over.h / 2 + this.zoom * (down - this.middle[1])];
   }
 
   trace() {
     const c = this.paths.getContext("2d"), { look, over, motion } = this;
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
-    c.clearRect(0, 0, this.width, this.height);
-    c.strokeStyle = look.line;
+    c.clearRect(0, 0, over.w, over.h);
     c.fillStyle = look.faint;
     c.font = "11px system-ui, sans-serif";
-    const metres = [1, 2, 5, 10, 20, 50].find((m) => m * this.zoom > 30) ?? 100, at = [over.x + 10, over.y + over.h - 10];
+    const metres = [1, 2, 5, 10, 20, 50].find((m) => m * this.zoom > 30) ?? 100, at = [10, over.h - 10];
     c.strokeStyle = look.faint;
     c.lineWidth = 1.5;
     c.beginPath(); c.moveTo(...at); c.lineTo(at[0] + metres * this.zoom, at[1]); c.stroke();
@@ -82,33 +86,27 @@ export class Scene {
       c.stroke();
     }
     c.setLineDash([]);
-    this.legend(c);
   }
 
   /** All of it at sample `i`. */
   draw(i) {
     const c = this.canvas.getContext("2d"), { motion, look, near } = this, { model, measured } = motion;
     if (!(near.w > 0)) return;
-    c.setTransform(1, 0, 0, 1, 0, 0);
-    c.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    [measured, model].forEach((p, k) => {
+      const there = p && Number.isFinite(p.x[i] + p.y[i]), [x, y] = there ? this.overview(p.x[i], p.y[i]) : [-99, -99];
+      this.dots[k].style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    });
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
-    for (const [p, colour] of [[measured, look.measured], [model, look.model]]) {
-      if (!p || !Number.isFinite(p.x[i] + p.y[i])) continue;
-      c.fillStyle = colour;
-      c.beginPath(); c.arc(...this.overview(p.x[i], p.y[i]), 4.5, 0, 7); c.fill();
-    }
-    c.save();
-    c.beginPath(); c.rect(near.x, near.y, near.w, near.h); c.clip();
+    c.clearRect(0, 0, near.w, near.h);
     this.floor(c, i);
     const size = Math.min(near.w, near.h) / CLOSE, pose = (p) => {
       const [right, down] = this.turned(p.x[i] - model.x[i], p.y[i] - model.y[i]);
-      return [near.x + near.w / 2 + size * right, near.y + near.h / 2 + size * down, p.psi[i] + (this.lying ? Math.PI / 2 : 0)];
+      return [near.w / 2 + size * right, near.h / 2 + size * down, p.psi[i] + (this.lying ? Math.PI / 2 : 0)];
     };
     if (measured && Number.isFinite(measured.x[i] + measured.psi[i])) this.chair(c, i, pose(measured), size, look.measured, true);
     this.chair(c, i, pose(model), size, look.model, false);
     this.arrows(c, i, pose(model), size);
-    c.restore();
-    this.amount(c, i);
+    this.says(i);
   }
 
   /** Tiles that stay on the floor, so that one sees it move. */
@@ -118,11 +116,11 @@ export class Scene {
     c.strokeStyle = look.line;
     c.lineWidth = 1;
     c.beginPath();
-    for (const [at, from, length, across] of [[right, near.x, near.w, true], [down, near.y, near.h, false]]) {
-      const middle = from + length / 2, first = Math.ceil((at - length / 2 / size) / tile) * tile;
-      for (let v = first; middle + size * (v - at) < from + length; v += tile) {
+    for (const [at, length, across] of [[right, near.w, true], [down, near.h, false]]) {
+      const middle = length / 2, first = Math.ceil((at - length / 2 / size) / tile) * tile;
+      for (let v = first; middle + size * (v - at) < length; v += tile) {
         const p = middle + size * (v - at);
-        if (across) { c.moveTo(p, near.y); c.lineTo(p, near.y + near.h); } else { c.moveTo(near.x, p); c.lineTo(near.x + near.w, p); }
+        if (across) { c.moveTo(p, 0); c.lineTo(p, near.h); } else { c.moveTo(0, p); c.lineTo(near.w, p); }
       }
     }
     c.stroke();
@@ -193,7 +191,7 @@ export class Scene {
       arrow(c, at[0] + way * 12, at[1], 0, -push * ARROW.push, look.good, 3);
       arrow(c, at[0], at[1], tyre * ARROW.tyre, 0, look.ink, 2);
     }
-    const force = lacking.force?.[i], moment = lacking.moment?.[i];
+    const force = lacking.force?.(i), moment = lacking.moment?.(i);
     if (Number.isFinite(force)) arrow(c, 0, 0, 0, -force * ARROW.missing, look.error, 4);
     if (Number.isFinite(moment) && Math.abs(moment) > 0.02) {
       const sweep = Math.max(-2.4, Math.min(2.4, moment * 2.2)), r = 0.2 * size, from = -Math.PI / 2;
@@ -204,30 +202,21 @@ export class Scene {
     c.restore();
   }
 
-  /** What is what; how much is missing stands behind its words. */
-  legend(c) {
-    const { look, motion: { lacking, measured } } = this, lacks = lacking.force || lacking.moment;
-    c.font = FONT;
-    const rows = [["model", look.model], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", look.measured], ["push", look.good], ["side force of a tyre", look.ink],
-      lacks && ["missing (arrow × 10): ", look.error]].filter(Boolean);
-    rows.forEach(([words, colour], k) => {
-      const y = this.height - LEGEND + 18 + 15 * k;
-      c.fillStyle = colour; c.fillRect(2, y - 8, 9, 9);
-      c.fillStyle = look.ink; c.fillText(words, 16, y);
-      this.behind = [16 + c.measureText(words).width, y];
-    });
+  /** What is what, where that has changed. */
+  legend() {
+    const { lacking, measured } = this.motion, rows = [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good"], ["side force of a tyre", "ink"],
+      (lacking.force || lacking.moment) && ["missing (arrow × 10): ", "error"]].filter(Boolean), shape = rows.join();
+    if (shape === this.shape) return;
+    this.shape = shape;
+    this.key.replaceChildren(...rows.map(([words, colour]) => h("li", {}, h("i", { style: `background:var(--${colour})` }), words, colour === "error" ? this.amount : null)));
   }
 
   /** How much is missing at sample `i`. */
-  amount(c, i) {
-    const { look, motion: { lacking } } = this, said = [];
-    const [force, moment] = [lacking.force?.[i], lacking.moment?.[i]];
+  says(i) {
+    const { lacking } = this.motion, said = [], [force, moment] = [lacking.force?.(i), lacking.moment?.(i)];
     if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
     if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
-    if (!lacking.force && !lacking.moment) return;
-    c.font = FONT;
-    c.fillStyle = look.ink;
-    c.fillText(said.join(", ") || "–", ...this.behind);
+    write(this.amount, said.join(", ") || "–");
   }
 }
 

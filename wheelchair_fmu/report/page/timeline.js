@@ -1,16 +1,31 @@
 // One time for everything that is drawn against it: two charts by uPlot, the scene, and a row of readings for every channel.
 
 import { h, write } from "page/dom";
-import { look, present } from "page/draw";
-import { display, significant, unitText } from "page/numbers";
+import { look, present, ticked } from "page/draw";
+import { display, toPlace, unitText } from "page/numbers";
 import { channelOf } from "page/words";
 
 const AXIS = 62; // px left of every chart, so that their times stand above one another
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
+const DENSE = 1.5; // px between two points of a smooth curve
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** A series as the charts take it: null where there is no sample. */
 const gapped = (values) => (values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values);
+
+/** What uPlot draws of a simulated curve: it is smooth, so that fewer points than samples do. */
+function smooth(plot, series, from, to) {
+  const path = new Path2D(), [xs, ys] = [plot.data[0], plot.data[series]], step = thinned(plot, from, to);
+  let pen = "moveTo";
+  for (let i = from; i <= to; i = i < to ? Math.min(i + step, to) : to + 1) {
+    if (!Number.isFinite(ys[i])) { pen = "moveTo"; continue; }
+    path[pen](plot.valToPos(xs[i], "x", true), plot.valToPos(ys[i], "y", true));
+    pen = "lineTo";
+  }
+  return { stroke: path };
+}
+
+const thinned = (plot, from, to) => Math.max(1, Math.floor(((to - from) * DENSE) / plot.width));
 
 /** The last sample that a series has at a place, or the place itself where it has none before. */
 function latest(values, at) {
@@ -29,6 +44,7 @@ export class Timeline {
     beside.append(this.readings = h("table", { class: "readings" }));
     this.colours();
     this.plots = [];
+    this.drawn = new Map(); // by series that do not change: as charts take them
   }
 
   player() {
@@ -56,8 +72,11 @@ export class Timeline {
     if (!(this.from < this.to)) [this.from, this.to] = [this.time[0], this.time.at(-1)];
     this.at = Math.min(Math.max(kept?.t ?? this.time[0], this.time[0]), this.time.at(-1));
     [this.scrub.min, this.scrub.max] = [this.time[0], this.time.at(-1)];
-    const names = Object.keys(run.channels);
-    this.cells = names.map((name) => ({ name, measured: h("span"), model: h("span"), error: h("span") }));
+    this.drawn.clear();
+    this.cells = Object.keys(run.channels).map((name, k) => {
+      const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), read = (v) => `${toPlace(v * factor, (run.noise.sd[k] * factor) / 3)} ${unitText(unit)}`;
+      return { name, read, measured: h("span"), model: h("span"), error: h("span") };
+    });
     this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),
       h("thead", {}, h("tr", {}, ["channel", "measured", "model", "error ÷ noise"].map((t) => h("th", { scope: "col" }, t)))),
       h("tbody", {}, this.cells.map((c) => h("tr", { "data-channel": c.name }, h("th", { scope: "row" },
@@ -69,9 +88,10 @@ export class Timeline {
   show(channel, result, before, pinned, band) {
     const record = this.campaign.channels.find((c) => c.name === channel), { unit, factor } = display(record);
     const scaled = (series) => (factor === 1 ? series : series.map((v) => v * factor));
+    const once = (series) => this.drawn.get(series) ?? this.drawn.set(series, scaled(series)).get(series);
     Object.assign(this, { result, channel });
-    this.lines = [["measured", scaled(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", scaled(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
-      ...pinned.map(([label, r], i) => [label, scaled(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
+    this.lines = [["measured", once(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", once(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
+      ...pinned.map(([label, r], i) => [label, once(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
     this.edges = band.map(scaled);
     this.errors = result.errors[channel];
     this.unit = `${channelOf(channel)} [${unitText(unit) || "1"}]`;
@@ -81,7 +101,7 @@ export class Timeline {
   }
 
   drawCurves() {
-    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.edges, ...this.lines.map(([, v]) => gapped(v))], [this.time, gapped(this.errors)]];
+    const shape = this.lines.map(([name]) => name).join("|") + this.unit, data = [[this.time, ...this.lines.map(([, v]) => gapped(v))], [this.time, gapped(this.errors)]];
     if (shape !== this.shape || !this.plots.length) return this.build(shape, data);
     this.plots.forEach((plot, i) => plot.batch(() => { plot.setData(data[i], false); plot.setScale("x", { min: this.from, max: this.to }); }));
   }
@@ -90,8 +110,7 @@ export class Timeline {
     this.shape = shape;
     for (const plot of this.plots) plot.destroy();
     const colour = (name) => () => this.look[name];
-    const edge = { width: 0, auto: false, points: { show: false } }; // the scale is that of the curves
-    const series = [[edge, edge, ...this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false }, gaps: this.gaps }))], [{ stroke: colour("error"), width: 1, points: { show: false }, gaps: this.gaps }]];
+    const series = [this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false }, ...(name === "measured" ? { gaps: this.gaps } : { paths: smooth }) })), [{ stroke: colour("error"), width: 1, points: { show: false }, gaps: this.gaps }]];
     this.plots = [this.unit, "error ÷ noise"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
     this.marks = this.plots.map((plot) => plot.over.appendChild(h("div", { class: "now-line" })));
     this.key.replaceChildren(...this.lines.map(([name, , colour, , dash]) => h("span", {}, h("i", { style: `border-top:${dash ? "2px dashed" : "3px solid"} var(--${colour})` }), name)), h("span", {}, h("i", { class: "band" }), "95 % band"));
@@ -100,14 +119,14 @@ export class Timeline {
   options(index, label, series) {
     const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
     return {
-      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series], bands: index ? [] : [{ series: [2, 1], fill: () => this.look.band }],
+      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
       cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
-        { ...axis, size: AXIS - 18, space: index ? 24 : 36, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => vs.map((v) => String(v).replace("-", "−")) }],
+        { ...axis, size: AXIS - 18, space: index ? 24 : 36, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => ticked(vs).map(([, words]) => words) }],
       hooks: {
         setSelect: [(plot) => this.selected(plot)],
-        drawClear: index ? [(plot) => this.band(plot)] : [],
+        drawClear: [(plot) => (index ? this.noise(plot) : this.band(plot))],
         init: [(plot) => {
           plot.over.addEventListener("dblclick", () => this.whole.click());
           plot.over.addEventListener("mousemove", ({ clientX }) => { if (!this.playing) this.go(plot.posToVal(clientX - plot.over.getBoundingClientRect().left, "x")); });
@@ -127,8 +146,22 @@ export class Timeline {
     return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 230 : 400 };
   }
 
-  /** Where 95 % of a perfect model's errors lie. */
+  /** Where 95 % of readings lie if the model is right; the scale is that of the curves. */
   band(plot) {
+    const { ctx, bbox: { left, top, width, height } } = plot, { time } = this, [low, high] = this.edges;
+    const from = Math.max(0, time.findLastIndex((t) => t <= this.from)), to = Math.max(from, time.findLastIndex((t) => t <= this.to)), step = thinned(plot, from, to);
+    ctx.save();
+    ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
+    ctx.beginPath();
+    for (let i = from; i <= to; i += step) ctx.lineTo(plot.valToPos(time[i], "x", true), plot.valToPos(low[i], "y", true));
+    for (let i = from + step * Math.floor((to - from) / step); i >= from; i -= step) ctx.lineTo(plot.valToPos(time[i], "x", true), plot.valToPos(high[i], "y", true));
+    ctx.fillStyle = this.look.band;
+    ctx.fill();
+    ctx.restore();
+  }
+
+  /** Where 95 % of a perfect model's errors lie. */
+  noise(plot) {
     const [top, low] = [2, -2].map((v) => plot.valToPos(v, "y", true)), { left, width } = plot.bbox;
     plot.ctx.fillStyle = this.look.band;
     plot.ctx.fillRect(left, top, width, low - top);
@@ -169,12 +202,11 @@ export class Timeline {
       const inside = this.at >= this.from && this.at <= this.to;
       this.marks[k].style.transform = inside ? `translateX(${plot.valToPos(this.at, "x")}px)` : "translateX(-9999px)";
     });
-    for (const { name, measured, model, error } of this.cells) {
+    for (const { name, read, measured, model, error } of this.cells) {
       const k = latest(this.run.channels[name], i);
-      const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), suffix = unitText(unit);
-      write(measured, `${significant(this.run.channels[name][k] * factor, 3)} ${suffix}`);
-      write(model, `${significant(this.result.predicted[name][i] * factor, 3)} ${suffix}`);
-      write(error, significant(this.result.errors[name][k], 2));
+      write(measured, read(this.run.channels[name][k]));
+      write(model, read(this.result.predicted[name][i]));
+      write(error, toPlace(this.result.errors[name][k], 0.1));
     }
     const said = `${(this.at - this.time[0]).toFixed(2)} s`;
     write(this.clock, said);
