@@ -118,8 +118,8 @@ class Parameter(Quantity):
     choices: tuple[str, ...] = ()  # an enumeration: the value is the 1-based place of the choice
     fixed: bool = False  # may not change once the simulation has started
     uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
-    known_to: float | None = None  # standard deviation of one that was measured with a tape, in place of the relative one
-    estimated: bool = True  # False for an effect's constants, which no fit touches
+    known_to: float | None = None  # standard deviation of what is known of it beforehand, in place of the relative one
+    estimated: bool = True  # False for an effect's constants, of which a fit only touches those that are `adjusted`
     formerly: tuple[tuple[str, float], ...] = ()  # names, without the effect's, whose sum with these weights it has replaced
     mirror_given: bool = field(init=False, repr=False, compare=False)
 
@@ -137,6 +137,11 @@ class Parameter(Quantity):
         """δ, of a parameter that has one: every parameter of an effect that is estimated."""
         assert self.smallest_interesting is not None, self.name
         return self.smallest_interesting
+
+    @property
+    def adjusted(self) -> bool:
+        """Is it a constant of an effect in which chairs differ? With the effect a fit estimates it too, by its prior."""
+        return not self.estimated and self.known_to is not None
 
     def prior_sd(self, value: float) -> float:
         """Standard deviation of what is known of it where it was measured or looked up as `value`."""

@@ -66,7 +66,7 @@ def differentiable(model: Model, names: Sequence[str] | None = None) -> tuple[Pa
         p
         for p in model.parameters
         if not p.choices
-        and p.estimated
+        and (p.estimated or p.adjusted)
         and not p.name.startswith(("regularisation.", "speed."))
         and p.name != "g"
         and (names is None or p.name in names)

@@ -11,7 +11,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from ..quantities import Quantity
+from ..quantities import Parameter, Quantity
 from ..writing import written
 from . import effects as package
 from .alike import look_alikes
@@ -48,10 +48,16 @@ def section(effect: Effect) -> str:
     parts = [f"## {effect.id}", f"![{_drawn(effect)}]({DRAWINGS}/{effect.id}.svg)", said, _table(effect)]
     parts += [f"Acts on {_targets(effect)}.{_needs(effect)}"]
     parts += [_alike(effect, a) for a in effect.alike]
-    if effect.constants:
-        constants = "; ".join(f"`{c.name}` = {c.default:g} {c.unit.name}, {c.meaning} ({c.source})" for c in effect.constants)
-        parts.append(f"Not estimated: {constants}.")
+    for what, adjusted in (("Adjusted with it, as chairs differ", True), ("Not estimated", False)):
+        of_that = [c for c in effect.owned if not c.estimated and c.adjusted is adjusted]
+        if of_that:
+            parts.append(f"{what}: {'; '.join(map(_constant, of_that))}.")
     return "\n\n".join(parts)
+
+
+def _constant(c: Parameter) -> str:
+    known = f" ± {c.known_to:g}" if c.adjusted else ""
+    return f"`{c.name.rpartition('.')[2]}` = {c.default:g}{known} {c.unit.name}, {c.meaning} ({c.source})"
 
 
 def drawings() -> dict[str, str]:

@@ -138,8 +138,9 @@ class Program:
 class Effect:
     """One physical effect the paper leaves out: a few contributions and the parameters in them.
 
-    `parameters` are off at zero. `constants` belong to the effect but are not estimated. `needs`
-    names the laws it works with, e.g. ``{"caster": "swivelling"}``.
+    `parameters` are off at zero. `constants` belong to the effect; those in which chairs differ have a standard deviation,
+    `known_to`, by which a fit with the effect adjusts them. `needs` names the laws it works with, e.g.
+    ``{"caster": "swivelling"}``.
     """
 
     id: str

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...quantities import Parameter
 from ..evidence.likelihood import Likelihood
-from .fit import REACH, Fit, Problem
+from .fit import REACH, Fit, Problem, sizes_an_effect
 from .statistics import finite, standard_errors
 
 DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
@@ -79,8 +79,9 @@ class Calibrated:
 
 
 def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
-    """Every calibrated value of a fit, in the fit's order; effects and offsets of sensors are not among them."""
-    names = [n for n in found.names if not n.startswith(("effect.", "offset."))]
+    """Every calibrated value of a fit, in the fit's order, with constants of effects that it has adjusted; sizes of effects and
+    offsets of sensors are not among them."""
+    names = [n for n in found.names if not (n.startswith("offset.") or sizes_an_effect(likelihood.records[n]))]
     problem, errors = Problem(likelihood, names), standard_errors(found)
     out = []
     for i, name in enumerate(names):
@@ -94,7 +95,7 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
 def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:
     """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?
     One that is as it was given has not been stopped there."""
-    reach = np.inf if record.name.startswith("effect.") else REACH * prior_sd
+    reach = np.inf if sizes_an_effect(record) else REACH * prior_sd
     near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
     inside = max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
     return not inside and abs(value - prior) > near

@@ -63,21 +63,26 @@ class Prior:
 
 
 def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
-    """Calibrated values have the campaign's word; effects have none, but that of several parameters which the data
-    cannot tell apart each is taken to be no larger than it must be."""
+    """Calibrated values have the campaign's word, constants of effects their records'; sizes of effects have none, but that of
+    several parameters which the data cannot tell apart each is taken to be no larger than it must be."""
     mean = np.array([start_value(likelihood, likelihood.records[n]) for n in names])
-    groups = Counter(n.rpartition(".")[0] for n in names)
+    groups = Counter(n.rpartition(".")[0] for n in names if likelihood.records[n].estimated)
 
     def sd(name: str, mean: float) -> float:
         if name in likelihood.campaign.priors:
             return likelihood.campaign.priors[name]
-        if name.startswith("effect."):
+        if sizes_an_effect(likelihood.records[name]):
             return GROUPED * likelihood.records[name].delta if groups[name.rpartition(".")[0]] > 1 else np.inf
         if name in likelihood.offsets:
             return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
         return likelihood.records[name].prior_sd(mean)
 
     return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
+
+
+def sizes_an_effect(record: Parameter) -> bool:
+    """Does a parameter say how large an effect is, so that nothing is known of it beforehand?"""
+    return record.estimated and record.name.startswith("effect.")
 
 
 def start_value(likelihood: Likelihood, record: Parameter) -> float:
@@ -90,7 +95,7 @@ class Problem:
     def __init__(self, likelihood: Likelihood, names: Sequence[str]):
         records = likelihood.records
         self.likelihood, self.names, self.prior = likelihood, tuple(names), prior_of(likelihood, names)
-        reach = np.where([n.startswith("effect.") for n in names], np.inf, REACH * self.prior.sd)
+        reach = np.where([sizes_an_effect(records[n]) for n in names], np.inf, REACH * self.prior.sd)
         self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - reach)
         self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + reach)
         self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])

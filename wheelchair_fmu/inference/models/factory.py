@@ -66,7 +66,8 @@ class ModelFactory:
     @cached_property
     def given(self) -> dict[str, float]:
         """The values that the chair's own effects have for a start; they are estimated again, unless they are fixed."""
-        return {n: v for n, v in self.chair.values.items() if n.startswith("effect.") and n not in self.fixed}
+        sizes = {p.name for e in self.catalogue.values() for p in e.owned if p.estimated}
+        return {n: v for n, v in self.chair.values.items() if n in sizes and n not in self.fixed}
 
     @cached_property
     def variant(self) -> Variant:
@@ -133,7 +134,7 @@ class ModelFactory:
         @cache
         def compiled(effects: frozenset[str], derives: bool) -> Likelihood:
             chosen = [e for e in self.catalogue if e in effects]
-            own = (n for e in chosen for n in self.parameters(e))
+            own = (n for e in chosen for n in self.estimated(e))
             columns = (*dict.fromkeys((*self.calibrated, ONSET)), *own)
             return Likelihood(self.campaign, self.variant.with_effects(chosen), None, columns, derives, self.leads)
 
@@ -148,16 +149,23 @@ class ModelFactory:
         return self.groups.get(effect, (effect,))
 
     def parameters(self, effect: str) -> tuple[str, ...]:
-        """Full names of the parameters of an effect, or of a group of them, that a fit estimates."""
+        """Full names of the parameters of an effect, or of a group of them, that say how large it is."""
+        return tuple(p.name for p in self._owned(effect) if p.estimated)
+
+    def estimated(self, effect: str) -> tuple[str, ...]:
+        """The same with those of its constants in which chairs differ."""
+        return tuple(p.name for p in self._owned(effect) if p.estimated or p.adjusted)
+
+    def _owned(self, effect: str) -> list[Parameter]:
         owned = (p for member in self.members(effect) for p in self.catalogue[member].owned)
-        return tuple(p.name for p in owned if p.estimated and p.name not in self.fixed)
+        return [p for p in owned if p.name not in self.fixed]
 
     def linear(self, effect: str) -> bool:
         """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
         if effect in self.groups:
             return False
         record = self.catalogue[effect]
-        return not (record.even or record.rows or record.needs)
+        return not (record.even or record.rows or record.needs or any(p.adjusted for p in record.owned))
 
     def deltas(self, names: Sequence[str]) -> np.ndarray:
         """Smallest interesting sizes (k,)."""

@@ -69,7 +69,7 @@ class Models:
         """What a model with these effects has to be fitted by, if it also does `without` these nuisances."""
         left_out = without.union(*(self.doubles.get(e, ()) for e in effects))
         offsets = (n for n in self.offsets if n not in left_out)
-        return [*self.factory.calibrated, *offsets, *(n for e in effects for n in self.factory.parameters(e))]
+        return [*self.factory.calibrated, *offsets, *dict.fromkeys(n for e in effects for n in self.factory.estimated(e))]
 
     def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters, as far as it is followed; see `fit`."""

@@ -10,6 +10,7 @@ from scipy import special
 
 from ..chance import chance_beyond
 from ..estimation.fit import Fit
+from ..estimation.inverse import inverse
 from ..estimation.marginal import support_of
 from ..estimation.score import RUNS
 from ..estimation.statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
@@ -27,7 +28,8 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     one_sided, near = w.one_sided(names), 1e-6 * delta
     along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
-    drop, correlation = (base.fit.misfit - fit.misfit) / dispersion, correlation_time(fit.evidence)
+    fall, correlation = base.fit.misfit - fit.misfit - _paid(fit, names), correlation_time(fit.evidence)
+    drop = fall / dispersion
     p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
     if len(names) == 1 and one_sided[0]:
         p /= 2
@@ -49,6 +51,20 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         policy=models.policy,
     )
+
+
+def _paid(found: Fit, names: Sequence[str]) -> float:
+    """What −2 log likelihood is the less for, as constants of the effects of `names` were adjusted: twice the log of how far
+    data narrowed them down, so that a law that can be bent is no likelier for that (Laplace)."""
+    of = {n.rpartition(".")[0] for n in names}
+    own = [i for i, n in enumerate(found.names) if n in names]
+    constants = [i for i, n in enumerate(found.names) if n.rpartition(".")[0] in of and n not in names]
+    if not constants:
+        return 0.0
+    both = [*own, *constants]
+    told = inverse(found.covariance[np.ix_(both, both)])[len(own) :, len(own) :]
+    sd = 1 / np.diag(found.prior_slopes)[constants]
+    return max(0.0, float(np.linalg.slogdet(told * np.outer(sd, sd))[1]))
 
 
 def surely_large(models: Models, found: Fit, effect: str) -> bool:

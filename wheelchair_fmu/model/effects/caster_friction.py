@@ -1,9 +1,9 @@
-"""Dry friction in the swivel bearings: M_w = −M sign(δ'), smooth within a small swivel rate.
+"""Dry friction in the swivel bearings: M_w = −M sign(δ'), which builds up within a small swivel rate.
 
 The bearing holds back a caster that its trail swings, and a lateral force at the patch, whose lever is that trail, holds it.
 """
 
-from ...quantities import N_M, Parameter
+from ...quantities import N_M, RAD_S, Parameter
 from ..signs import Shows
 from ..sketch import PIVOT_LEFT, PIVOT_RIGHT, Turn, Wheel, from_above
 from ..smooth import grip
@@ -20,16 +20,28 @@ FRICTION = Parameter(
     symbol="M_s",
     source="chosen",
 )
+RATE = Parameter(
+    "rate",
+    RAD_S,
+    "swivel rate within which the friction builds up, which no two bearings do alike",
+    default=0.02,
+    lower=2e-3,
+    upper=1.0,
+    symbol="M_s_rate",
+    source="chosen: sharper friction cannot be told from this in what a chair does",
+    known_to=0.03,
+)
 
 
-def friction(M_s, swivel_rate, swivel_eps):
-    return -M_s * grip(swivel_rate, swivel_rate * swivel_rate, swivel_eps)
+def friction(M_s, swivel_rate, M_s_rate):
+    return -M_s * grip(swivel_rate, swivel_rate * swivel_rate, M_s_rate)
 
 
 EFFECT = Effect(
     "caster_friction",
     "dry friction in the casters' swivel bearings",
     parameters=(FRICTION,),
+    constants=(RATE,),
     contributions=(adds("M_w", friction, opposes="swivel_rate"),),
     needs={"caster": "swivelling"},
     through=("caster_trail",),

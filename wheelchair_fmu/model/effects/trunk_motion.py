@@ -6,7 +6,7 @@ The second swings, by `swing` per 80 N, and most of it after the push, as trunk 
 
     s₂'' + 2 ζ ω s₂' + ω² s₂ = ω² swing F / 80 N,    ω = 2π frequency
 
-Both are linear in what is estimated; together they stand for any swing of about this frequency.
+Both are linear in their sizes. People swing at frequencies and with damping of their own, so a fit adjusts these two as well.
 
 The CM lies a − s behind the pivots and b + s before the axle, s = s₁ + s₂, and the frame recoils at −s'. Instruments are on the
 frame: what reads the CM in a chair without this effect is s behind it. Its way is r − s e_x, so beside the CM's own
@@ -82,6 +82,7 @@ CONSTANTS = (
         upper=20.0,
         symbol="f_swing",
         source="fitted to the motion of a person who pushed",
+        known_to=0.25,
     ),
     Parameter(
         "damping",
@@ -92,6 +93,7 @@ CONSTANTS = (
         upper=10.0,
         symbol="zeta_swing",
         source="fitted to the motion of a person who pushed",
+        known_to=0.1,
     ),
 )
 
