@@ -119,6 +119,7 @@ class Parameter(Quantity):
     fixed: bool = False  # may not change once the simulation has started
     uncertainty: float = 0.3  # relative standard deviation of a value that was measured or looked up beforehand
     known_to: float | None = None  # standard deviation of what is known of it beforehand, in place of the relative one
+    among_chairs: float | None = None  # standard deviation from chair to chair, of a value that nobody gave
     estimated: bool = True  # False for an effect's constants, of which a fit only touches those that are `adjusted`
     formerly: tuple[tuple[str, float], ...] = ()  # names, without the effect's, whose sum with these weights it has replaced
     mirror_given: bool = field(init=False, repr=False, compare=False)

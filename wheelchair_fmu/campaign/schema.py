@@ -52,6 +52,8 @@ def _usually_known() -> str:
     told = {p.name: f"{p.known_to:g} {p.unit.name}" if p.known_to else f"{p.uncertainty:.3g}" for p in records}
     shares = "chair.m", "chair.I_z", "resistance.f_r", "resistance.f_f", "tyre.C_lambda"
     relative = ", ".join(f"{told[name]} of {name}" for name in shares)
+    inertia = next(p for p in records if p.name == "chair.I_z")
+    relative += f" ({inertia.among_chairs:g} {inertia.unit.name} of chair.I_z where it is not given)"
     return f"{relative}; {', '.join(f'{told[name]} in {name}' for name in ('chair.a', 'chair.b', 'chair.t_r'))}"
 
 

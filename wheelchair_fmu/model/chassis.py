@@ -30,6 +30,7 @@ PARAMETERS = (
         lower=0.01,
         upper=1000.0,
         source=TABLE_1,
+        among_chairs=3.0,
     ),
     Parameter(
         "chair.a",

@@ -63,8 +63,9 @@ class Prior:
 
 
 def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
-    """Calibrated values have the campaign's word, constants of effects their records'; sizes of effects have none, but that of
-    several parameters which the data cannot tell apart each is taken to be no larger than it must be."""
+    """Calibrated values have the campaign's word, or as much as chairs differ by where nobody gave one's; constants of effects
+    have their records'. Sizes of effects have none, but that of several parameters which the data cannot tell apart each is
+    taken to be no larger than it must be."""
     mean = np.array([start_value(likelihood, likelihood.records[n]) for n in names])
     groups = Counter(n.rpartition(".")[0] for n in names if likelihood.records[n].estimated)
 
@@ -75,7 +76,9 @@ def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
             return GROUPED * likelihood.records[name].delta if groups[name.rpartition(".")[0]] > 1 else np.inf
         if name in likelihood.offsets:
             return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
-        return likelihood.records[name].prior_sd(mean)
+        record = likelihood.records[name]
+        nobody_gave = name not in likelihood.campaign.known and name not in likelihood.variant.values
+        return record.among_chairs if record.among_chairs and nobody_gave else record.prior_sd(mean)
 
     return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
 

@@ -28,7 +28,7 @@ RATE = Parameter(
     lower=2e-3,
     upper=1.0,
     symbol="M_s_rate",
-    source="chosen: sharper friction cannot be told from this in what a chair does",
+    source="chosen: balls and grease yield before they slip",
     known_to=0.03,
 )
 

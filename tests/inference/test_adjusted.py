@@ -1,0 +1,104 @@
+"""Constants of effects in which chairs differ: adjusted with the effect, by a prior, and paid for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from benchmarks.independent.campaigns import make
+from wheelchair_fmu.campaign import read
+from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.estimation.fit import prior_of
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.models.factory import ModelFactory
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.search.judge import _paid
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.generic import library
+from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.studies.measured import PREDICTS
+
+SWING, FREQUENCY, DAMPING = (f"effect.trunk_motion.{name}" for name in ("swing", "frequency", "damping"))
+BODY = {SWING: 0.02, FREQUENCY: 1.0, DAMPING: 0.15}
+CATALOGUE = {"trunk_motion": bundled()["trunk_motion"]}
+
+
+@pytest.fixture(scope="module")
+def swinging(sample):
+    """Two runs of the chair with a rider whose body swings as BODY says."""
+    chance, runs = np.random.default_rng(4), []
+    likelihood = Likelihood(sample, Variant().with_effects(["trunk_motion"]))
+    names = [o.name for o in likelihood.variant.model().outputs]
+    for run in (sample.fit[0], sample.fit[2]):
+        (e,) = likelihood.evidence([run], BODY).runs
+        read_off = {c: e.results[:, names.index(PREDICTS[c])] for c in run.channels}
+        channels = {c: v + chance.normal(0, sample.noise[c], len(v)) for c, v in read_off.items()}
+        runs.append(replace(run, channels=channels))
+    return replace(sample, runs=tuple(runs))
+
+
+def test_a_fit_finds_the_frequency_at_which_a_rider_swings(swinging):
+    models = Models.of(ModelFactory(swinging, Variant(catalogue=CATALOGUE)))
+    assert FREQUENCY not in models.factory.parameters("trunk_motion")  # which says nothing of how large the effect is
+    assert FREQUENCY not in models.names(()) and FREQUENCY in models.names(("trunk_motion",))
+    found = models.fitted(("trunk_motion",), {SWING: 0.005})
+    errors = dict(zip(found.names, np.sqrt(np.diag(found.covariance)), strict=True))
+    for name, true in BODY.items():
+        assert found.values[name] == pytest.approx(true, abs=3.5 * errors[name]), name
+    assert errors[FREQUENCY] < 0.05
+    assert found.evidence.rms == pytest.approx(1, abs=0.05)
+
+
+def test_a_constant_that_a_variant_gives_is_what_is_known_of_it(swinging):
+    own = Variant(catalogue=CATALOGUE).with_effects(["trunk_motion"]).with_values({FREQUENCY: 2.5, SWING: 0.01})
+    factory = ModelFactory(swinging, own)
+    assert factory.given == {SWING: 0.01} and factory.variant.values[FREQUENCY] == 2.5
+    fixed = ModelFactory(swinging, own, fixed=[FREQUENCY])
+    assert FREQUENCY not in fixed.estimated("trunk_motion")
+
+
+def test_an_inertia_that_nobody_gave_is_known_as_well_as_chairs_are_alike(sample):
+    def sd(campaign, chair):
+        return prior_of(Likelihood(campaign, chair, columns=()), ["chair.I_z"]).sd[0]
+
+    unknown = replace(sample, known={n: v for n, v in sample.known.items() if n != "chair.I_z"})
+    assert sd(sample, Variant()) == pytest.approx(0.3 * sample.known["chair.I_z"])
+    assert sd(unknown, Variant().with_values({"chair.I_z": 5.0})) == pytest.approx(0.3 * 5.0)
+    assert sd(unknown, Variant()) == 3.0
+    assert sd(replace(unknown, priors={"chair.I_z": 0.2}), Variant()) == 0.2
+
+
+@pytest.mark.parametrize("told", [0.0, 3.0, 400.0])
+def test_what_is_paid_for_a_constant_is_its_integral(told):
+    """∫ N(κ; 0, s²) e^(−½ a (κ − κ̂)²) dκ beside the integrand's greatest value, where the size is known."""
+    s, best = 0.3, 0.2
+    information = np.array([[50.0, 0.4 * np.sqrt(50 * told)], [0.4 * np.sqrt(50 * told), told]])
+    information[1, 1] += s**-2
+    fit = SimpleNamespace(
+        names=("effect.a.size", "effect.a.constant"), covariance=np.linalg.inv(information), prior_slopes=np.diag([0.0, 1 / s])
+    )
+
+    def likely(k):
+        return np.exp(-0.5 * told * (k - best) ** 2 - 0.5 * (k / s) ** 2)
+
+    mode = told * best / (told + s**-2)
+    integral = quad(likely, -4 * s, 4 * s, epsabs=1e-12, points=[mode])[0] / (s * np.sqrt(2 * np.pi))
+    assert np.exp(-0.5 * _paid(fit, ["effect.a.size"])) == pytest.approx(integral / likely(mode), rel=1e-3)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    "hidden",
+    [{"trunk_motion": {"swing": 0.015}}, {"caster_friction": {"M": 0.15}, "floor_cross_slope": {"theta": 0.003}}],
+    ids=["a body that swings", "bearings that stick, on a cross-slope"],
+)
+def test_what_another_chair_does_in_its_own_way_is_named(hidden, tmp_path):
+    """The other simulator's rider swings at 1.09 Hz, and its bearings' friction builds up over 0.05 rad/s."""
+    found = diagnose(read(make(tmp_path / "campaign", hidden, seed=41)), generic=library())
+    assert found.verdict == "missing" and set(hidden) <= set(found.effects) <= {*hidden, "caster_trail"}
+    assert max(found.ladder[-1].fit, found.ladder[-1].heldout) < 1.05
+    assert not [c.record.name for c in found.calibration if c.beyond]
