@@ -109,11 +109,12 @@ export class Controls {
 
   /** In or out. What the search fitted for just these effects is put in as it is; other sizes are fitted together now. */
   tick(effect, row, on) {
-    const values = { ...this.values };
+    const values = { ...this.values }, own = `effect.${effect.id}.`; // its constants, where the search adjusted them, come and go with it
+    if (!on) for (const name of Object.keys(values)) if (name.startsWith(own)) delete values[name];
+    if (on) for (const [name, value] of Object.entries(row.values ?? {})) if (name.startsWith(own)) values[name] = value;
     for (const p of effect.parameters) {
       const found = row.parameters[p.name.split(".").at(-1)], fitted = row.values?.[p.name] ?? (found && seen(found) ? found.estimate : p.delta);
       if (on) values[p.name] = Math.min(Math.max(fitted, p.lower ?? -Infinity), p.upper ?? Infinity) || p.delta;
-      else delete values[p.name];
     }
     const known = key(values) === key(this.start().values) ? this.start().values : this.stored.get(key(values));
     this.put(known ? { ...known } : values);
