@@ -16,7 +16,7 @@ from wheelchair_fmu.inference.estimation.fit import prior_of
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.models import Models
-from wheelchair_fmu.inference.search.judge import _paid
+from wheelchair_fmu.inference.search.judge import _paid, judge
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
@@ -88,6 +88,15 @@ def test_what_is_paid_for_a_constant_is_its_integral(told):
     mode = told * best / (told + s**-2)
     integral = quad(likely, -4 * s, 4 * s, epsabs=1e-12, points=[mode])[0] / (s * np.sqrt(2 * np.pi))
     assert np.exp(-0.5 * _paid(fit, ["effect.a.size"])) == pytest.approx(integral / likely(mode), rel=1e-3)
+
+
+def test_the_fall_of_an_effect_is_less_by_what_is_paid_for_its_constants(swinging):
+    models = Models.of(ModelFactory(swinging, Variant(catalogue=CATALOGUE)))
+    base, found = models.model((), {}), models.model(("trunk_motion",), {SWING: 0.01})
+    names = models.factory.parameters("trunk_motion")
+    judged, paid = judge(models, base, found, "trunk_motion", names, 1), _paid(found.fit, names)
+    assert paid > 2
+    assert judged.drop * judged.dispersion == pytest.approx(base.fit.misfit - found.fit.misfit - paid)
 
 
 @pytest.mark.nightly

@@ -80,8 +80,9 @@ class Calibrated:
 
 def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
     """Every calibrated value of a fit, in the fit's order, with constants of effects that it has adjusted; sizes of effects and
-    offsets of sensors are not among them."""
-    names = [n for n in found.names if not (n.startswith("offset.") or sizes_an_effect(likelihood.records[n]))]
+    offsets of sensors are not among them, nor generic terms, which no likelihood of the search knows."""
+    told = [n for n in found.names if n in likelihood.records and not n.startswith("offset.")]
+    names = [n for n in told if not sizes_an_effect(likelihood.records[n])]
     problem, errors = Problem(likelihood, names), standard_errors(found)
     out = []
     for i, name in enumerate(names):
