@@ -207,7 +207,8 @@ def _diagnosed(
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
-    verdict = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, values)
+    strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
+    verdict = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
     heard = (*heard, *beginning.heard(in_time))
     return Diagnosis(
         campaign=models.campaign.name,
@@ -298,6 +299,24 @@ def _next(
     return None
 
 
+def _strained(models: Models, values: Sequence[Calibrated]) -> list[str]:
+    """Calibrated values that a fit has bent as far as it may. A body that swings with the pushes, and that nobody recorded,
+    answers them as another mass would."""
+    swings = models.setting.noise_model.body > 0
+    return [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
+
+
+def _of_another_chair(found: Selection, strained: Sequence[str]) -> Sequence[str]:
+    """Those of such values that the data insist on: no law is exact, and with effects that explain much, what held at its prior
+    would cost no more than their laws may get wrong proves nothing of the chair."""
+    models, fit = found.models, found.top.fit
+    allowed = models.policy.inexact**2 * (found.calibrated - fit.misfit)
+    if not strained or allowed <= 0 or models.factory.leads:
+        return strained
+    held = models.refit(found.effects, fit.values, without=frozenset(strained))
+    return strained if held.misfit - fit.misfit > allowed else ()
+
+
 def _verdict(
     models: Models,
     effects: Sequence[str],
@@ -306,11 +325,8 @@ def _verdict(
     proposal: Candidate | None,
     ladder: Sequence[Step],
     left: Evidence,
-    values: Sequence[Calibrated],
+    strained: Sequence[str],
 ) -> str:
-    # a body that swings with the pushes, and that nobody recorded, answers them as another mass would
-    swings = models.setting.noise_model.body > 0
-    strained = [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
     if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
         return "outside"
     lasting = correlation_time(left) > models.policy.lasting

@@ -156,6 +156,10 @@ class ModelFactory:
         """The same with those of its constants in which chairs differ."""
         return tuple(p.name for p in self._owned(effect) if p.estimated or p.adjusted)
 
+    def constants(self, effect: str) -> frozenset[str]:
+        """Those constants."""
+        return frozenset(p.name for p in self._owned(effect) if p.adjusted)
+
     def _owned(self, effect: str) -> list[Parameter]:
         owned = (p for member in self.members(effect) for p in self.catalogue[member].owned)
         return [p for p in owned if p.name not in self.fixed]

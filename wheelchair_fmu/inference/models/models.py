@@ -68,12 +68,19 @@ class Models:
     def names(self, effects: Sequence[str], without: frozenset[str] = frozenset()) -> list[str]:
         """What a model with these effects has to be fitted by, if it also does `without` these nuisances."""
         left_out = without.union(*(self.doubles.get(e, ()) for e in effects))
-        offsets = (n for n in self.offsets if n not in left_out)
-        return [*self.factory.calibrated, *offsets, *dict.fromkeys(n for e in effects for n in self.factory.estimated(e))]
+        of_effects = dict.fromkeys(n for e in effects for n in self.factory.estimated(e))
+        return [n for n in (*self.factory.calibrated, *self.offsets, *of_effects) if n not in left_out]
 
-    def refit(self, effects: Sequence[str], start: Mapping[str, float], here: Evidence | None = None, **how: Any) -> Fit:
+    def refit(
+        self,
+        effects: Sequence[str],
+        start: Mapping[str, float],
+        here: Evidence | None = None,
+        without: frozenset[str] = frozenset(),
+        **how: Any,
+    ) -> Fit:
         """The campaign's best values of the calibrated and these effects' parameters, as far as it is followed; see `fit`."""
-        return fit(self.likelihood(effects), self.names(effects), start, here, **how)
+        return fit(self.likelihood(effects), self.names(effects, without), start, here, **how)
 
     def fitted(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Fit:
         """The same followed to its end, once: who asks again gets what came of the first start."""

@@ -54,11 +54,13 @@ def candidate(
 
 
 def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:
-    """The most likely model that these starts lead to, one step from each, and to the end from the best."""
+    """The most likely model that these starts lead to, one step from each, and to the end from the best. Constants of the
+    effect's law are as its record has them until its size is known: of something small any law would do."""
+    constants = models.factory.constants(effects[-1])
 
     def one_step(start: Start) -> Fit | None:
         try:
-            return models.refit(effects, *start, rival=rival, most=1)
+            return models.refit(effects, *start, constants, rival=rival, most=1)
         except SimulationError:
             return None
 
@@ -67,9 +69,10 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
     for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
         signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
         if signs not in others:
-            ended.append(models.refit(effects, ahead.values, ahead.evidence, rival=rival))
+            ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival))
             rival = min(rival, ended[-1].misfit)
-    return min(ended, key=lambda f: f.misfit, default=None)
+    best = min(ended, key=lambda f: f.misfit, default=None)
+    return models.refit(effects, best.values) if best and constants else best
 
 
 def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, least: float) -> list[Start]:
