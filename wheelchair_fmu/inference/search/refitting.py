@@ -49,7 +49,10 @@ def candidate(
         return None
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-    held = likelihood.restarted(likelihood.evidence(models.campaign.holdout, found.values), found.values)
+    try:
+        held = likelihood.restarted(likelihood.evidence(models.campaign.holdout, found.values), found.values)
+    except SimulationError:
+        return None  # a model that cannot be simulated on what was held out foretells nothing of it
     return judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
 
 
