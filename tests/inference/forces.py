@@ -12,7 +12,7 @@ from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN
 from wheelchair_fmu.model.variant import Variant
 
-T_R = 0.55
+T_R, B = 0.55, 0.2
 Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  # of a run and its results without: F, M (n,)
 
 
@@ -36,6 +36,20 @@ def swinging(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarra
             p += rate * gap / steps
         out[i] = p
     return out
+
+
+def floor(rng: np.random.Generator, slope: float, length: float = 0.4) -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+    """Slopes along the way and to the side, at x, y and heading (n,), of a floor whose height is a Gaussian field: waves of all
+    directions that together have slopes of this standard deviation and are alike over `length` (m)."""
+    k, shift = rng.normal(0, 1 / length, (400, 2)), rng.uniform(0, 2 * np.pi, 400)
+
+    def slopes(x: np.ndarray, y: np.ndarray, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        wave = np.cos(np.outer(x, k[:, 0]) + np.outer(y, k[:, 1]) + shift)
+        by_x, by_y = (slope * length * np.sqrt(2 / 400) * wave @ k).T
+        c, s = np.cos(heading), np.sin(heading)
+        return c * by_x + s * by_y, c * by_y - s * by_x
+
+    return slopes
 
 
 def ridden(campaign: Campaign, rng: np.random.Generator, forces: Forces) -> Campaign:

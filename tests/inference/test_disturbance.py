@@ -12,31 +12,58 @@ from wheelchair_fmu.campaign.windows import between
 from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
-from wheelchair_fmu.inference.evidence.likelihood import Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import NoiseModel, disturbance
+from wheelchair_fmu.inference.evidence.likelihood import ALONG, Likelihood
+from wheelchair_fmu.inference.evidence.noise_model import FORCED, NoiseModel, disturbance
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, ridden, swinging, wandering
+from .forces import T_R, B, floor, ridden, swinging, wandering
 
 
-@pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.4), (0.0, 0.0)])
+@pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.0)])
 def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     rng = np.random.default_rng(5)
     campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, run.time, moment)))
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
-    assert found.force == pytest.approx(force, rel=0.15, abs=0.15)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    assert found.along == pytest.approx(force, rel=0.15, abs=0.15)
     assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
     noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
     whole = Likelihood(campaign, Variant(), noise).evidence(campaign.runs, {}, ())
     assert float(np.mean(whole.r**2)) == pytest.approx(1, abs=0.03)
 
 
+def test_what_turns_a_chair_counts_as_a_floor_that_is_as_steep_along_the_way(sample):
+    """And nothing else is found there."""
+    rng = np.random.default_rng(5)
+    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, run.time, 0.4)))
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    assert found.moment == pytest.approx(0.4, rel=0.15) and found.floor == pytest.approx(found.moment / B)
+    assert found.force < 0.15 and found.body < 0.15
+
+
 def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
     """Slopes that are alike over 0.4 m, at 1.2 m/s."""
     rng = np.random.default_rng(11)
     campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, run.time, 0.4, 0.33)))
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
     assert found.lasting == pytest.approx(0.33, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
+
+
+def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
+    """A height of which nothing but its slopes and its length is known; a body moves on it, too."""
+    rng, slope, swings, weight = np.random.default_rng(21), 0.004, 2.0, 80.0 * 9.81
+    slopes, true = floor(rng, slope), []
+
+    def pushes(run, without):
+        along, aside = slopes(*(without[name] for name in ("sensor.x", "sensor.y", "sensor.yaw")))
+        true.append((along, aside))
+        body = np.gradient(swinging(rng, run.time, swings), run.time)
+        return -weight * along - body, weight * B * aside
+
+    campaign = ridden(sample, rng, pushes)
+    force, moment = weight * np.std(np.concatenate(true, axis=1), axis=1) * (1, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    assert found.moment == pytest.approx(moment, rel=0.2) and found.along == pytest.approx(force, rel=0.3)
+    assert found.body == pytest.approx(swings, rel=0.25)
 
 
 def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
@@ -47,27 +74,29 @@ def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
         return wandering(rng, run.time, 1.0) - np.gradient(swinging(rng, run.time, swings), run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
     assert found.body == pytest.approx(swings, rel=0.25)
     assert found.force < 2.5 and found.moment < 0.1
 
 
-def test_a_body_pushes_without_a_mean_by_what_its_momentum_changes():
+@pytest.mark.parametrize(
+    ("noise", "at", "force"), [({"body": 3.0}, 2, 3.0 * np.sqrt(50)), ({"floor": 2.5, "lasting": 0.4}, 4, 2.5)]
+)
+def test_bodies_and_floors_push_without_a_mean(noise, at, force):
     """Of p'' + (α + β) p' + α β p = white noise, p' has a standard deviation of √(α β) times that of p, and no mean."""
-    unknown = disturbance(NoiseModel({}, body=3.0), 2, T_R)
-    weights = unknown.as_push[:, 2:].sum(axis=0) * unknown.sd[2:]
-    alpha, beta = 1 / unknown.lasting[2:]
-    assert np.sqrt(weights @ unknown.common[2:, 2:] @ weights) == pytest.approx(3.0 * np.sqrt(alpha * beta))
-    slow = weights * np.sqrt(2 / unknown.lasting[2:]) * unknown.lasting[2:]  # what one noise does to each at rest, added up
+    unknown, pair = disturbance(NoiseModel({}, **noise), 2, T_R), slice(at, at + 2)
+    weights = unknown.as_push[:, pair].sum(axis=0) * unknown.sd[pair]
+    assert np.sqrt(weights @ unknown.common[pair, pair] @ weights) == pytest.approx(force)
+    slow = weights * np.sqrt(2 / unknown.lasting[pair]) * unknown.lasting[pair]  # what one noise does to each at rest, added up
     assert slow.sum() == pytest.approx(0.0, abs=1e-12)
-    assert np.allclose(unknown.as_push[0, 2:], unknown.as_push[1, 2:]), "along the heading"
+    assert np.allclose(unknown.as_push[0, pair], unknown.as_push[1, pair]), "along the heading"
 
 
 def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
     """What forces do is known: twice the mass needs twice the force for it."""
     known = NoiseModel({}, force=2.0, moment=0.5, body=1.0, mass=80.0)
     light, heavy = (disturbance(known, 2, T_R, mass).as_push for mass in (80.0, 160.0))
-    np.testing.assert_allclose(heavy[:, [0, 2, 3]], 2 * light[:, [0, 2, 3]])
+    np.testing.assert_allclose(heavy[:, ALONG], 2 * light[:, ALONG])
     np.testing.assert_allclose(heavy[:, 1], light[:, 1])
 
 
@@ -79,7 +108,7 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     likelihood = Likelihood(campaign, Variant(), noise).led(campaign)
     first = likelihood.evidence(campaign.fit, {}, ())
     for e in first.runs:  # from elsewhere
-        likelihood.paths[e.run.name] = 3.0 * rng.standard_normal(4) * np.ones((len(e.run.time), 4))
+        likelihood.paths[e.run.name] = 3.0 * rng.standard_normal(FORCED) * np.ones((len(e.run.time), FORCED))
     again = likelihood.evidence(campaign.fit, {}, ())
     assert again.misfit == pytest.approx(first.misfit, abs=5.0)
     for e, other in zip(first.runs, again.runs, strict=True):
@@ -112,10 +141,10 @@ def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks
     rng = np.random.default_rng(6)
     campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 3.0), wandering(rng, run.time, 0.5)))
     likelihood, wrong = Likelihood(campaign, Variant()), {"resistance.f_r": f_r}
-    found, evidence = acting(likelihood, wrong, T_R)
+    found, evidence = acting(likelihood, wrong)
     assert 3.0 < found.force < 7.0 and found.moment == pytest.approx(0.5, rel=0.1)
     assert float(np.sqrt(np.mean(evidence.r**2))) == pytest.approx(1, abs=0.03)
-    assert strength(likelihood.evidence(campaign.fit, wrong, ()), T_R).force > 100, "or nobody would need the way it went"
+    assert strength(likelihood.evidence(campaign.fit, wrong, ()), T_R, B).force > 100, "or nobody would need the way it went"
 
 
 def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_body(sample):

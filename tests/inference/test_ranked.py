@@ -23,7 +23,7 @@ def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, di
     known = dict(p=0.0, heldout=None, lawful=True)
     one = np.ones(len(estimate))
     scale = dict(delta=one, one_sided=one < 0, dispersion=dispersion, correlation=correlation, gain=gain)
-    return Candidate(effect, NONE, fall / dispersion, estimate, covariance, covariance, **scale, **known)
+    return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, covariance, **scale, **known)
 
 
 def fitted(effect, slopes, y) -> Candidate:

@@ -12,14 +12,14 @@ from wheelchair_fmu.inference.residual.strokes import begun, phase
 from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Order, Unexplained, unexplained
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, ridden, wandering
+from .forces import T_R, B, ridden, wandering
 
 
 def left_of(campaign):
     """What the chair of the sample lacks on a campaign, as it is given."""
     likelihood = Likelihood(campaign, Variant())
     evidence = likelihood.evidence(campaign.fit, {}, ())
-    needed = strength(evidence, T_R)
+    needed = strength(evidence, T_R, B)
     return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed, evidence)
 
 
@@ -75,7 +75,7 @@ def test_a_floor_is_ordered_by_nothing(sample, seed):
     found = left_of(ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 2.5), wandering(rng, run.time, 0.4))))
     assert found.orders == () and found.like_a_floor
     assert "it is nobody's effect" in found.words[1]
-    shallow = [f"{found.after.force:.2g} N", f"{found.after.moment:.2g} N m"]
+    shallow = [f"{found.after.along:.2g} N", f"{found.after.moment:.2g} N m"]
     assert all(figure in found.words[0] for figure in shallow)
 
 

@@ -180,10 +180,10 @@ def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength
     """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
     term, which no likelihood of the search knows."""
     likelihood = found.models.likelihood(effects)
-    t_r = likelihood.chair(at.values)["chair.t_r"]
     if not set(at.names) <= set(likelihood.records):
-        return strength(at.evidence, t_r), at.evidence
-    return acting(likelihood, at.values, t_r)
+        chair = likelihood.chair(at.values)
+        return strength(at.evidence, chair["chair.t_r"], chair["chair.b"]), at.evidence
+    return acting(likelihood, at.values)
 
 
 def _diagnosed(
@@ -388,7 +388,7 @@ def _instead_of_small(first: Round) -> tuple[str, ...]:
     likeliest = max((c.support.slight for c in first.slight), default=0.0)
     behind = ((c, likeliest - first.log_prior - c.support.large) for c in first.candidates if c.matters and not c.worsens)
     return tuple(
-        f"{c.effect} would do as well, and would not be small: {np.linalg.norm(c.estimate / c.delta):.1f} times what is of "
+        f"{c.effect} would do as well, and would not be small: {np.linalg.norm(c.size / c.delta):.1f} times what is of "
         f"interest; the odds are {np.exp(log_odds):.0f} to 1 against it"
         for c, log_odds in behind
         if 2 * log_odds < first.policy.tied

@@ -8,7 +8,7 @@ figure that a person can read: 145 N of unexplained force, or 11.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,9 @@ from .evidence import Evidence, RunEvidence
 from .likelihood import Likelihood
 from .noise_model import FORGOTTEN, NoiseModel, disturbance
 
+SIZES = ("force", "moment", "body")
 USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by e over this
+NEAR = 0.02  # m: a CM that is nearer to the axle than that is no lever
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 # times these, from where the search may start
 START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
@@ -35,63 +37,88 @@ CLOSE = 0.1  # of a strength, by which the last one may differ
 
 @dataclass(frozen=True)
 class Strength:
-    """Standard deviations of the force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
-    needs, by how much −2 log posterior falls with them, and the time (s) over which the moment is forgotten."""
+    """Standard deviations of the slow force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
+    needs, by how much −2 log posterior falls with them, the time (s) over which the moment is forgotten, and the standard
+    deviation of the floor's force (N)."""
 
     force: float
     moment: float
     body: float
     fall: float
     lasting: float = FORGOTTEN
+    floor: float = 0.0
+
+    @property
+    def along(self) -> float:
+        """Standard deviation (N) of the force along the heading, slow or a floor's."""
+        return float(np.hypot(self.force, self.floor))
 
     def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
         """Noise with forces of this strength, found for a chair of this mass (kg)."""
-        return replace(noise_model, force=self.force, moment=self.moment, body=self.body, lasting=self.lasting, mass=mass)
+        along = replace(noise_model, force=self.force, floor=self.floor, body=self.body, mass=mass)
+        return replace(along, moment=self.moment, lasting=self.lasting)
 
 
-def strength(evidence: Evidence, t_r: float) -> Strength:
+def strength(evidence: Evidence, t_r: float, b: float) -> Strength:
     """The most likely strength, given evidence of one model with its filters; zero where the readings ask for none.
 
-    `t_r` is the distance (m) between the wheels. Uncertain clocks and baselines of runs are taken as they are.
+    What turns a chair says how uneven a floor is: `t_r` is the distance (m) between the wheels, `b` that from the axle to the
+    CM, where a slope to the side pulls. Along the heading a body pushes as well, and readings hardly tell the two apart. So the
+    moment is found without a floor, and what there is along the heading beside a floor that is as steep along the way.
+    Uncertain clocks and baselines of runs are taken as they are.
     """
 
-    def misfit(logs: np.ndarray) -> float:
-        *ratios, lasting = np.exp(logs)
-        force, moment, body = ratios * USUAL
-        noise_model = NoiseModel({}, force=force, moment=moment, body=body, lasting=lasting)
-        return _misfit(evidence, noise_model, t_r) + 2 * float(np.sum(ratios))
+    def misfit(strength: Strength) -> float:
+        ratios = np.array([getattr(strength, name) for name in SIZES]) / USUAL
+        return _misfit(evidence, strength.put_into(NoiseModel({})), t_r) + 2 * float(np.sum(ratios))
 
-    without = _misfit(evidence, NoiseModel({}), t_r)
-    begin = (np.log([*at, FORGOTTEN]) for at in START)
+    none = Strength(0.0, 0.0, 0.0, 0.0)
+    without = misfit(none)
+    begin = (replace(none, **dict(zip(SIZES, map(float, sizes * USUAL), strict=True))) for sizes in np.array(START))
     least, begun = min(((misfit(at), at) for at in begin), key=lambda tried: tried[0])
     if least > without:
-        return Strength(0.0, 0.0, 0.0, 0.0)
+        return none
+    found = _likeliest(misfit, begun, (*SIZES, "lasting"))
+    if found.moment > 2 * LEAST * USUAL[1]:
+        found = _likeliest(misfit, replace(found, floor=found.moment / max(b, NEAR)), ("force", "body"))
+    felt = {
+        name: size if (size := getattr(found, name)) > 2 * LEAST * usual else 0.0
+        for name, usual in zip(SIZES, USUAL, strict=True)
+    }
+    return replace(found, **felt, fall=without - misfit(found))
+
+
+def _likeliest(misfit: Callable[[Strength], float], begun: Strength, by: Sequence[str]) -> Strength:
+    """The strength with the least misfit, as those of its figures change that are named."""
+    limits = {**{name: (LEAST * usual, MOST * usual) for name, usual in zip(SIZES, USUAL, strict=True)}, "lasting": LASTING}
+
+    def at(logs: np.ndarray) -> Strength:
+        return replace(begun, **dict(zip(by, map(float, np.exp(logs)), strict=True)))
+
     found = minimize(
-        misfit,
-        begun,
+        lambda logs: misfit(at(logs)),
+        [np.log(getattr(begun, name)) for name in by],
         method="L-BFGS-B",
-        bounds=[*[(np.log(LEAST), np.log(MOST))] * 3, tuple(np.log(LASTING))],
+        bounds=[tuple(np.log(limits[name])) for name in by],
         options={"ftol": PRECISE, "eps": NEARBY},
     )
-    *ratios, lasting = np.exp(found.x)
-    force, moment, body = (float(r * usual) if r > 2 * LEAST else 0.0 for r, usual in zip(ratios, USUAL, strict=True))
-    return Strength(force, moment, body, without - float(found.fun), float(lasting))
+    return at(found.x)
 
 
-def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> tuple[Strength, Evidence]:
+def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strength, Evidence]:
     """How strong the forces are that a model needs at these values, and evidence of the fitted runs, where the chair rolls,
     about the path that these forces lead to.
 
     A model that lacks much goes another way than the chair did, and slopes along that say little of how a force would bring it
     back. So forces are estimated, the model is led by them, and the strength is estimated anew from there.
     """
-    likelihood = likelihood.led(moving(likelihood.campaign))
+    likelihood, chair = likelihood.led(moving(likelihood.campaign)), likelihood.chair(values)
     force, moment, body = USUAL
     found = Strength(force, moment, body, 0.0)
     likelihood.noise_model = found.put_into(likelihood.noise_model)
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
-        before, found = found, strength(evidence, t_r)
+        before, found = found, strength(evidence, chair["chair.t_r"], chair["chair.b"])
         if not found.fall or _alike(before, found):
             break
         likelihood.noise_model = found.put_into(likelihood.noise_model)
@@ -99,7 +126,7 @@ def acting(likelihood: Likelihood, values: Mapping[str, float], t_r: float) -> t
 
 
 def _alike(one: Strength, other: Strength) -> bool:
-    pairs = ((one.force, other.force), (one.moment, other.moment), (one.body, other.body))
+    pairs = ((one.force, other.force), (one.moment, other.moment), (one.floor, other.floor), (one.body, other.body))
     return all(abs(a - b) <= CLOSE * max(a, b) for a, b in pairs)
 
 

@@ -40,7 +40,7 @@ class RunEvidence:
     measured: np.ndarray  # (n, nz), less offsets
     whitener: Marginal | Weighed
     offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
-    path: np.ndarray | None = None  # (n, 4) forces that nobody recorded (see `disturbance`), about which all is linearised
+    path: np.ndarray | None = None  # (n, nd) forces that nobody recorded (see `disturbance`), about which all is linearised
     added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
     driven: np.ndarray | None = None  # (n, nz) readings simulated with them
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
@@ -189,7 +189,7 @@ class Evidence:
 
 
 def followed(e: RunEvidence) -> np.ndarray:
-    """The forces (n, 4) that nobody recorded, as all readings of a run have them."""
+    """The forces (n, nd) that nobody recorded, as all readings of a run have them."""
     assert isinstance(e.whitener, Marginal)
     filter_ = e.whitener.whitener
     return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])

@@ -24,12 +24,12 @@ from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence, followed
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
-from .noise_model import NoiseModel, disturbance, noise_of, pushes_of
+from .noise_model import FORCED, NoiseModel, disturbance, noise_of, pushes_of
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 LONG = 30_000  # rows: five minutes at 100 Hz, some megabytes
-MASS, ALONG = "chair.m", [0, 2, 3]  # and which of the forces that nobody recorded push along the heading
+MASS, ALONG = "chair.m", [0, 2, 3, 4, 5]  # and which of the forces that nobody recorded push along the heading
 
 
 def driven(campaign: Campaign) -> frozenset[str]:
@@ -164,7 +164,7 @@ class Likelihood:
         path: np.ndarray | None = None,
         pushed: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, 4) acting, or with
+        """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, nd) acting, or with
         pushes larger than their record by `pushed` (n, nq)."""
         given, w = self._given(run, values, start)
         if path is not None:
@@ -185,7 +185,7 @@ class Likelihood:
             found = self._evaluated(run, values, (), at, path, int(self.noise_model.disturbed))
             if rounds:
                 self.starts[run.name] = {**start, **dict(zip(names, found.start.tolist(), strict=True))}
-                self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), 4))
+                self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), FORCED))
             found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
             pushed = self._errors_of_pushes(run)

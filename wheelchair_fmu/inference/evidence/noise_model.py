@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,11 @@ SWING = 0.15  # s over which an error of the momentum of the rider's body is for
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
 # s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
 SWUNG = (0.1, 0.2)
+RISES = (
+    1 / 3,
+    2 / 3,
+)  # of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
+FORCED = 6  # processes of `disturbance`
 
 
 @dataclass(frozen=True)
@@ -26,8 +32,9 @@ class NoiseModel:
 
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
-    force: float = 0.0  # N, standard deviation of what pushes the chair along its heading and nobody recorded,
+    force: float = 0.0  # N, standard deviation of what pushes the chair along its heading for long and nobody recorded,
     moment: float = 0.0  # N m, of what turns it,
+    floor: float = 0.0  # N, of what a floor that rises and falls again pushes along the heading,
     body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
     lasting: float = FORGOTTEN  # s over which the moment is forgotten; a force that is forgotten sooner than that is a body's
     mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
@@ -43,7 +50,7 @@ class NoiseModel:
     @property
     def disturbed(self) -> bool:
         """Do forces act that nobody recorded?"""
-        return max(self.force, self.moment, self.body) > 0
+        return max(self.force, self.moment, self.floor, self.body) > 0
 
     def differs(self, other: NoiseModel) -> bool:
         """Is some channel's noise of another size or noise_model, by more than estimates of either scatter?"""
@@ -63,7 +70,12 @@ class NoiseModel:
 
     def _otherwise_disturbed(self, other: NoiseModel) -> bool:
         """Do forces act of another size, by more than estimates of it scatter and by more than can be felt?"""
-        pairs = ((self.force, other.force, 0.5), (self.moment, other.moment, 0.1), (self.body, other.body, 0.5))
+        pairs = (
+            (self.force, other.force, 0.5),
+            (self.moment, other.moment, 0.1),
+            (self.floor, other.floor, 0.5),
+            (self.body, other.body, 0.5),
+        )
         return any(abs(a - b) > max((SCATTER - 1) * max(a, b), felt) for a, b, felt in pairs)
 
 
@@ -81,25 +93,47 @@ def noise_of(
 
 
 def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0) -> Disturbance:
-    """A force along the heading, a moment, and the two processes by which a rider's body pushes, as changes of the recorded
-    pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
+    """A force along the heading, a moment, the two processes by which a rider's body pushes, and the two of a floor, as changes
+    of the recorded pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
 
     What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
     they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride.
 
     A body whose momentum p against the chair is of second order, p'' + (α + β) p' + α β p = white noise, pushes by −p': two
-    processes of first order, α and β, that one noise drives, and a force without a mean.
+    processes of first order, α and β, that one noise drives, and a force without a mean. So does a floor, which rises and falls
+    again: the slope along the way is what its height changes. The slope to the side, which turns a chair, is alike for as long
+    as the height is, so that both are forgotten together.
     """
-    alpha, beta = (1 / t for t in SWUNG)
-    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * noise_model.body
-    body = np.sqrt([alpha / 2, beta / 2]) * driven
-    as_push = np.zeros((pushes, 4))
+    swings = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
+    lasting = np.array([FORGOTTEN, noise_model.lasting, *swings[0].lasting, *swings[1].lasting])
+    as_push, common = np.zeros((pushes, FORCED)), np.eye(FORCED)
     along = mass / noise_model.mass if noise_model.mass else 1.0
-    as_push[:2] = [[along / 2, side / t_r, -along / 2, along / 2] for side in (1, -1)]
-    common = np.eye(4)
-    common[2, 3] = common[3, 2] = 2 * np.sqrt(alpha * beta) / (alpha + beta)
-    sd = np.array([noise_model.force, noise_model.moment, *body])
-    return Disturbance(sd, np.array([FORGOTTEN, noise_model.lasting, *SWUNG]), as_push, common)
+    as_push[:2] = [[along / 2, side / t_r, *(-along / 2, along / 2) * 2] for side in (1, -1)]
+    for at, swing in zip((2, 4), swings, strict=True):
+        common[at, at + 1] = common[at + 1, at] = swing.together
+    sd = np.array([noise_model.force, noise_model.moment, *swings[0].sd, *swings[1].sd])
+    return Disturbance(sd, lasting, as_push, common)
+
+
+class _Swing(NamedTuple):
+    """Two processes of first order that one noise drives: standard deviations, times (s), and their correlation."""
+
+    sd: np.ndarray
+    lasting: tuple[float, float]
+    together: float
+
+
+def _swing(momentum: float, lasting: tuple[float, float]) -> _Swing:
+    """Those whose difference is the rate of a momentum of this standard deviation (N s)."""
+    alpha, beta = (1 / t for t in lasting)
+    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * momentum
+    return _Swing(np.sqrt([alpha / 2, beta / 2]) * driven, lasting, 2 * np.sqrt(alpha * beta) / (alpha + beta))
+
+
+def _rate(force: float, lasting: float) -> _Swing:
+    """Those whose difference is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (s)."""
+    first, second = (lasting * share for share in RISES)
+    return _swing(force * np.sqrt(first * second), (first, second))
 
 
 def pushes_of(run: Run) -> tuple[str, ...]:

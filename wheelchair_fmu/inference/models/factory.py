@@ -175,6 +175,10 @@ class ModelFactory:
         """Smallest interesting sizes (k,)."""
         return np.array([self.records[n].smallest_interesting for n in names])
 
+    def unfitted(self, names: Sequence[str]) -> np.ndarray:
+        """Sizes (k,) of effects in a model that lacks them: zero, or what the campaign says, as of where a sensor sits."""
+        return np.array([self.campaign.known.get(n, 0.0) for n in names])
+
     def one_sided(self, names: Sequence[str]) -> np.ndarray:
         """Which of these may only be positive (k,)."""
         return np.array([self.records[n].lower == 0 for n in names], bool)

@@ -106,10 +106,12 @@ class Models:
         return likelihood.evidence(self.campaign.holdout, values, (), tune_start=tune_start)
 
     def weight(self, found: Fit, effect: str) -> float:
-        """How far an effect's estimate is from zero, by its covariance: about as much as −2 log likelihood would rise without
-        it, where filters stay as they are."""
-        value, covariance = estimates(found, self.factory.parameters(effect))
-        return float(value @ inverse(covariance) @ value)
+        """How far an effect's estimate is from what a model without it has, by its covariance: about as much as −2 log
+        likelihood would rise without it, where filters stay as they are."""
+        names = self.factory.parameters(effect)
+        value, covariance = estimates(found, names)
+        size = value - self.factory.unfitted(names)
+        return float(size @ inverse(covariance) @ size)
 
     def compared(self, found: Fit, effect: str, base: Fit) -> Fit:
         """A fit as it compares with one that lacks an effect of it. Where forces lead the runs, how likely these are is no
@@ -156,7 +158,7 @@ class Models:
         now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
         if self.factory.leads:
             chair = self.likelihood().chair(found.values)
-            forces = strength(found.evidence, chair["chair.t_r"])
+            forces = strength(found.evidence, chair["chair.t_r"], chair["chair.b"])
             now = forces.put_into(replace(now, by_run=by_run(found.evidence, before)), chair["chair.m"])
         if not now.differs(before):
             return None  # and models that are compared are by the same noise

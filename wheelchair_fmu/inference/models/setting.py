@@ -14,7 +14,7 @@ from ..evidence.noise_model import NoiseModel
 
 @dataclass(frozen=True)
 class Setting:
-    """Where nothing was found yet, runs start where the campaign has them. `paths` are the forces (n, 4), or the errors of
+    """Where nothing was found yet, runs start where the campaign has them. `paths` are the forces (n, nd), or the errors of
     pushes (n, nq), about which runs are linearised; calibration begins at the values in `begun`, if not at those given; `notes`
     are sentences on the noise."""
 

@@ -76,7 +76,7 @@ class Unexplained:
     @property
     def like_a_floor(self) -> bool:
         """Is it no more than a floor that counts as flat does?"""
-        return self.after.force <= FLAT * self.weight and self.after.moment <= FLAT * self.weight * self.arm
+        return self.after.along <= FLAT * self.weight and self.after.moment <= FLAT * self.weight * self.arm
 
     @property
     def ordered(self) -> tuple[Order, ...]:
@@ -104,13 +104,13 @@ class Unexplained:
 
 
 def _figures(s: Strength) -> dict[str, float]:
-    return {"force": s.force, "moment": s.moment, "body": s.body, "lasting": s.lasting}
+    return {"force": s.along, "moment": s.moment, "floor": s.floor, "body": s.body, "lasting": s.lasting}
 
 
 def _size(s: Strength) -> str:
     if not s.fall:
         return "no force and no moment"
-    force, moment, body = (_told(*pair) for pair in zip((s.force, s.moment, s.body), USUAL * MOST, strict=True))
+    force, moment, body = (_told(*pair) for pair in zip((s.along, s.moment, s.body), USUAL * MOST, strict=True))
     if not s.body:
         return f"{force} N and {moment} N m"
     return f"{force} N, {moment} N m and a swing of the rider's body of {body} N s"

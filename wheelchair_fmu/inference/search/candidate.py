@@ -23,6 +23,7 @@ class Candidate:
     fit: Fit
     drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
     estimate: np.ndarray
+    without: np.ndarray  # the same in a model that lacks it: zero, or what the campaign says
     covariance: np.ndarray  # (k, k) of the estimate
     between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
     delta: np.ndarray
@@ -57,13 +58,18 @@ class Candidate:
     def support(self) -> Support:
         """What bears it out, beside the model without it, and however many parameters it has."""
         covariances, ahead = (self.covariance, self.between), self.gain[0] / self.scale if self.gain else 0.0
-        return support_of(self.effect, self.estimate, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy)
+        return support_of(self.effect, self.size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy)
+
+    @property
+    def size(self) -> np.ndarray:
+        """How far (k,) its parameters are from those of a model that lacks it."""
+        return self.estimate - self.without
 
     @property
     def excess(self) -> float:
         """Log likelihood that is gained, and that the estimate by its standard errors would not: of a model that is not exact a
         parameter may take up what it did not do."""
-        away = squared(self.estimate / self.delta, self.covariance / np.outer(self.delta, self.delta))
+        away = squared(self.size / self.delta, self.covariance / np.outer(self.delta, self.delta))
         return 0.5 * max(0.0, self.fall - away)
 
     @property

@@ -25,8 +25,8 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     w, fit, held = models.factory, found.fit, found.heldout
     delta, (estimate, covariance) = w.deltas(names), estimates(fit, names)
     lower, upper = (np.array([getattr(w.records[n], side) for n in names]) for side in ("lower", "upper"))
-    one_sided, near = w.one_sided(names), 1e-6 * delta
-    along, spread = seen_directions(estimate / delta, covariance / np.outer(delta, delta))
+    one_sided, near, without = w.one_sided(names), 1e-6 * delta, w.unfitted(names)
+    along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
     fall, correlation = base.fit.misfit - fit.misfit - _paid(fit, names), correlation_time(fit.evidence)
     drop = fall / dispersion
@@ -38,6 +38,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         fit=replace(fit, evidence=fit.evidence.summary()),
         drop=drop,
         estimate=estimate,
+        without=without,
         covariance=covariance,
         between=_between(fit, names, covariance),
         delta=delta,
@@ -73,7 +74,8 @@ def surely_large(models: Models, found: Fit, effect: str) -> bool:
     names = w.parameters(effect)
     delta, (estimate, covariance) = w.deltas(names), estimates(found, names)
     between, fall = _between(found, names, covariance), models.weight(found, effect)
-    told = support_of(effect, estimate, (covariance, between), delta, w.one_sided(names), fall, 0.0, models.policy)
+    size = estimate - w.unfitted(names)
+    told = support_of(effect, size, (covariance, between), delta, w.one_sided(names), fall, 0.0, models.policy)
     return float(special.expit(told.large - max(0.0, told.slight))) > models.policy.sure
 
 

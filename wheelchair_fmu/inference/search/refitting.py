@@ -14,6 +14,7 @@ from ..estimation.fit import Fit
 from ..estimation.starts import most_promising, outlook
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
+from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..parallel import parallel_map
@@ -93,7 +94,7 @@ def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, leas
     unbent = at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
     calibrations = [[values[n] for n in base.names] for values in (base.values, *unbent)]
     if s.linear and len(calibrations) == 1:
-        off = [base.values.get(n, 0.0) for n in names]
+        off = _without(w, base, names)
         known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
         return [(dict(zip(names, off, strict=True)), known)]
     thetas = _sizes(models, likelihood, base, names, calibrations, s, least)
@@ -103,7 +104,7 @@ def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, leas
 def _expected(models: Models, s: Screened) -> dict[str, float]:
     """An effect's sizes as slopes have them, within bounds."""
     names = models.factory.parameters(s.score.effect)
-    expected, *_ = sizes_to_try(s, [models.factory.records[n] for n in names])
+    expected, *_ = sizes_to_try(s, [models.factory.records[n] for n in names], models.factory.unfitted(names))
     return dict(zip(names, map(float, expected), strict=True))
 
 
@@ -122,11 +123,11 @@ def _sizes(
     known, calibrated = s.evidence.only(base.names), len(base.names)
     members = [w.catalogue[member] for member in w.members(s.score.effect)]
     states, laws = (any(getattr(record, what) for record in members) for what in ("rows", "needs"))
-    tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records)]
+    tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records, w.unfitted([r.name for r in records]))]
     many = len(records) > 1 and not s.linear
     wanted = 1 if s.linear else DIRECTIONS if many else STARTS
     best = most_promising(likelihood, known, names, tries, wanted, s.score.signature, _signs if many else None)
-    off = [base.values.get(n, 0.0) for n in names]
+    off = _without(w, base, names)
     without, most = outlook(likelihood, known, names, off).misfit, np.inf
     if s.linear:
         return [o.theta for o in best if o.misfit <= without - HALFWAY * least]
@@ -141,17 +142,23 @@ def _sizes(
     return [] if negligible else found
 
 
+def _without(w: ModelFactory, base: Fit, names: Sequence[str]) -> list[float]:
+    """Values of a model by `names`, of which it lacks some."""
+    return [base.values.get(n, unfitted) for n, unfitted in zip(names, w.unfitted(names).tolist(), strict=True)]
+
+
 def _signs(sizes: Sequence[float]) -> tuple[float, ...]:
     return tuple(np.sign(sizes))
 
 
-def sizes_to_try(s: Screened, records: Sequence[Parameter]) -> list[np.ndarray]:
-    """Sizes (k,) of an effect's parameters from which a refit may start: the expected change, and multiples of δ of all of
-    them, of one against the others, and of one alone, with both signs where that is lawful."""
+def sizes_to_try(s: Screened, records: Sequence[Parameter], unfitted: np.ndarray) -> list[np.ndarray]:
+    """Sizes (k,) of an effect's parameters from which a refit may start: from those that it is not fitted with the expected
+    change, and multiples of δ of all of them, of one against the others, and of one alone, with both signs where that is
+    lawful."""
     lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
     expected = np.where(np.isfinite(s.score.estimate), s.score.estimate, 0)
     several, both = len(records) > 1, bool((lower < 0).all())
     alone = [*np.diag(s.delta)] if several else []
     against = [s.delta - 2 * one for one in alone] if both else []
     multiples = (f * d for d in (s.delta, *alone, *against) for f in SIZES if f > 0 or both)
-    return [np.clip(size, lower, upper) for size in (expected, *multiples)]
+    return [np.clip(unfitted + size, lower, upper) for size in (expected, *multiples)]

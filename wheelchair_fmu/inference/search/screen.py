@@ -172,6 +172,8 @@ def _secants(
     (N, k) per unit, each. `known` is the evidence at `values`, where it is off. Of a group each member is tried beside those
     before it, by which it acts."""
     records = [w.records[n] for n in w.parameters(effect)]
+    names = w.parameters(effect)
+    values = {**dict(zip(names, w.unfitted(names).tolist(), strict=True)), **values}
     found = []
     for sign in (1.0,) if w.linear(effect) else (1.0, -1.0):
         sizes = {r.name: sign * r.delta for r in records if r.lower <= sign * r.delta}
@@ -188,12 +190,13 @@ def _secants(
 def _one_by_one(
     likelihood: Likelihood, known: Evidence, values: Mapping[str, float], members: Sequence[Mapping[str, float]]
 ) -> list[np.ndarray]:
-    """What each parameter of some effects does (N,) per unit at its size, beside the members before its own at theirs."""
+    """What each parameter of some effects does (N,) per unit of so much more than `values` have, beside the members before its
+    own at theirs."""
     columns: list[np.ndarray] = []
     before, r = dict(values), known.r
     for i, own in enumerate(members):
-        columns += [(r - likelihood.resimulated(known, {**before, n: size}).r) / size for n, size in own.items()]
-        before |= own
+        columns += [(r - likelihood.resimulated(known, {**before, n: before[n] + size}).r) / size for n, size in own.items()]
+        before |= {n: before[n] + size for n, size in own.items()}
         if i < len(members) - 1:
             r = likelihood.resimulated(known, before).r
     return columns

@@ -175,8 +175,8 @@ def disturbance(case: Case) -> str:
         return ""
     before, after = (_strength(s) for s in (told["calibrated"], told))
     words = [
-        f"The most likely strength of a slow random force along the heading and of a slow random moment, forgotten over a "
-        f"second or less, and of a momentum of the rider's body that nobody recorded was {before} for the calibrated model"
+        f"The most likely strength of a random force along the heading and of a random moment, forgotten over a second or "
+        f"less, and of a momentum of the rider's body that nobody recorded was {before} for the calibrated model"
         + (f" and {after} for the last one." if case.grew else ".")
     ]
     words += [f"{capital(plain(o['words']))}." for o in told["orders"]]
