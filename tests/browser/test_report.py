@@ -124,7 +124,16 @@ def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
 def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browser, tmp_path, campaign):
     """Every run is led along them, from where it was led to at the values before, and weighed by them."""
     ladder = [*TOLD["ladder"][:2], {**TOLD["ladder"][1], "step": UNRECORDED}, *TOLD["ladder"][2:]]
-    forces = {"force": 3.0, "moment": 0.4, "body": 1.5, "lasting": 0.7, "mass": 82.0, "by_run": {"slalom-quick": {"a_y": 1.3}}}
+    forces = {
+        "force": 3.0,
+        "moment": 0.4,
+        "body": 1.5,
+        "floor": 2.0,
+        "stroke": 30.0,
+        "lasting": 0.7,
+        "mass": 82.0,
+        "by_run": {"slalom-quick": {"a_y": 1.3}},
+    }
     told = {**TOLD, "ladder": ladder, "noise": {**TOLD["noise"], **forces}}
     (tmp_path / "told.json").write_text(json.dumps(told))
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))

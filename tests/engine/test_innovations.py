@@ -242,3 +242,28 @@ def test_noise_of_a_push_moves_the_chair_alike_however_many_rows_lie_between_its
     many = np.sort(np.concatenate((own, rng.uniform(0, 4, 800))))
     assert speed_variance(many) == pytest.approx(speed_variance(own), rel=0.05)
     assert speed_variance(own) == pytest.approx(4 * 0.01 * (1 + phi) / (1 - phi), rel=0.05)
+
+
+def test_a_body_that_swings_is_as_far_off_at_the_start_as_later():
+    """A chair of 2 kg and a body whose momentum p has a standard deviation of 3 N s: simulated without it from the speed of
+    both, the chair is off by p / m at any time."""
+    time, p, m, (alpha, beta) = 0.01 * np.arange(300), 3.0, 2.0, (10.0, 5.0)
+    half = np.zeros((299, 1, 4))
+    half[:, 0, 0] = 0.01 / 2 / m
+    n = len(time)
+    run = SimpleNamespace(
+        time=time,
+        transition=np.ones((n - 1, 1, 1)),
+        push_before=half,
+        push_after=half,
+        by_state=np.ones((n, 1, 1)),
+        by_push=np.zeros((n, 1, 4)),
+    )
+    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * p
+    common = np.eye(2) + 2 * np.sqrt(alpha * beta) / (alpha + beta) * np.eye(2)[::-1]
+    body = Disturbance(
+        driven * np.sqrt([alpha / 2, beta / 2]), np.array([1 / alpha, 1 / beta]), np.array([[-1.0, 1.0]]), common
+    )
+    noise = Noise(np.zeros(1), np.zeros(1), np.full(1, 0.01), np.zeros(1), np.zeros((1, 1)))
+    filter_ = Whitener(run, [0], noise, np.ones((n, 1), bool), disturbance=body)
+    np.testing.assert_allclose(1 / filter_.spread, np.hypot(p / m, 0.01), rtol=0.02)

@@ -13,7 +13,7 @@ from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
 from wheelchair_fmu.inference.evidence.likelihood import ALONG, Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import FORCED, NoiseModel, disturbance
+from wheelchair_fmu.inference.evidence.noise_model import FORCED, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, B, floor, ridden, swinging, wandering
@@ -90,6 +90,23 @@ def test_bodies_and_floors_push_without_a_mean(noise, at, force):
     slow = weights * np.sqrt(2 / unknown.lasting[pair]) * unknown.lasting[pair]  # what one noise does to each at rest, added up
     assert slow.sum() == pytest.approx(0.0, abs=1e-12)
     assert np.allclose(unknown.as_push[0, pair], unknown.as_push[1, pair]), "along the heading"
+
+
+def test_a_body_swings_as_hard_as_hands_push(sample):
+    """Twice the push, twice the swing: one strength serves runs of easy and of hard strokes, and of none."""
+    rng, swings = np.random.default_rng(12), 0.04
+    hardest = max(stroke(run) for run in sample.runs)
+
+    def pushes(run, without):
+        return -np.gradient(swinging(rng, run.time, swings * stroke(run)), run.time), 0 * run.time
+
+    campaign = ridden(sample, rng, pushes)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    known = found.put_into(NoiseModel(campaign.noise))
+    for run in campaign.runs:
+        assert known.body * known.swinging(run) == pytest.approx(swings * stroke(run), rel=0.25, abs=0.02 * swings * hardest)
+    still = replace(campaign.runs[0], inputs={name: 0 * w for name, w in campaign.runs[0].inputs.items()})
+    assert known.swinging(still) == 0.0
 
 
 def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
-from wheelchair_fmu.inference.evidence.noise import by_run, noise_model_of
+from wheelchair_fmu.inference.evidence.noise import by_run, noise_model_of, shown
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant
 
@@ -132,7 +132,25 @@ def test_a_sensor_that_shakes_more_in_one_run_is_seen(sample):
     found = by_run(Likelihood(campaign, Variant(), taken).evidence(campaign.fit, {}, ()), taken)
     others = [times["a_y"] for run, times in found.items() if run != shaken]
     assert found[shaken]["a_y"] == pytest.approx(2 * np.mean(others), rel=0.1) and np.ptp(others) < 0.2
-    known = replace(taken, by_run=found)
-    assert known.of("a_y", shaken) == pytest.approx(found[shaken]["a_y"] * taken.sd["a_y"])
+    known, runs = replace(taken, by_run=found), {run.name: run for run in campaign.runs}
+    assert known.of("a_y", runs[shaken]) == pytest.approx(found[shaken]["a_y"] * taken.sd["a_y"])
     together = np.sqrt(np.mean([times["a_y"] ** 2 for times in found.values()]))
-    assert known.of("a_y", "another") == pytest.approx(together * taken.sd["a_y"])
+    assert known.of("a_y", replace(runs[shaken], name="another")) == pytest.approx(together * taken.sd["a_y"])
+
+
+def test_a_new_run_shakes_its_sensors_as_its_readings_show(sample):
+    """Where that tells the fitted runs apart."""
+    rng, fit = np.random.default_rng(5), [run.name for run in sample.fit]
+
+    def shake(run, times):
+        sd = sample.noise["a_y"] * np.sqrt(times**2 - 1)  # beside what it has
+        return replace(run, channels={**run.channels, "a_y": run.channels["a_y"] + rng.normal(0, sd, len(run.time))})
+
+    runs = [shake(run, 1 + 0.5 * fit.index(run.name) if run.name in fit else 4.0) for run in sample.runs]
+    campaign, taken = replace(sample, runs=tuple(runs)), NoiseModel(sample.noise)
+    evidence = Likelihood(campaign, Variant(), taken).evidence(campaign.fit, {}, ())
+    found = by_run(evidence, taken)
+    known = replace(taken, by_run=found, shown=shown(evidence, found, taken))
+    assert known.shown["a_y"] == pytest.approx(1.0, rel=0.1)
+    for run in campaign.holdout:
+        assert known.of("a_y", run) == pytest.approx(4.0 * sample.noise["a_y"], rel=0.15)

@@ -70,8 +70,8 @@ class Noise:
 class Disturbance:
     """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
     over which it is forgotten. `as_push` (nq, d) says as what change of the recorded pushes one unit of each acts, `common`
-    (d, d) how they are correlated at one moment: two that one white noise drives have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each
-    is on its own."""
+    (d, d) how they are correlated at one moment: two that one white noise drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂).
+    Without it, each is on its own."""
 
     sd: np.ndarray
     lasting: np.ndarray
@@ -264,7 +264,8 @@ class Whitener:
     @cached_property
     def spread(self) -> np.ndarray:
         """(n, nz) one over the standard deviation of each reading round a simulation from the right start: sensor noise,
-        and push noise as it adds up."""
+        and push noise as it adds up. A body that swings at the start is as far off then as later: the simulation, which does
+        not know it, begins at the speed of both."""
         certain, scale = np.zeros_like(self.noise.start), np.empty(self.present.shape)
         from_there = self._filter
         from_there.start_cov = certain.ctypes.data

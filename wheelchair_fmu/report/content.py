@@ -83,12 +83,7 @@ def _forces(colour: NoiseModel) -> dict[str, Any] | None:
         return None
     found = disturbance(colour, 2, 1.0, colour.mass)
     assert found.common is not None
-    return {
-        "sd": found.sd.tolist(),
-        "lasting": found.lasting.tolist(),
-        "together": found.common.tolist(),
-        "as_push": found.as_push.tolist(),
-    }
+    return {"lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": found.as_push.tolist()}
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
@@ -163,6 +158,7 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
             "step": noise.push_step.tolist(),
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
+        "forces": disturbance(colour, 2, 1.0, colour.mass, colour.swinging(run)).sd.tolist() if colour.disturbed else [],
         "constants": [_constant(c) for c in locals_of(run)],
     }
 

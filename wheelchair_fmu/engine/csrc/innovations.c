@@ -263,9 +263,34 @@ void wc_smooth(const filter *f, long n, const double *gain, const double *scale,
     }
 }
 
+static int swings(const filter *f, int q) {
+    for (int p = 0; p < f->nq; p++) if (p != q && common(f, q, p) != 0) return 1;
+    return 0;
+}
+
+/* Inputs that one noise drives together push without a mean: what a unit of one, forgotten over T, has done to a state until
+ * now, T times what an impulse does, it undoes again. */
+static double undone(const filter *f, int state, int q) {
+    long at = (long)state * f->nq + q;
+    return swings(f, q) ? (f->B[at] + f->C[at]) / log(f->input_phi[q]) : 0; /* -T / dt = 1 / log φ */
+}
+
+/* A simulation without such inputs begins where that is undone already. */
+static void begin_undone(const filter *f, double *P) {
+    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
+    for (int r = 0; r < nx; r++) {
+        for (int q = 0; q < nq; q++) add_row(nq, undone(f, r, q), P + (nx + q) * n + nx, P + r * n + nx);
+        for (int q = 0; q < nq; q++) P[(nx + q) * n + r] = P[r * n + nx + q];
+    }
+    for (int r = 0; r < nx; r++) {
+        for (int q = 0; q < nq; q++) add_row(nx, undone(f, r, q), P + (nx + q) * n, P + r * n);
+    }
+}
+
 void wc_spread(const filter *f, long n, double *scale) {
     double P[WC_MOST * WC_MOST], Ph[WC_MOST];
     begin(f, P);
+    if (n > 1) begin_undone(f, P);
     for (long i = 0; i < n; i++) {
         if (i) predict(f, i - 1, P);
         for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, P, Ph));

@@ -57,7 +57,8 @@ void wc_respond(const filter *f, long n, const double *change, double *readings)
 /* noise: n x nq, that of the inputs as all readings have it, from their innovations (n x nz, 0 in gaps) by wc_design's gains. */
 void wc_smooth(const filter *f, long n, const double *gain, const double *scale, const double *innovations, double *noise);
 
-/* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. */
+/* scale: n x nz, one over the standard deviation of each reading, where nothing is learnt from the others. Inputs that one noise
+ * drives together have no mean, and the start is that of a simulation to which they add nothing. */
 void wc_spread(const filter *f, long n, double *scale);
 
 /* Makes gaps of the readings that no slope foretells, where a chair comes to rest: if its speed is off by a little, slopes

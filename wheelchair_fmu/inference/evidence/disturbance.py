@@ -19,7 +19,7 @@ from ...engine.innovations import Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
 from .likelihood import Likelihood
-from .noise_model import FORGOTTEN, NoiseModel, disturbance
+from .noise_model import FORGOTTEN, NoiseModel, disturbance, stroke
 
 SIZES = ("force", "moment", "body")
 USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by e over this
@@ -38,8 +38,8 @@ CLOSE = 0.1  # of a strength, by which the last one may differ
 @dataclass(frozen=True)
 class Strength:
     """Standard deviations of the slow force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
-    needs, by how much −2 log posterior falls with them, the time (s) over which the moment is forgotten, and the standard
-    deviation of the floor's force (N)."""
+    needs, by how much −2 log posterior falls with them, the time (s) over which the moment is forgotten, the standard deviation
+    of the floor's force (N), and the RMS push (N) of the runs that all was found for."""
 
     force: float
     moment: float
@@ -47,6 +47,7 @@ class Strength:
     fall: float
     lasting: float = FORGOTTEN
     floor: float = 0.0
+    stroke: float = 0.0
 
     @property
     def along(self) -> float:
@@ -55,7 +56,7 @@ class Strength:
 
     def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
         """Noise with forces of this strength, found for a chair of this mass (kg)."""
-        along = replace(noise_model, force=self.force, floor=self.floor, body=self.body, mass=mass)
+        along = replace(noise_model, force=self.force, floor=self.floor, body=self.body, mass=mass, stroke=self.stroke)
         return replace(along, moment=self.moment, lasting=self.lasting)
 
 
@@ -72,7 +73,7 @@ def strength(evidence: Evidence, t_r: float, b: float) -> Strength:
         ratios = np.array([getattr(strength, name) for name in SIZES]) / USUAL
         return _misfit(evidence, strength.put_into(NoiseModel({})), t_r) + 2 * float(np.sum(ratios))
 
-    none = Strength(0.0, 0.0, 0.0, 0.0)
+    none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
     without = misfit(none)
     begin = (replace(none, **dict(zip(SIZES, map(float, sizes * USUAL), strict=True))) for sizes in np.array(START))
     least, begun = min(((misfit(at), at) for at in begin), key=lambda tried: tried[0])
@@ -134,7 +135,8 @@ def disturbed(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> tuple[Whit
     """The filter of a run with forces as strong as `noise_model` has them, and where (nx,) it expects the true start, less the
     simulated one."""
     filter_ = e.filter.whitener
-    filter_ = filter_.disturbed(disturbance(noise_model, len(filter_.noise.pushes), t_r))
+    pushes, swinging = len(filter_.noise.pushes), noise_model.swinging(e.run)
+    filter_ = filter_.disturbed(disturbance(noise_model, pushes, t_r, swinging=swinging))
     return filter_, e.offset[: filter_.size[0]]
 
 
@@ -143,7 +145,7 @@ def _misfit(evidence: Evidence, noise_model: NoiseModel, t_r: float) -> float:
 
     def one(e: RunEvidence) -> float:
         filter_ = e.filter.whitener
-        forces = disturbance(noise_model, len(filter_.noise.pushes), t_r)
+        forces = disturbance(noise_model, len(filter_.noise.pushes), t_r, swinging=noise_model.swinging(e.run))
         return filter_.misfit(forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 
     return float(sum(parallel_map(one, evidence.runs)))

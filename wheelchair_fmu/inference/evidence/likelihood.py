@@ -251,7 +251,7 @@ class Likelihood:
             np.array([BY_NAME[c].drifts for c in channels]),
             [self._inputs.index(n) for n in pushes],
             noise_of(self.noise_model, run, channels, pushes),
-            disturbance(self.noise_model, len(pushes), 1.0, self.noise_model.mass) if self.noise_model.disturbed else None,
+            self._of_any_chair(run, len(pushes)) if self.noise_model.disturbed else None,
             self.leads,
             self.start_names,
             np.array([prior[n] for n in self.start_names]),
@@ -259,6 +259,10 @@ class Likelihood:
             np.array([n in run.set for n in self.start_names]),
             constants,
         )
+
+    def _of_any_chair(self, run: Run, pushes: int) -> Disturbance:
+        """The forces on a chair with a track of 1 m and the mass that they were found for."""
+        return disturbance(self.noise_model, pushes, 1.0, self.noise_model.mass, self.noise_model.swinging(run))
 
     def _told(
         self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]

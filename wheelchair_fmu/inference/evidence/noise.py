@@ -25,6 +25,7 @@ EVEN = 0.25  # share of the usual time over so many readings by which one may di
 SLOW = 0.98  # or one that could be right where noise is so slow that LAGS samples tell its changes but not its size
 ENDLESS = 0.99  # AR(1) coefficient of what walks at random, as a chair on a rough floor does
 MOST = 0.995  # the largest that is looked at
+SEVERAL = 3  # runs that show whether two figures go together
 ENOUGH = 100  # samples of a channel in a run that tell its noise there
 TOLD = (
     0.01  # share of noise in the change between readings, below which it is not told: motion follows c k² no better than that
@@ -76,9 +77,22 @@ def by_run(evidence: Evidence, taken: NoiseModel) -> dict[str, dict[str, float]]
         for i, channel in enumerate(e.channels):
             r = _there(e.r[:, i])
             if len(r) > ENOUGH:
-                times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run.name) / taken.sd[channel]
+                times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run) / taken.sd[channel]
                 found[e.run.name][channel] = times
     return found
+
+
+def shown(evidence: Evidence, found: Mapping[str, Mapping[str, float]], taken: NoiseModel) -> dict[str, float]:
+    """By channel, how many times what readings show by themselves its noise is, as `found` by run: where that is more alike
+    from run to run than the noise is, it tells of a run that nobody has fitted."""
+    told = {}
+    for channel in dict.fromkeys(c for times in found.values() for c in times):
+        known = [(times[channel], e) for e in evidence.runs if channel in (times := found[e.run.name])]
+        pairs = [(size * taken.sd[channel], by) for size, e in known if (by := estimate([e.run.channels[channel]]))]
+        size, by = np.log(np.reshape(pairs, (-1, 2))).T
+        if len(pairs) >= SEVERAL and np.std(size - by) < np.std(size):
+            told[channel] = float(np.exp(np.mean(size - by)))
+    return told
 
 
 def _push_colour(evidence: Evidence, side: str, sd: float) -> float:

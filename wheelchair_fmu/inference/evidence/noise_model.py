@@ -10,9 +10,11 @@ import numpy as np
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
+from ...campaign.series import estimate
 from ...engine.innovations import Disturbance, Noise
 
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
+HANDS = tuple(BY_NAME[n].fmu for n in FORCES)
 SCATTER = 1.15  # ratio of two estimates of the same noise
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
@@ -38,14 +40,26 @@ class NoiseModel:
     body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
     lasting: float = FORGOTTEN  # s over which the moment is forgotten; a force that is forgotten sooner than that is a body's
     mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
+    stroke: float = 0.0  # N, RMS push of the runs that they were found for; 0: of any
     by_run: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # times `sd` that a channel's noise is in a run
+    shown: Mapping[str, float] = field(
+        default_factory=dict
+    )  # times what readings show by themselves, where that tells runs apart
 
-    def of(self, channel: str, run: str) -> float:
-        """Standard deviation of a channel's noise in a run; in one that nothing is known of, as in the others together."""
-        known = self.by_run.get(run) or {}
-        others = [times[channel] ** 2 for times in self.by_run.values() if channel in times]
-        times = known.get(channel) or (float(np.sqrt(np.mean(others))) if others else 1.0)
+    def of(self, channel: str, run: Run) -> float:
+        """Standard deviation of a channel's noise in a run; in one that is new, what its readings show where that tells runs
+        apart, or else as in the others together."""
+        times = self.by_run.get(run.name, {}).get(channel)
+        if times is None and channel in self.shown and (shows := estimate([run.channels[channel]])):
+            return self.shown[channel] * shows
+        others = [known[channel] ** 2 for known in self.by_run.values() if channel in known]
+        if times is None:
+            times = float(np.sqrt(np.mean(others))) if others else 1.0
         return self.sd.get(channel, 0.0) * times
+
+    def swinging(self, run: Run) -> float:
+        """Times the usual that a rider's body swings in a run: it answers the pushes."""
+        return stroke(run) / self.stroke if self.stroke else 1.0
 
     @property
     def disturbed(self) -> bool:
@@ -88,23 +102,24 @@ def noise_of(
     swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
     sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
     push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
-    reading_sd, reading_ar = np.array([(noise_model.of(c, run.name), ar.get(c, 0.0)) for c in channels]).T
+    reading_sd, reading_ar = np.array([(noise_model.of(c, run), ar.get(c, 0.0)) for c in channels]).T
     return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
 
 
-def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0) -> Disturbance:
+def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0, swinging: float = 1.0) -> Disturbance:
     """A force along the heading, a moment, the two processes by which a rider's body pushes, and the two of a floor, as changes
     of the recorded pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
 
     What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
-    they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride.
+    they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride. `swinging` is
+    times how much the body swings.
 
     A body whose momentum p against the chair is of second order, p'' + (α + β) p' + α β p = white noise, pushes by −p': two
     processes of first order, α and β, that one noise drives, and a force without a mean. So does a floor, which rises and falls
     again: the slope along the way is what its height changes. The slope to the side, which turns a chair, is alike for as long
     as the height is, so that both are forgotten together.
     """
-    swings = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
+    swings = _swing(noise_model.body * swinging, SWUNG), _rate(noise_model.floor, noise_model.lasting)
     lasting = np.array([FORGOTTEN, noise_model.lasting, *swings[0].lasting, *swings[1].lasting])
     as_push, common = np.zeros((pushes, FORCED)), np.eye(FORCED)
     along = mass / noise_model.mass if noise_model.mass else 1.0
@@ -134,6 +149,13 @@ def _rate(force: float, lasting: float) -> _Swing:
     """Those whose difference is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (s)."""
     first, second = (lasting * share for share in RISES)
     return _swing(force * np.sqrt(first * second), (first, second))
+
+
+def stroke(*runs: Run) -> float:
+    """RMS (N) of what both hands together push in these runs, by the time that they last."""
+    both = [np.sum([run.inputs[n] for n in HANDS if n in run.inputs], axis=0) * np.ones(len(run.time)) for run in runs]
+    last = [float(np.ptp(run.time)) for run in runs]
+    return float(np.sqrt(np.average([np.mean(F**2) for F in both], weights=last))) if sum(last) else 0.0
 
 
 def pushes_of(run: Run) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood, offsets_of
-from ..evidence.noise import QUIETER, by_run, noise_model_of
+from ..evidence.noise import QUIETER, by_run, noise_model_of, shown
 from ..policy import DEFAULT, SearchPolicy
 from .doubles import doubles
 from .factory import ModelFactory
@@ -159,7 +159,9 @@ class Models:
         if self.factory.leads:
             chair = self.likelihood().chair(found.values)
             forces = strength(found.evidence, chair["chair.t_r"], chair["chair.b"])
-            now = forces.put_into(replace(now, by_run=by_run(found.evidence, before)), chair["chair.m"])
+            each = by_run(found.evidence, before)
+            known = replace(now, by_run=each, shown=shown(found.evidence, each, before))
+            now = forces.put_into(known, chair["chair.m"])
         if not now.differs(before):
             return None  # and models that are compared are by the same noise
         return replace(self, setting=replace(self.setting, noise_model=now, notes=tuple(notes)))

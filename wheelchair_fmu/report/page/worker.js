@@ -124,8 +124,8 @@ class Kernel {
     const { wasm } = this, names = Object.keys(run.channels), nz = names.length, n = run.time.length, inputs = this.inputs.map(([name]) => name);
     const flags = (all, some) => all.map((name) => +some.includes(name)), among = (all) => (name) => all.indexOf(name);
     const series = names.map((c) => run.channels[c]), time = this.put(run.time), { pushes, constants } = run, nq = pushes.names.length;
-    const forces = campaign.forces ?? { sd: [], lasting: [], together: [], as_push: [] }, nd = forces.sd.length;
-    const asPush = pushes.names.flatMap((_, q) => forces.as_push[q] ?? forces.sd.map(() => 0));
+    const forces = campaign.forces ?? { lasting: [], together: [], as_push: [] }, nd = forces.lasting.length;
+    const asPush = pushes.names.flatMap((_, q) => forces.as_push[q] ?? forces.lasting.map(() => 0));
     const recorded = Float64Array.from({ length: n * nz }, (_, at) => series[at % nz][Math.floor(at / nz)]);
     const doubles = (list) => this.put(Float64Array.from(list)), ints = (list) => this.words(list);
     const of = (part) => constants.flatMap(part), shape = of((c) => [...(c.shape ?? new Float64Array(n))]);
@@ -134,7 +134,7 @@ class Kernel {
       ints(flags(names, campaign.drifting)), doubles([run.usual]), ...SPEEDS,
       nq, nz, nd, time, ints(pushes.names.map(among(inputs))), ints(names.map((c) => this.sensors.indexOf(campaign.outputs[c]))),
       doubles(pushes.sd), doubles(pushes.ar), doubles(pushes.step), doubles(run.noise.sd), doubles(run.noise.ar), doubles(run.noise.step),
-      doubles(forces.sd), doubles(forces.lasting), doubles(forces.together.flat()), doubles(asPush),
+      doubles(run.forces), doubles(forces.lasting), doubles(forces.together.flat()), doubles(asPush),
       this.starts.length, 0, ints(this.starts.map(among(this.columns))), this.starts.length, ints(this.starts.map(among(this.parameters.map(([name]) => name)))),
       ints(this.starts.map((name) => +(name in run.set))), this.starts.indexOf("start.u"), doubles(this.starts.map((s) => run.start[s])), doubles(this.starts.map((s) => run.start_sd[s])),
       constants.length, ints(of((c) => KINDS[c.kind])), ints(of((c) => flags(inputs, c.inputs))), ints(of((c) => flags(names, c.channels))), doubles(shape), doubles(of((c) => c.sd)),
@@ -157,7 +157,7 @@ class Kernel {
   /** Start and path of an evaluation, and the errors of its pushes, for another to begin with. */
   follow(of, one, other) {
     this.lay(of, one);
-    const forces = (campaign.forces?.sd.length ?? 0) * of.n, memory = () => new Float64Array(this.wasm.memory.buffer);
+    const forces = (campaign.forces?.lasting.length ?? 0) * of.n, memory = () => new Float64Array(this.wasm.memory.buffer);
     for (const [place, count] of [[WHERE.start, of.uncertain], [WHERE.path, forces]]) {
       const from = this.pointer(one.record, place), to = this.pointer(other.record, place);
       memory().copyWithin(to / 8, from / 8, from / 8 + count);
