@@ -102,7 +102,7 @@ def test_a_sign_that_is_wrong_is_found_out(id, to):
 
 
 def test_only_what_moves_no_power_has_no_such_sign():
-    """What reads, what moves loads or stiffnesses, what weighs. What camber and torques do takes part in no balance of energy."""
+    """What reads, weighs, or moves loads or stiffnesses; camber and self-aligning torque take part in no balance of energy."""
     idle = {"N_r", "N_f", "q_F", "q_M", "q_D", "inv_mu", "fall_x", "fall_y", "g_y", "g_z", "mass_u", "inertia", "phi", "M_lam"}
     idle |= {"F_t", "y_r", "y_f", "x_r", "x_f", "c"}  # a push, and levers that force and velocity share
     for id, effect in EFFECTS.items():

@@ -197,6 +197,20 @@ def test_instruments_on_the_frame_tell_one_story(u):
 
 
 @pytest.mark.effect("trunk_motion")
+def test_instruments_that_were_read_at_the_cm_would_be_far_off():
+    """30 mm and strokes of 80 N: the frame is more than 2 cm behind the CM at times, and feels 0.09 m/s² aside that the CM
+    does not, in a turn backward."""
+    straight = run(
+        {"effect.trunk_motion.amplitude": 0.03}, dict.fromkeys(PUSH, lambda t: 40 * np.sin(np.pi * t) ** 2), T=3.0, n=301
+    )
+    assert 0.02 < (straight["chair.x"] - straight["sensor.x"]).max() < 0.03
+    turning = turning_strokes(-0.6)
+    turn = turning["chair.psi_dot"]
+    of_the_cm = np.gradient(turning["chair.v"], turning.time) + turning["chair.u"] * turn
+    assert np.abs(turning["sensor.a_y"] - of_the_cm)[100:-100].max() > 0.09
+
+
+@pytest.mark.effect("trunk_motion")
 def test_a_marker_on_the_frame_stays_behind_while_the_trunk_leans():
     """80 N held for long lean the trunk by the amplitude: the frame is that much behind the CM, along the heading."""
     values = {**SMOOTH, "start.u": 0.0, "start.psi": 2.0, "effect.trunk_motion.amplitude": 0.03}
