@@ -128,7 +128,8 @@ def diagnose(
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words, and `stepped` the staircase whenever it has changed.
+    what is being done, in words, and `stepped` the staircase whenever it has changed. Runs in which wheels slipped are left out
+    where wheels roll by the variant's law.
     """
     began = time.monotonic()
     variant = variant or Variant()
