@@ -69,6 +69,7 @@ class Plan:
                 self._add("left-out", (effect,), (3.0,), "white", seed, EFFECTS[effect].sees, (effect,))
             for effect in OUTSIDE:
                 self._add("outside", (effect,), (1.0, 3.0), "white", seed)
+            self._add("slipping", ("slipping_wheels",), (2.0, 3.0), "white", seed, EFFECTS["slipping_wheels"].sees)
             for pair in PAIRS:
                 self._add("pair", pair, (3.0,), "white", seed)
             for effect, parameter in ALONE:

@@ -56,6 +56,11 @@ def outside(t: Trial) -> bool:
     return t["verdict"] == "outside"
 
 
+def slipped(t: Trial) -> bool:
+    """Is it said that wheels slipped, and does no effect make up for that? Patches that hold creep, and rims have inertia."""
+    return any("so it slipped" in note for note in t["notes"]) and named(t) <= {"longitudinal_slip", "wheel_inertia"}
+
+
 def remains(t: Trial, floors: Mapping[tuple[str, int], float]) -> bool:
     """Is the error off the floor of its noise and seed in the end, with all in that was found?"""
     effects = [step["fit"] for step in t["ladder"] if not step["step"].startswith("+generic")]
@@ -108,6 +113,7 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("outside found, truth left out of the catalogue", share(by.get("left-out", []), outside), "85 %"),
         ("  of those that leave more than noise", share([t for t in by.get("left-out", []) if remains(t, floor)], outside), ""),
         ("outside found, effect that no catalogue has", share(by.get("outside", []), outside), "85 %"),
+        ("wheels that slip: said so, and nothing named", share(by.get("slipping", []), slipped), ""),
         ("pairs: both found", share(by.get("pair", []), lambda t: set(t["effects"]) <= named(t)), ""),
         ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),
         ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),

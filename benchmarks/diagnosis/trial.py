@@ -50,6 +50,7 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
         "order": [row["effect"] for row in said["ranking"]],
         "ladder": said["ladder"],
         "leftover": said["leftover"],
+        "notes": said["notes"],
         "rows": {e: rows[e] for e in case.effects if e in rows},
         "cpu": seconds,
         "seconds": said["seconds"],

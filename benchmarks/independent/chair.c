@@ -7,7 +7,8 @@
  * Tyres are bristles: a lateral deflection e of the patch grows with the sideways speed and fades with the distance rolled,
  *   e' = -v_y + |v_x| * camber - (|v_x| / sigma + v_y^2 / (|v| e_max)) e,
  * and the force is F_max * tanh(C e / (sigma F_max)). No slip angle is ever divided by a speed, so standstill, spinning on
- * the spot and reverse need no special case. */
+ * the spot and reverse need no special case. On a slippery floor rear wheels turn on their own, and bristles along the wheel share
+ * F_max with those across it: what is asked for together is cut to F_max by one tanh. */
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +18,8 @@
 #define EXPORT
 #endif
 
-enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, LEAN, LEAN_RATE, STATES };
+enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_RR, E_RL, E_FR, E_FL, TRUNK, LEAN, LEAN_RATE,
+    RIM_R, RIM_L, ALONG_R, ALONG_L, STATES };
 
 #define WAVES 9
 
@@ -26,8 +28,11 @@ static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel beari
 static const double SCRUB_CREEP = 0.01; /* rad/s, the same for the yaw of the patches */
 static const double TURN_STILL = 0.02;  /* m/s, below which a wheel counts as standing where its patch is turned */
 static const double TURN_LENGTH = 0.6, CASTER_TURN_LENGTH = 0.1; /* m, radius of a path round which a patch half slides */
+static const double PIVOT_LENGTH = 0.04; /* m, the same of a patch that slides easily */
 static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
+static const double ALONG_STIFFNESS = 2e4, ALONG_LENGTH = 0.1; /* N, m: of the bristles along a rear wheel that slips */
+static const double RIM_MASS = 1.457;   /* kg, spin inertia of a rear wheel, 0.14 kg m2, over its radius squared, 0.31 m */
 static const double TORSO = 0.3;        /* m, from the hips up to where the upper body's share of the CM turns about them */
 static const double TIRING = 160;       /* N of push, beyond which nobody leans much farther */
 
@@ -48,9 +53,33 @@ static Tyre tyre(double e, double vx, double vy, double stiffness, double sigma,
     return out;
 }
 
+/* The same of a wheel whose rim is faster than its hub by `spin`: forces across it and along it, and the rates of both deflections,
+ * within one limit. Bristles that slide lie the way they are dragged, bent the more the faster, which only their memory feels. */
+static Tyre slipping(double e, double along, double spin, double vx, double vy, double stiffness, double sigma, double limit,
+                     double lean, double *pull, double *along_rate) {
+    Tyre out;
+    double speed = rounded(vx), slid = sqrt(spin * spin + vy * vy), slide = slid / (1 + slid), standing = DAMPING / (1 + vx * vx / 0.01);
+    double across_k = stiffness / sigma, along_k = ALONG_STIFFNESS / ALONG_LENGTH;
+    out.deflection_rate = -vy + (speed - STILL) * lean - (speed / sigma + slide * across_k / (3 * limit)) * e;
+    *along_rate = spin - (speed / ALONG_LENGTH + slide * along_k / (3 * limit)) * along;
+    double across = across_k * (e + standing * out.deflection_rate), ahead = along_k * (along + standing * *along_rate);
+    double asked = sqrt(across * across + ahead * ahead) / limit, cut = asked > 1e-9 ? tanh(asked) / asked : 1;
+    out.force = cut * across;
+    *pull = cut * ahead;
+    return out;
+}
+
 /* Torque that a patch resists with while it turns at `rate` and its wheel rolls at `speed`; `most` on the spot. */
 static double turned(double most, double length, double rate, double speed) {
     return -most * tanh(length * rate / sqrt(speed * speed + TURN_STILL * TURN_STILL));
+}
+
+/* Torque of a patch that turns at `rate`, as a brush: each bristle is twisted while it goes through the patch, of `length`, and
+ * slides where its twist would ask for more than friction has. On the spot all slide, and the torque is `most`. */
+static double pivoted(double most, double length, double rate, double speed) {
+    double twist = length * fabs(rate) / (speed + 1e-6) / 3; /* 1 where all slide */
+    double held = twist < 1 ? 1 - twist : 0;
+    return -most * (1 - held * held * held) * tanh(rate / SCRUB_CREEP);
 }
 
 /* A wheel's part of its axle's load; at least 1 N, as this chair does not tip over. */
@@ -116,23 +145,31 @@ static void rates(const double *p, const double *s, const double *F, const doubl
             double vx = ct * hx + st * hy, vy = -st * hx + ct * hy;
             double stiffness = p[P_C_lambda] * p[P_pressure];
             if (p[P_load_exponent] != 0) stiffness *= pow(load / 400, p[P_load_exponent]);
-            double limit = load / p[P_inv_mu];
-            Tyre t = tyre(s[E_RR + i], vx, vy, stiffness, p[P_sigma], limit, p[P_C_phi] * camber[i] / stiffness);
+            double limit = load / (p[P_inv_mu] + p[P_slippery]), lean = p[P_C_phi] * camber[i] / stiffness;
+            double rolled = p[P_slippery] != 0 ? s[RIM_R + i] : vx, grip = 0;
+            Tyre t = p[P_slippery] != 0
+                ? slipping(s[E_RR + i], s[ALONG_R + i], rolled - vx, vx, vy, stiffness, p[P_sigma], limit, lean, &grip, &d[ALONG_R + i])
+                : tyre(s[E_RR + i], vx, vy, stiffness, p[P_sigma], limit, lean);
             double slip = s[E_RR + i] / p[P_sigma];
             double trail = p[P_C_m_lambda] / p[P_C_lambda] / sqrt(1 + p[P_inv_slip] * p[P_inv_slip] * slip * slip)
                 / (p[P_pressure] * sqrt(p[P_pressure]));
             double moment = forward(vx) * (-trail * (t.force - p[P_C_phi] * camber[i]) + p[P_C_m_phi] * camber[i])
-                + turned(p[P_turn], TURN_LENGTH, r, sqrt(vx * vx + vy * vy));
-            double rolling = tanh(vx / CREEP);
-            double drag = (p[P_f_r] * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * vx;
+                + turned(p[P_turn], TURN_LENGTH, r, sqrt(vx * vx + vy * vy))
+                + pivoted(p[P_pivot], PIVOT_LENGTH, r, sqrt(vx * vx + vy * vy));
+            double rolling = tanh(rolled / CREEP);
+            double drag = (p[P_f_r] * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * rolled;
             if (i == 0) drag += p[P_sticky] * rolling * 0.5 * (1 + tanh(r / 0.02));
             double pull = F[i] - drag;
+            if (p[P_slippery] != 0) {
+                d[RIM_R + i] = (pull - grip) / RIM_MASS;
+                pull = grip;
+            }
             double fx = ct * pull - st * t.force, fy = st * pull + ct * t.force;
             FX += fx;
             FY += fy;
             MZ += -b * fy - y_r[i] * fx + moment;
             d[E_RR + i] = t.deflection_rate;
-            wheel[i] = vx + p[P_slip_compliance] * pull * fabs(vx);
+            wheel[i] = rolled + p[P_slip_compliance] * pull * fabs(vx);
         }
         for (int i = 0; i < 2; i++) { /* casters, right and left */
             double side = i == 0 ? 1 : -1;

@@ -37,7 +37,7 @@ OUTPUTS = (
     "swivel_l",
     "energy",
 )
-STATES = 17
+STATES = 21
 STEPS_PER_SAMPLE = 50
 
 
@@ -88,6 +88,7 @@ class Chair:
     scrub_viscous: float = 0.0
     turn: float = 0.0
     turn_f: float = 0.0
+    pivot: float = 0.0
     slip_compliance: float = 0.0
     h_x: float = 0.0
     h_y: float = 0.0
@@ -105,6 +106,7 @@ class Chair:
     wobble: float = 0.0
     speed_torque: float = 0.0
     sticky: float = 0.0
+    slippery: float = 0.0  # how much larger 1/mu is on this floor; where it is not zero, rear wheels may spin
     floor: float = 0.0  # rms slope of an uneven floor, along and across
 
 
@@ -125,6 +127,7 @@ class Start:
         s = np.zeros(STATES)
         s[:7] = self.x, self.y, self.yaw, self.u, self.v, self.yaw_rate, self.swivel_r
         s[8] = self.swivel_l
+        s[17:19] = self.u
         return s
 
 

@@ -184,6 +184,10 @@ EFFECTS: dict[str, Effect] = {
         },
         sees="both-ways",  # a circle and a run backward: everyday turns leave M unsure by more than δ
     ),
+    "pivot_torque": Effect(
+        _one("M", "chair.pivot", "N m", 0.5, "each rear wheel where it stands, opposes the yaw rate, nothing once it rolls"),
+        sees="one-handed",
+    ),
     "longitudinal_slip": Effect(
         _one("compliance", "chair.slip_compliance", "1/N", 1e-4, "a driven wheel turns faster than its hub moves")
     ),
@@ -260,6 +264,18 @@ EFFECTS: dict[str, Effect] = {
     ),
     "sticky_axle": Effect(
         _one("D", "chair.sticky", "N", 0.4, "drag of the right rear wheel only while turning right"), catalogued=False
+    ),
+    "slipping_wheels": Effect(
+        _one(
+            "inv_mu",
+            "chair.slippery",
+            "1",
+            1.0,
+            "friction limit is load / (1 + inv_mu), and wheels that are pushed harder spin",
+        ),
+        sees="strong",
+        catalogued=False,
+        of_nobody=True,
     ),
     "uneven_floor": Effect(
         _one("slope", "chair.floor", "rad", 0.001, "rms slope, along and across, in waves of 0.7 to 4 m"),

@@ -111,6 +111,18 @@ def spin(first: float, second: float) -> Draw:
     return program(plan, [(at, -force) for at, force in plan])
 
 
+def one_hand(left: float, right: float, period: float = 3.2) -> Draw:
+    """From rest, push after push of one hand: the chair turns about the wheel that nobody pushes, and stops before the next."""
+
+    def draw(t: np.ndarray, rng: np.random.Generator) -> Push:
+        size = _about(rng, 1.0)
+        phase = np.mod(t - 1.0, period)
+        wave = np.where((t >= 1.0) & (phase < 1.2), np.sin(np.pi * phase / 1.2), 0.0)
+        return size * left * wave, size * right * wave
+
+    return draw
+
+
 def start_stop(left: float, right: float) -> Draw:
     """Forward from rest, roll, pull back into reverse, then forward again."""
     rest = [(2.1, 0.0), (4.2, -26.0), (5.2, 0.0)]
@@ -173,6 +185,29 @@ _NAMES = {"coast-down", "steady-right", "slalom-quick", "random-steps", "holdout
 _PICKED = tuple(r for r in EVERYDAY if r.name in _NAMES)
 MASS = _PICKED + tuple(replace(r, name=f"{r.name}-heavy", added_mass=30.0) for r in _PICKED)
 PRESSURE = _PICKED + tuple(replace(r, name=f"{r.name}-pressure", other_pressure=True) for r in _PICKED)
+ONE_HANDED = (
+    *_PICKED,
+    Run("left-hand", "one hand", "fit", 0.0, 14.0, one_hand(24, 0)),
+    Run("right-hand", "one hand", "fit", 0.0, 14.0, one_hand(0, 26)),
+    Run("holdout-left-hand", "one hand", "holdout", 0.0, 11.0, one_hand(27, 0)),
+)
+STRONG = (
+    Run("coast-down", "coast-down", "fit", 0.3, 11.0, coast(55, 1.2)),
+    Run("strong-strokes", "straight", "fit", 0.5, 9.0, strokes(92, 1.7)),
+    Run(
+        "strong-stop",
+        "start-stop",
+        "fit",
+        0.0,
+        9.0,
+        program([(1, 85.0), (1.8, 0), (4, -80), (4.8, 0)], [(1, 85.0), (1.8, 0), (4, -80), (4.8, 0)]),
+    ),
+    Run("strong-right", "strokes", "fit", 0.6, 8.0, strokes(68, 1.6, left=1.3)),
+    Run("steady-right", "steady turn", "fit", 1.0, 12.0, steady(9.4, 14)),
+    Run("slalom-quick", "slalom", "fit", 1.1, 12.0, slalom(11.0, 23, 2.0)),
+    Run("holdout-slalom", "slalom", "holdout", 1.0, 14.0, slalom(10.4, 17, 2.6)),
+    Run("holdout-strong", "strokes", "holdout", 0.5, 8.0, strokes(80, 1.6, left=1.15)),
+)
 BOTH_WAYS = (*EVERYDAY, BACKWARD, CIRCLE)
 
 SETS: dict[str, tuple[Run, ...]] = {
@@ -182,7 +217,9 @@ SETS: dict[str, tuple[Run, ...]] = {
     "mass": MASS,
     "pressure": PRESSURE,
     "both-ways": BOTH_WAYS,
+    "one-handed": ONE_HANDED,
     "hard": HARD,
+    "strong": STRONG,
     "fierce": FIERCE,
 }
 

@@ -10,7 +10,14 @@ from wheelchair_fmu.errors import CampaignError
 
 from .small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
 
-KNOWN = {"chair.m": (1.0, 500.0), "chair.I_z": (0.0, 100.0), "tyre.C_lambda": (0.0, 1e6), "wheel.R": (0.05, 1.0)}
+IN_SI = "correct it; parameters are in SI units, angles in rad, pressures in bar"
+KNOWN = {
+    "chair.m": (1.0, 500.0),
+    "chair.I_z": (0.0, 100.0),
+    "tyre.C_lambda": (0.0, 1e6),
+    "tyre.pressure": (0.5, 12.0),
+    "wheel.R": (0.05, 1.0),
+}
 
 
 def lines(folder, **more):
@@ -105,6 +112,11 @@ TOML_FAULTS = [
         """line 3: no axes 'ISO8855'; use "SAE-J670" (y right) or "ISO-8855" (y left)""",
     ),
     (
+        "pressure of nothing",
+        lambda h, r: (h + "[tyre]\npressure = 0\n", r),
+        f"line 7: tyre.pressure = 0 is outside 0.5 to 12; {IN_SI}",
+    ),
+    (
         "parameter that is no number",
         lambda h, r: (h.replace("80.0", '"heavy"'), r),
         "line 5: chair.m = 'heavy' is not a finite number; give a number in SI units",
@@ -114,11 +126,7 @@ TOML_FAULTS = [
         lambda h, r: (h + "mass = 80\n", r),
         "line 6: no parameter 'chair.mass'; did you mean 'chair.m' or 'chair.I_z'?",
     ),
-    (
-        "negative mass",
-        lambda h, r: (h.replace("80.0", "-80.0"), r),
-        "line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
-    ),
+    ("negative mass", lambda h, r: (h.replace("80.0", "-80.0"), r), f"line 5: chair.m = -80 is outside 1 to 500; {IN_SI}"),
     (
         "unknown set",
         lambda h, r: (h, r + 'set = { "chair.I_zz" = 3 }\n'),
@@ -127,7 +135,7 @@ TOML_FAULTS = [
     (
         "impossible set",
         lambda h, r: (h, r + 'set = { "chair.m" = 900 }\n'),
-        "line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
+        f"line 23: run 2 (b.csv): chair.m = 900 is outside 1 to 500; {IN_SI}",
     ),
     (
         "unknown prior",
@@ -220,6 +228,43 @@ def test_held_out_samples_that_are_fitted_too(campaign):
         "warning: campaign.toml line 18: run 2 (a.csv) is held out but shares samples with run 1, which is fitted; "
         "separate them by from and to"
     ]
+
+
+CASTERS = {"start.caster_l": (-3.2, 3.2), "start.caster_r": (-3.2, 3.2)}
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ("180", [f"campaign.toml line 18: run 1 (a.csv): start.caster_l = 180 is outside -3.2 to 3.2; {IN_SI}"]),
+        (
+            '"0.5 turn"',
+            [
+                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '0.5 turn' is not a finite number; give a number in SI "
+                "units"
+            ],
+        ),
+        (
+            "0.5",
+            [
+                "note: campaign.toml line 18: run 1 (a.csv): start.caster_l = 0.5 is 29°, as it is in rad; if a share of a "
+                "turn is meant, write 3.1416"
+            ],
+        ),
+        (
+            "-0.25",
+            [
+                "note: campaign.toml line 18: run 1 (a.csv): start.caster_l = -0.25 is -14°, as it is in rad; if a share of a "
+                "turn is meant, write -1.5708"
+            ],
+        ),
+        ("0.48", []),
+    ],
+)
+def test_an_angle_of_a_caster_in_another_unit(campaign, said, told):
+    """Half a turn and 0.5 rad are one number: what a share of a turn would be written as is said to be an angle in rad."""
+    runs = RUNS.replace("u0 = 1.0\n", f"u0 = 1.0\nset = {{ start.caster_l = {said} }}\n", 1)
+    assert lines(campaign(runs=runs), known_parameters=KNOWN | CASTERS) == told
 
 
 # --- recordings ------------------------------------------------------------------------------------------------------
@@ -483,7 +528,7 @@ def test_ten_faults_at_once_give_ten_lines(campaign):
     with pytest.raises(CampaignError) as caught:
         read(folder, KNOWN)
     assert str(caught.value).split("\n") == [
-        "campaign.toml line 5: chair.m = -80 is outside 1 to 500; correct it; parameters are in SI units, angles in rad",
+        f"campaign.toml line 5: chair.m = -80 is outside 1 to 500; {IN_SI}",
         "campaign.toml line 6: no parameter 'chair.I_x'; did you mean 'chair.I_z' or 'chair.m'?",
         "campaign.toml line 25: run 3 (c.csv): no such file; did you mean 'b.csv' or 'a.csv'?",
         "run a.csv line 11 column 'a_y [m/s2]': 'abc' is not a number; write a number, or leave the cell empty for a gap",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import wraps
 from itertools import combinations
 
 import numpy as np
@@ -12,7 +13,7 @@ from wheelchair_fmu.contracts import Subject
 from wheelchair_fmu.contracts.energy import Energy
 from wheelchair_fmu.model.choice import serves
 from wheelchair_fmu.model.effects import bundled
-from wheelchair_fmu.model.stage import Effect, Row, adds
+from wheelchair_fmu.model.stage import Effect, Law, Row, adds
 from wheelchair_fmu.model.wheelchair import Choice, assemble
 from wheelchair_fmu.quantities import KG, M_S, N_M_S, N_S_M, M, N, Parameter, State, Unit
 
@@ -52,6 +53,61 @@ def test_no_two_effects_together_drive_the_chair(chair):
     pairs = list(combinations(chair.subject.effects, 2))
     for i in rng.choice(len(pairs), PAIRS, replace=False):
         assert told(chair.breaches(pairs[i], rng, times=20)) == [], [e.id for e in pairs[i]]
+
+
+@pytest.mark.nightly
+def test_nor_does_any_pair_however_long_one_looks(chair):
+    rng = np.random.default_rng(SEED + 2)
+    for effect in chair.subject.effects:
+        assert told(chair.breaches([effect], rng, times=600)) == [], effect.id
+    for pair in combinations(chair.subject.effects, 2):
+        assert told(chair.breaches(pair, rng, times=40)) == [], [e.id for e in pair]
+
+
+def turned(law: Law) -> Law:
+    """The law with the other sign."""
+
+    @wraps(law)
+    def other(*values):
+        return -law(*values)
+
+    return other
+
+
+DRIVING = {  # by effect, where its power goes: with the other sign there it would drive
+    "aerodynamic_drag": ("F_x",),
+    "caster_friction": ("M_w",),
+    "caster_inertia": ("M_p",),
+    "pivot_torque": ("M_t",),
+    "relaxation_length": ("lam_F",),
+    "rolling_resistance_asymmetry": ("D_w",),
+    "rolling_resistance_speed": ("d_r", "d_f"),
+    "scrub_torque": ("M_z",),
+    "scrub_torque_viscous": ("M_z",),
+    "toe_misalignment": ("v_xw", "v_yw", "F_xr", "F_yr"),
+    "trunk_motion": ("v_xf", "v_xr"),
+    "turn_slip": ("M_t", "M_p"),
+}
+
+
+@pytest.mark.parametrize(("id", "to"), [(id, to) for id, places in DRIVING.items() for to in places])
+def test_a_sign_that_is_wrong_is_found_out(id, to):
+    effect = EFFECTS[id]
+    wrong = [replace(c, law=turned(c.law)) if c.to == to else c for c in effect.contributions]
+    assert wrong != list(effect.contributions)
+    mutant = replace(effect, contributions=tuple(wrong))
+    swivelling = Choice("linear", "swivelling")  # at an ideal caster a torque of the patch does no work
+    chair = Energy(Subject((mutant,), assemble(swivelling, [mutant]), assemble(swivelling)))
+    assert chair.breaches([mutant], np.random.default_rng(SEED), times=600)
+
+
+def test_only_what_moves_no_power_has_no_such_sign():
+    """What reads, weighs, or moves loads or stiffnesses; camber and self-aligning torque take part in no balance of energy."""
+    idle = {"N_r", "N_f", "q_F", "q_M", "q_D", "inv_mu", "fall_x", "fall_y", "g_y", "g_z", "mass_u", "inertia", "phi", "M_lam"}
+    idle |= {"F_t", "y_r", "y_f", "x_r", "x_f", "c"}  # a push, and levers that force and velocity share
+    for id, effect in EFFECTS.items():
+        places = {c.to for c in effect.contributions if not c.to.startswith("read_")}
+        assert places - idle == set(DRIVING.get(id, ())), id
 
 
 Q = Parameter("q", N, "its size", off=0.0, smallest_interesting=0.5, lower=-9.0, upper=9.0, source="chosen")

@@ -10,6 +10,16 @@ from benchmarks.diagnosis.trial import trial
 from benchmarks.independent.hidden import EFFECTS
 
 
+@pytest.mark.nightly
+@pytest.mark.parametrize(("noise", "seed"), [("white", 1), ("ar1", 2)])
+def test_a_patch_that_is_held_where_its_wheel_stands_is_named(noise, seed):
+    """A brush that slides where its bristles are twisted too far, in pushes of one hand; casters are named beside."""
+    found = trial(Case("effect", ("pivot_torque",), 3.0, noise, "one-handed", seed=seed), with_baselines=False)
+    assert "pivot_torque" in named(found) and found["verdict"] in ("missing", "tie")
+    nothing = trial(Case("null", (), 0.0, noise, "one-handed", seed=seed), with_baselines=False)
+    assert "pivot_torque" not in named(nothing)
+
+
 @pytest.mark.parametrize("effect", [pytest.param("gyro_bias", marks=pytest.mark.nightly), "wheel_radius_error"])
 def test_intervals_hold_what_was_hidden(effect):
     """Profile likelihood and block bootstrap, where both simulators mean the same by a parameter; seed 1 of the benchmark."""

@@ -12,6 +12,7 @@ from benchmarks.independent.chair import Chair, Start, simulate
 from benchmarks.independent.manoeuvres import Run, strokes
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.engine.simulate import Simulator
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.initial_state import CASTERS
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
@@ -102,3 +103,10 @@ def test_slow_manoeuvres_come_down_to_the_floor(tmp_path, seed):
     assert all(np.nanmean(e.r**2) < 1.1 for e in (*found.fit.evidence.runs, *found.heldout.runs))
     _, ideal, *_ = Models.of(ModelFactory(campaign, Variant())).calibrated()
     assert ideal.fit.evidence.rms > 2 and ideal.heldout.rms > 2
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("manoeuvres", "noise", "seed"), [("slow", "white", 1), ("slow", "ar1", 4), ("everyday", "white", 1)])
+def test_with_casters_that_swing_on_both_sides_nothing_is_missing(tmp_path, manoeuvres, noise, seed):
+    found = diagnose(read(make(tmp_path / "c", {}, manoeuvres=manoeuvres, noise=noise, seed=seed, chair=AT_PATCHES)), CHAIR)
+    assert found.verdict in ("adequate", "cannot_see", "small") and not found.included

@@ -9,11 +9,14 @@ import casadi as cs
 import numpy as np
 import pytest
 
+from benchmarks.independent.campaigns import make
+from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory, groups_of
 from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.search import joint
 from wheelchair_fmu.inference.search.beginning import begin
 from wheelchair_fmu.inference.search.joint import parted
 from wheelchair_fmu.inference.search.judge import judge
@@ -147,3 +150,16 @@ def test_a_group_of_which_one_does_all_comes_to_that_one(sample):
     (r,) = parted(models, replace(now, candidates=()), judged)
     assert r.effects == () and [c.effect for c in r.candidates] == ["rubs_alone"]
     assert r.candidates[0].estimate[0] == pytest.approx(40.0, abs=3 * r.candidates[0].se[0])
+
+
+def test_a_start_whose_slopes_are_beyond_all_numbers_leads_nowhere(tmp_path, monkeypatch):
+    """Casters with a sharp friction, no trail and an inertia flip by chance, each time another way for any change."""
+    campaign = read(make(tmp_path / "slow", {}, manoeuvres="slow", seed=3))
+    models, base, *_ = Models.of(ModelFactory(campaign, Variant())).calibrated()
+    group = ("caster_friction", "caster_inertia", "caster_trail")
+    sizes = {"caster_friction.M": 0.2, "caster_friction.rate": 0.002, "caster_inertia.I": 0.005, "caster_trail.c": 0.0}
+    values = base.fit.values | {f"effect.{name}": size for name, size in sizes.items()}
+    start = Some(theta=[values[n] for n in models.names(group)])
+    monkeypatch.setattr(joint, "most_promising", lambda *_: [start])
+    with np.errstate(all="ignore"):
+        assert joint._fitted(models, base, group, group) is None

@@ -75,3 +75,79 @@ def test_straight_on_spinning_wheels_are_mass():
     )
     mass = run({"start.u": 1.0, "resistance.f_r": 0.0, "resistance.f_f": 0.0, "chair.m": 85.0}, straight, T=3, among=AMONG)
     np.testing.assert_allclose(spin["chair.u"], mass["chair.u"], atol=1e-9)
+
+
+RUNS = [  # strokes, a turn to each side, a slalom: push of both hands, and what the left pushes more
+    ({"start.u": 0.6}, lambda t: 18 * np.maximum(np.sin(2 * np.pi * t), 0) ** 2, lambda t: 0 * t),
+    ({"start.u": 1.0}, lambda t: 9.4 + 0 * t, lambda t: 7.0 * (t > 1)),
+    ({"start.u": 1.0}, lambda t: 9.4 + 0 * t, lambda t: -7.0 * (t > 1)),
+    ({"start.u": 0.9}, lambda t: 10.5 + 0 * t, lambda t: 10 * np.cos(1.6 * t)),
+]
+FORWARD = {  # parameters and their sizes of interest
+    "effect.aerodynamic_drag.k": 0.2,
+    "effect.camber_misalignment.difference": 0.005,
+    "effect.camber_misalignment.sum": 0.005,
+    "effect.floor_cross_slope.theta": 0.001,
+    "effect.lateral_load_transfer.h": 0.3,
+    "effect.longitudinal_load_transfer.h": 0.3,
+    "effect.push_force_gain.difference": 0.02,
+    "effect.push_force_gain.mean": 0.02,
+    "effect.rolling_resistance_asymmetry.D": 0.4,
+    "effect.rolling_resistance_speed.k": 0.3,
+    "effect.scrub_torque_viscous.d": 0.2,
+    "effect.toe_misalignment.difference": 0.005,
+    "effect.toe_misalignment.sum": 0.005,
+    "effect.wheel_inertia.m": 1.0,
+    "effect.wheel_radius_error.difference": 0.01,
+    "effect.wheel_radius_error.mean": 0.01,
+}
+NOISE = dict(zip(READ, (0.008, 0.008, 0.006, 0.05, 0.05), strict=True))
+
+
+@pytest.fixture(scope="module")
+def seen() -> dict[str, np.ndarray]:
+    """What each does to all readings of these runs, in standard deviations of their noise, at its size of interest."""
+    among = tuple(sorted({name.split(".")[1] for name in FORWARD}))
+
+    def readings(values: dict[str, float]) -> np.ndarray:
+        driven = [
+            run(
+                {**start, **values},
+                {"push.F_rl": lambda t, f=both, d=more: f(t) + d(t), "push.F_rr": lambda t, f=both, d=more: f(t) - d(t)},
+                T=8,
+                n=401,
+                among=among,
+            )
+            for start, both, more in RUNS
+        ]
+        return np.concatenate([result[name] / NOISE[name] for result in driven for name in READ])
+
+    without, share = readings({}), 0.05
+    return {name.removeprefix("effect."): (readings({name: share * d}) - without) / share for name, d in FORWARD.items()}
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "at_least"),
+    [
+        ("aerodynamic_drag.k", "rolling_resistance_speed.k", 0.95),
+        ("longitudinal_load_transfer.h", "wheel_inertia.m", 0.99),
+        ("lateral_load_transfer.h", "scrub_torque_viscous.d", 0.93),
+        ("camber_misalignment.sum", "rolling_resistance_asymmetry.D", 0.95),
+        ("camber_misalignment.sum", "floor_cross_slope.theta", 0.95),
+        ("floor_cross_slope.theta", "rolling_resistance_asymmetry.D", 0.95),
+    ],
+)
+def test_look_alikes_look_alike_forward(seen, one, other, at_least):
+    assert abs(cosine(seen[one], seen[other])) > at_least
+    first, second = (set(bundled()[name.split(".")[0]].alike) for name in (one, other))
+    assert first & second
+
+
+@pytest.mark.parametrize("pair", ["push_force_gain", "toe_misalignment", "wheel_radius_error"])
+def test_sums_and_differences_are_seen_apart(seen, pair):
+    whole = "sum" if f"{pair}.sum" in seen else "mean"
+    assert abs(cosine(seen[f"{pair}.{whole}"], seen[f"{pair}.difference"])) < 0.35
+
+
+def test_forward_nothing_shows_the_difference_of_two_cambers(seen):
+    assert np.linalg.norm(seen["camber_misalignment.difference"]) < 1e-3 * np.linalg.norm(seen["camber_misalignment.sum"])

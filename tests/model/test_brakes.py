@@ -21,6 +21,18 @@ def test_locked_wheels_stop_the_chair_with_their_friction():
         np.testing.assert_allclose(now["read_wheel_speed"], 0, atol=1e-6)
 
 
+def test_the_usual_brake_is_stronger_than_the_tyres_and_locks_them():
+    """300 N where a tyre holds 218 N: all but 1 % of μN is used along the wheel, and of the side grip hardly more is left. The
+    rim is slowed to a fourteenth of the hub's speed; `spinning` has the wheel that stands."""
+    sliding = {**SMOOTH, "start.v": -0.02}
+    now, free = snapshot(sliding, BOTH), snapshot(sliding)
+    np.testing.assert_allclose(free["N_r"], 218.0, atol=0.01)
+    np.testing.assert_allclose(now["braking"], N_R, rtol=0.01)
+    assert -MASS * now["u'"] == pytest.approx(2 * N_R, rel=0.01)
+    assert np.all(np.abs(now["side"]) < 0.01)
+    assert np.all(now["read_wheel_speed"] < 1 / 13)
+
+
 @pytest.mark.parametrize("share", [0.01, 0.1, 0.3])
 def test_a_light_hand_on_the_brake_is_felt_whole(share):
     """Far from the 218 N that a tyre holds, the brake's force is what is said, and side grip hardly less."""

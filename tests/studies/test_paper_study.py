@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -50,6 +51,16 @@ def test_the_turns_radius_is_that_of_the_trim(papers):
         values = scaled(name, 2.0)
         steady = trim(Chair(Variant(Choice(equations="paper")).with_values(values)), 1.0, 10.0)
         assert statements.radius(papers.turn(values)) == pytest.approx(steady.radius, rel=1e-6)
+
+
+def test_what_section_5_neglects_is_as_the_docs_say():
+    rows = re.findall(r"^\|.*\| `(effect\S+)=(\S+)` \| (\S+) m \| (\S+) % \|$", (DOCS / "paper.md").read_text("utf-8"), re.M)
+    assert len(rows) == 3
+    without = trim(Chair(Variant()), 1.0, 10.0).radius
+    for name, value, radius, moved in rows:
+        found = trim(Chair(Variant().with_values({name: float(value)})), 1.0, 10.0).radius
+        assert f"{found:.3f}" == radius
+        assert 100 * (found / without - 1) == pytest.approx(float(moved.replace("−", "-")), abs=0.05)
 
 
 def test_width_and_advance_of_a_slanted_wave():

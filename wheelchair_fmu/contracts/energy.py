@@ -5,8 +5,9 @@ less gravity's and with what goes into the states of laws and effects, is not ab
 chair counts by the equations as they were before each had one rate. Camber and self-aligning torque are left out, as the
 paper's own terms for them take part in no balance of energy.
 
-A tyre that slides takes so much power that it hides what drives. So half of the motions are such that a chair without effects
-loses nothing: no resistance, no brake, and a rear axle that rolls where it points.
+A tyre that slides and a brake take so much power that they hide what drives. So half of the motions are such that a chair
+without effects loses nothing: no resistance, no brake, and a rear axle that rolls where it points. In the others each of what
+takes power is left out half of the time: what the tyres resist sliding with, each axle's rolling resistance, the brakes.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in ea
     "sliding": (0.5, 1.0, 1.0),
 }
 WORK = ("push.", "rider.")  # inputs by which a person does work
-FREE: Mapping[str, float] = {"resistance.f_r": 0.0, "resistance.f_f": 0.0}
+RESISTANCES = ("resistance.f_r", "resistance.f_f")
+HIDING = (*RESISTANCES, "tyre.C_lambda", "caster.C_lambda")  # what takes power, where a chair has it
 
 
 @dataclass(frozen=True)
@@ -79,9 +81,11 @@ class Energy:
     def _anywhere(self, kind: str, on: Collection[Effect], rng: np.random.Generator, free: bool) -> Place:
         p, w = self._values(on, rng), np.array([i.start for i in self._model.inputs])
         if free:
-            p[[self._names.index(n) for n in FREE]] = list(FREE.values())
+            p[self._of(RESISTANCES)] = 0.0
         else:
             w = np.where(self._surroundings, rng.uniform(*self._reach), w)
+            w[self._brakes] *= rng.choice([0.0, 1.0])
+            p[self._of(HIDING)] *= rng.choice([0.0, 1.0], len(self._of(HIDING)))
         x = self._states(KINDS[kind], rng)
         if free:
             x[4] = p[self._names.index("chair.b")] * x[5]  # v = b ψ'
@@ -148,8 +152,16 @@ class Energy:
     @cached_property
     def _off(self) -> np.ndarray:
         p = self.subject.values(0.0)
-        p[[self._names.index(n) for n in NONE]] = 0.0
+        p[self._of(NONE)] = 0.0
         return p
+
+    def _of(self, names: Collection[str]) -> list[int]:
+        """Where those of these parameters are that this model has."""
+        return [i for i, name in enumerate(self._names) if name in names]
+
+    @cached_property
+    def _brakes(self) -> np.ndarray:
+        return np.array([i.name.startswith("brake.") for i in self._model.inputs])
 
     @cached_property
     def _surroundings(self) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""docs/variables.md: every variable of the FMU as it is built by default, from its records.
+"""docs/variables.md: every variable of the FMU, with each effect and each law of casters and wheels, from its records.
 
 `python -m wheelchair_fmu.fmu.variables_page docs/variables.md` writes it.
 """
@@ -6,9 +6,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from ..model.choice import Choice, names
 from ..model.variant import Variant
 from ..writing import written
 from .build import with_chosen_effects
@@ -17,25 +18,52 @@ from .variables import Variable, interface
 
 HEAD = """# The FMU's variables
 
-What the FMU has when it is built by `wheelchair build`: units are SI, axes those of SAE J670 (x forward, y to the right, ψ
-clockwise from above). A tunable parameter may change while a simulation runs, a fixed one not. Beside these it has
-`effect.<id>.<parameter>` for each [effect](effects.md) that is built in, with sizes of zero at the start; states of effects
-and casters are outputs as well. The same tables, with sources, lie in the archive as `documentation/index.html`. The page is
-written by `make docs`.
+What the FMU has: units are SI, axes those of SAE J670 (x forward, y to the right, ψ clockwise from above). A tunable parameter
+may change while a simulation runs, a fixed one not. The first tables are of what every FMU has; then come the parameters of the
+[effects](effects.md) that `wheelchair build` builds in, all off at the start; what `--effects` adds to them; and what other
+[laws](physics.md) of casters and wheels bring. The same tables, with sources, lie in each archive as
+`documentation/index.html`, of what is in it. The page is written by `make docs`.
 """
+BUILT_IN = """Sizes are zero at the start, and with a size of zero an effect does nothing. With `--effects none` an FMU has none
+of these, with `--effects` and ids separated by commas those that are named."""
+MORE = """Effects that bring states of their own, or casters that swing. `--effects all` builds in every one,
+`--effects relaxation_length,caster_trail` these two. Their states are outputs."""
+LAWS = """A variant's file chooses laws (`[laws]`, then `caster = "slipping"` or `wheel = "spinning"`), and
+`wheelchair build --variant FILE` builds it. What one law of a kind has in common with another is listed once."""
 GROUPS = (("Inputs", "input"), ("Parameters", "parameter"), ("Outputs", "output"))
 COLUMNS = "| name | unit | start | bounds | what it is |\n|---|---|---|---|---|"
 
 
 def page() -> str:
     """The whole page."""
-    face = interface(with_chosen_effects(Variant()))
-    tables = (f"## {title}\n\n{_table(v for v in face.of(kind) if not _of_effect(v))}" for title, kind in GROUPS)
-    return "\n\n".join([HEAD.rstrip(), *tables]) + "\n"
+    return "\n\n".join([HEAD.rstrip(), *_sections()]) + "\n"
 
 
-def _of_effect(variable: Variable) -> bool:
-    return variable.name.startswith("effect.")
+def _sections() -> Iterator[str]:
+    seen: set[str] = set()
+    yield from _tables(Variant(), "none", seen)
+    yield f"## Effects that are built in\n\n{BUILT_IN}"
+    yield from _tables(Variant(), "default", seen, level=3)
+    yield f"## With more effects\n\n{MORE}"
+    yield from _tables(Variant(), "all", seen, level=3)
+    yield f"## With other laws\n\n{LAWS}"
+    for kind in ("caster", "wheel"):
+        for name in names()[kind]:
+            law = Variant(Choice().with_laws({kind: name}))
+            tables = list(_tables(law, "none", seen, level=4))
+            if tables:
+                yield f'### `{kind} = "{name}"`'
+                yield from tables
+
+
+def _tables(variant: Variant, effects: str, seen: set[str], level: int = 2) -> Iterator[str]:
+    """What this variant with these effects has that was not listed yet; it is added to what was."""
+    face = interface(with_chosen_effects(variant, effects))
+    for title, kind in GROUPS:
+        new = [v for v in face.of(kind) if v.name not in seen]
+        seen.update(v.name for v in new)
+        if new:
+            yield f"{'#' * level} {title}\n\n{_table(new)}"
 
 
 def _table(variables: Iterable[Variable]) -> str:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from tests.model.effects.chair import C_LAMBDA, C_M_LAMBDA, I_Z, MASS, SMOOTH, T_R, TOP, A, B, G, run, snapshot
+from wheelchair_fmu.handling.trim import Chair, trim
+from wheelchair_fmu.model.variant import Variant
 
 ALL = (
     "aerodynamic_drag",
@@ -204,6 +206,23 @@ def test_a_patch_on_a_wide_arc_resists_by_its_curvature(u):
     ]
     hub = radius + np.array([T_R / 2, -T_R / 2]) * np.sign(u)
     np.testing.assert_allclose(torque, -M * L / hub, rtol=1e-3)
+
+
+@pytest.mark.effect("turn_slip")
+@pytest.mark.parametrize(("u", "wider"), [(1.0, (0.10, 0.17)), (0.5, (0.45, 0.55))])
+def test_patches_that_take_some_newton_metres_on_the_spot_leave_a_turn_nearly_as_it_was(u, wider):
+    """The paper's turn, 10 N to each side: 10 to 17 % wider at 1 m/s and half as much again at 0.5 m/s, where 5 N m that do not
+    fall with the radius would make it ten times as wide."""
+
+    def radius(**torque):
+        values = {f"effect.{id}.M": torque.get(id, 0.0) for id in ("turn_slip", "scrub_torque")}
+        return trim(Chair(Variant().with_values(values)), u, 10.0).radius
+
+    without = radius()
+    assert wider[0] < radius(turn_slip=2.5) / without - 1 < wider[1]
+    assert radius(scrub_torque=5.0) > 10 * without
+    if u == 1.0:
+        assert radius(scrub_torque=5.0) == pytest.approx(36.2, abs=0.1)
 
 
 @pytest.mark.effect("turn_slip")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from math import degrees, pi
 from typing import Any
 
-from ...faults import SHOWN, WARNING, Fault, suggestion
+from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
 from ...model.former import clash, former, renamed
 from ...units import UnitError
@@ -21,6 +22,8 @@ from ..noise import NAMES as NOISE_NAMES
 from ..recorded import PUSHES_CLOCK
 from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
 
+CASTERS = ("start.caster_l", "start.caster_r")
+TURNS = (0.25, 0.5)  # what a quarter and half a turn would be written as; a caster turned by more is turned the other way
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
 FARTHEST = 2.0  # m from the centre of mass, of anything on a chair
@@ -366,7 +369,10 @@ def _parameter(
         lower, upper = known[name]
         if not lower <= plain <= upper:
             fact = f"{title}{name} = {plain:g} is outside {lower:g} to {upper:g}"
-            yield doc.fault(path, fact, "correct it; parameters are in SI units, angles in rad", place)
+            yield doc.fault(path, fact, "correct it; parameters are in SI units, angles in rad, pressures in bar", place)
+        elif name in CASTERS and abs(plain) in TURNS:
+            fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
+            yield doc.fault(path, fact, f"if a share of a turn is meant, write {2 * pi * plain:.4f}", place, NOTE)
 
 
 def bad_column(doc: Document, known: Known | None) -> Iterator[Fault]:

@@ -29,6 +29,7 @@ from ..models.factory import CALIBRATED, MEASURED, ModelFactory
 from ..models.models import Models, quiet
 from ..models.setting import Setting
 from ..policy import DEFAULT, SearchPolicy
+from ..preflight.slipping import rolling
 from ..preflight.timing import Late, clocks, unlike_the_others
 from ..residual.lead import lead
 from ..residual.staircase import Step
@@ -127,17 +128,18 @@ def diagnose(
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words, and `stepped` the staircase whenever it has changed.
+    what is being done, in words, and `stepped` the staircase whenever it has changed. Runs in which wheels slipped are left out
+    where wheels roll by the variant's law.
     """
     began = time.monotonic()
-    campaign = windows(campaign)
-
-    models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
+    variant = variant or Variant()
+    campaign, slipped = rolling(windows(campaign), variant)
+    models = Models.of(ModelFactory(campaign, variant, frozenset(fixed), calibrated), policy, progress)
     found = _diagnosed(models, generic or {}, experiments, stepped)
     found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    notes = (*found.notes, *worsened(found.ladder))
+    notes = (*slipped, *found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
