@@ -93,6 +93,7 @@ def test_a_member_is_tried_beside_those_that_it_acts_through():
         parameters=lambda e: tuple(n for n in SIZES if e in (TOGETHER, n.split(".")[1])),
         linear=lambda e: e != TOGETHER,
         records={p.name: p for effect in (LEAN, RUBS) for p in effect.owned},
+        unfitted=lambda names: np.zeros(len(names)),
     )
     product = Some(resimulated=lambda known, at: Some(r=-at.get(ANGLE_NAME, 0.0) * at.get(DRAG_NAME, 0.0) * w))
     known = Some(r=0 * w)

@@ -29,7 +29,7 @@ from ..models.factory import CALIBRATED, MEASURED, ModelFactory
 from ..models.models import Models, quiet
 from ..models.setting import Setting
 from ..policy import DEFAULT, SearchPolicy
-from ..preflight.slipping import rolling
+from ..preflight.slipping import slipped
 from ..preflight.timing import Late, clocks, unlike_the_others
 from ..residual.lead import lead
 from ..residual.staircase import Step
@@ -128,18 +128,18 @@ def diagnose(
 
     The variant's own effects are in the model from the start, and estimated anew. `generic` are the terms of the leftover
     test, `experiments` the runs that could be made next, `fixed` the parameters that nobody estimates. `progress` is told
-    what is being done, in words, and `stepped` the staircase whenever it has changed. Runs in which wheels slipped are left out
-    where wheels roll by the variant's law.
+    what is being done, in words, and `stepped` the staircase whenever it has changed. Where wheels slipped that roll by the
+    variant's law, nothing is looked for.
     """
     began = time.monotonic()
-    variant = variant or Variant()
-    campaign, slipped = rolling(windows(campaign), variant)
-    models = Models.of(ModelFactory(campaign, variant, frozenset(fixed), calibrated), policy, progress)
+    campaign = windows(campaign)
+
+    models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
     found = _diagnosed(models, generic or {}, experiments, stepped)
     found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
     if found.verdict == "outside" and experiments:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    notes = (*slipped, *found.notes, *worsened(found.ladder))
+    notes = (*found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
@@ -199,7 +199,7 @@ def _diagnosed(
     already."""
     beginning, found = _climbed(models, stepped)
     models, rounds, base = found.models, found.rounds, found.top.fit
-    left, proposal = leftover(found, generic)
+    left, proposal = leftover(found, generic if models.factory.catalogue.keys() - models.factory.own else {})
     included, ladder = found.effects, found.ladder
     if proposal is not None:
         included, proposal, ladder = settled(found, generic, proposal)
@@ -245,16 +245,26 @@ def _named(verdict: str, effects: Sequence[str], ties: Sequence[Sequence[str]], 
 
 def _climbed(models: Models, stepped: Callable[[Sequence[Step]], None]) -> tuple[Beginning, Selection]:
     """Where a search began, and how it ended; once again where its last model shows that pushes are a little early or late."""
-    first = begin(models)
+    first = _where_wheels_roll(begin(models))
     found = selection(first, stepped).to_the_top()
     named = (*found.named(), *found.already)
     late = late_by_slopes(found.models, found.effects, named, found.top.fit)
     if not late:
         return first, found
-    again = begin(replace(found.models, factory=found.models.factory.retimed(late)))
+    again = _where_wheels_roll(begin(replace(found.models, factory=found.models.factory.retimed(late))))
     notes = tuple(dict.fromkeys((*first.notes, *again.notes)))
     again = replace(again, notes=notes, retimed={**first.retimed, **late, **again.retimed})
     return again, selection(again, stepped).to_the_top()
+
+
+def _where_wheels_roll(first: Beginning) -> Beginning:
+    """The same with nothing to look for where wheels slipped that roll by law: a search would find effects that seem to make up
+    for it, one after another."""
+    models = first.models
+    said = slipped(models.campaign, models.factory.variant)
+    if not said:
+        return first
+    return replace(first, models=replace(models, factory=models.factory.narrowed()), notes=(*first.notes, *said))
 
 
 def _notes(

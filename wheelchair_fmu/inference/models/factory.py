@@ -197,6 +197,15 @@ class ModelFactory:
         """The same with more effects in the catalogue."""
         return replace(self, chair=replace(self.chair, catalogue={**self.catalogue, **more}))
 
+    @property
+    def own(self) -> frozenset[str]:
+        """The effects that the chair and the campaign have."""
+        return frozenset((*self.variant.effects, *self.campaign.effects))
+
+    def narrowed(self) -> ModelFactory:
+        """The same with no effect to look for: only its `own` are in the catalogue."""
+        return replace(self, chair=replace(self.chair, catalogue={e: r for e, r in self.catalogue.items() if e in self.own}))
+
     def led(self) -> ModelFactory:
         """The same of where the chair rolls, with every run led along the forces that nobody recorded."""
         return replace(self, campaign=moving(self.campaign), leads=True)

@@ -8,7 +8,7 @@ of a second the rim changes its speed by more than its hub does. What the floor 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -37,19 +37,12 @@ class Slipping:
     held: float
 
 
-def rolling(campaign: Campaign, variant: Variant) -> tuple[Campaign, tuple[str, ...]]:
-    """The campaign without the runs in which wheels slipped, and a sentence on these, where wheels roll by the variant's law.
-
-    Where no run to be fitted would be left, it keeps them.
-    """
+def slipped(campaign: Campaign, variant: Variant) -> tuple[str, ...]:
+    """A sentence on the runs in which wheels slipped, if there are any, where wheels roll by the variant's law."""
     if variant.choice.wheel != "rolling" or variant.choice.equations == "paper":
-        return campaign, ()
+        return ()
     found = [s for run in campaign.runs if (s := slipping(run, campaign, variant))]
-    slipped = {s.run for s in found}
-    kept = tuple(run for run in campaign.runs if run.name not in slipped)
-    left = any(run.role == "fit" for run in kept)
-    notes = (_words(found, left),) if found else ()
-    return (replace(campaign, runs=kept) if slipped and left else campaign), notes
+    return (_words(found),) if found else ()
 
 
 def slipping(run: Run, campaign: Campaign, variant: Variant) -> Slipping | None:
@@ -94,12 +87,12 @@ def _change(series: np.ndarray) -> np.ndarray:
     return (series[WITHIN:] - series[:-WITHIN]) / OVER
 
 
-def _words(found: Sequence[Slipping], others: bool) -> str:
+def _words(found: Sequence[Slipping]) -> str:
     runs = ", ".join(f"{s.run} ({s.share:.0%} of the time)" for s in found)
     held = float(np.median([s.held for s in found]))
-    follows = "they are left out" if others else "no verdict can be trusted"
     return (
         f"{runs}: a rear wheel changed its speed there as the chair did not, so it slipped, as on a floor whose friction holds "
-        f"about {held:.2f} of the wheel's load; wheels of this model roll, so {follows}; the law of wheels that slip is "
-        f'wheel = "spinning" in the [laws] of a variant, with tyre.mu = {held:.2f}'
+        f"about {held:.2f} of the wheel's load; wheels of this model roll, so no effect is looked for, as it could only make "
+        f'up for that; leave these runs out, or take the law of wheels that slip: wheel = "spinning" in the [laws] of a variant, '
+        f"with tyre.mu = {held:.2f}"
     )
