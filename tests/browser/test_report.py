@@ -290,13 +290,55 @@ def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
     return file
 
 
+def words_of(reader: Reader, file: Path) -> list[str]:
+    """What is wrong with the words of a figure's file: cut off, over one another, or less than six points high."""
+    page = reader.context.new_page()
+    page.goto(file.as_uri())
+    wrong = page.evaluate(Path(__file__).with_name("sheet.js").read_text())
+    page.close()
+    return list(wrong)
+
+
+def table_of(reader: Reader, figure: str, folder: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(taken(reader, figure, "CSV", folder).read_text(encoding="utf-8").splitlines()))
+
+
+def test_tables_hold_the_numbers_of_the_diagnosis(open_report, tmp_path):
+    open_report.set(MODELS["calibrated"])
+    stairs = table_of(open_report, "staircase", tmp_path)
+    assert [(float(r["fitted runs"]), float(r["held-out runs"])) for r in stairs] == [
+        (s["fit"], s["heldout"]) for s in TOLD["ladder"]
+    ]
+    sizes = {f"effect.{r['effect']}.{n}": p for r in TOLD["ranking"] for n, p in r["parameters"].items()}
+    for row in table_of(open_report, "forest", tmp_path):
+        told = sizes[row["parameter"]]
+        assert (float(row["estimate"]), row["unit"]) == (told["estimate"], told["unit"])
+        assert float(row["se"] or "nan") == pytest.approx(told["se"] if told["se"] is not None else np.nan, nan_ok=True)
+        assert float(row["in sizes of interest"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
+    for row in table_of(open_report, "calibration", tmp_path):
+        told = TOLD["calibration"][row["parameter"]]
+        assert [float(row[k]) for k in ("fitted", "se", "given", "sd")] == [
+            told[k] for k in ("value", "se", "prior", "prior_sd")
+        ]
+    cells = open_report.table()
+    for row in table_of(open_report, "where", tmp_path):
+        assert float(row["error, noise = 1"]) == pytest.approx(cells[row["run"]][row["channel"]])
+    open_report.page.wait_for_function("n => report.steps.size === n", arg=len(TOLD["models"]))
+    last = [r for r in table_of(open_report, "physical", tmp_path) if r["step"].startswith("with ")]
+    for row, (channel, told) in zip(last, TOLD["physical"].items(), strict=True):
+        assert float(row["RMS error"]) == pytest.approx(told["heldout_rms"], rel=0.01), channel
+
+
 @pytest.mark.parametrize(
     "figure",
     [
         "staircase",
         "overlay",
         "joint",
-        *(pytest.param(f, marks=pytest.mark.nightly) for f in ("where", "path", "regimes", "forest", "physical", "profiles")),
+        *(
+            pytest.param(f, marks=pytest.mark.nightly)
+            for f in ("where", "path", "regimes", "forest", "physical", "profiles", "calibration")
+        ),
     ],
 )
 def test_every_figure_can_be_published(open_report, figure, tmp_path):
@@ -313,6 +355,7 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
                 assert "NaN" not in content.decode() and "undefined" not in content.decode()
                 fonts = re.findall(r"font-weight:(\w+);src:url\(data:font/ttf;base64,", content.decode())
                 assert fonts == ["normal", "bold"]
+                assert words_of(open_report, file) == []
             if kind == "PNG":
                 with Image.open(file) as picture:
                     assert picture.width == round(mm / 25.4 * 400)
