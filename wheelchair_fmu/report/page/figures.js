@@ -13,6 +13,7 @@ import { staircase } from "page/staircase";
 import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
+const LATE = 10; // samples from the end of a run
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
 
 /** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
@@ -28,6 +29,8 @@ export class Figures {
     this.add("forest", "Sizes of effects, with their 95 % intervals", this.sizes());
     if (campaign.diagnosis.calibration && Object.keys(campaign.diagnosis.calibration).length) this.add("calibration", "Calibrated values beside what was given", this.calibrated());
     else byId("calibration").remove();
+    if (this.ladder.some((s) => s.channels)) this.add("physical", "The error in the sensors' own units", this.units());
+    else byId("physical").remove(); // an older diagnosis
     this.landscape();
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
@@ -54,7 +57,6 @@ export class Figures {
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
     this.add("regimes", "The error against what was going on", this.moments());
-    this.add("physical", "The error in the sensors' own units", this.units());
     this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
   }
 
@@ -170,8 +172,8 @@ export class Figures {
       caption: () => {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";
-        const apart = measured ? Math.hypot(model.x.at(-1) - measured.x.at(-1), model.y.at(-1) - measured.y.at(-1)) : NaN;
-        return `Solid: where the sensors say the chair went; dashed: the model.${Number.isFinite(apart) ? ` At the end they are ${significant(apart, 2)} m apart.` : ""}`;
+        const last = measured ? measured.x.findLastIndex((v, i) => Number.isFinite(v + measured.y[i])) : -1;
+        return `Solid: where the sensors say the chair went; dashed: the model.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
       },
     };
   }
@@ -234,14 +236,14 @@ export class Figures {
   }
 
   units() {
-    const rows = () => this.app.physical();
+    const all = this.app.physical();
     return {
       draw: (width, look) => {
-        const all = rows(), shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
+        const shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
         return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
       },
-      columns: () => { const cells = rows().flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
-      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.${this.missed(rows())}`,
+      columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
+      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.${this.missed(all)}`,
     };
   }
 
@@ -267,7 +269,7 @@ export class Figures {
     this.against = against(campaign.regimes, campaign.runs, app.results, app.shown.channel);
     this.heats();
     for (const id of ["path", "overlay", "where"]) this.all[id].said();
-    for (const id of ["staircase", "physical", "regimes"]) this.all[id].redraw();
+    for (const id of ["staircase", "regimes"]) this.all[id].redraw();
   }
 
   redraw() {

@@ -32,7 +32,8 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
     for (const [v] of marks) drawn.push(line(across(v), from, across(v), to, v === 0 ? look.faint : look.line));
   }
   for (const [v, words] of marks) drawn.push(text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
-  drawn.push(text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
+  const half = long(shaded, look, 11) / 2 + 2;
+  drawn.push(text(Math.max(half, Math.min(width - half, across(0))), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
   return canvas(width, end + 40, drawn);
