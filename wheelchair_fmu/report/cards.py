@@ -11,6 +11,7 @@ from .told import (
     capital,
     exceeds,
     fall_words,
+    forces_words,
     number,
     odds_words,
     rival_words,
@@ -87,7 +88,7 @@ def _outside(t: Told) -> tuple[str, list[str]]:
 
 
 def _how_sure(t: Told) -> tuple[str, list[str]]:
-    fall, rivals = fall_words(t), rival_words(t)
+    fall, rivals, forces = fall_words(t), rival_words(t), forces_words(t)
     if t.verdict == "tie":
         left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
         errors = {f"{error:.2f}" for error in left.values()}
@@ -96,19 +97,19 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
             together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
         else:
             together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
-        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
+        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t), *forces]
     if t.verdict in ("missing", "small") and t.found:
         large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if len(t.found) > 1 else "it is"
         sure, size = (1 - max(large), "too small") if t.verdict == "small" else (min(large), "large enough")
-        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals]
+        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals, *forces]
     if t.verdict == "outside":
         p = t.diagnosis["leftover"].get("p") if t.diagnosis.get("leftover") else None
         chance = [] if p is None or not t.proposal else [f"Noise alone would give as much with a chance of {_chance(p)}."]
-        return "Sure that something is there, less so what", [fall, *chance, *rivals]
+        return "Sure that something is there, less so what", [fall, *chance, *rivals, *forces]
     seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
     share = f"{len(seen)} of {len(t.rows)}"
     lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
-    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}"]
+    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}", *forces]
 
 
 def _chance(p: float) -> str:

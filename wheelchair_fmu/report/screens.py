@@ -7,7 +7,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from .told import Told, actions, fall_words, near_rivals, rival_words, sized, together_words, why_not
+from .told import (
+    Told,
+    actions,
+    fall_words,
+    forces_words,
+    it,
+    multiple_words,
+    near_rivals,
+    rival_words,
+    sized,
+    together_words,
+    why_not,
+)
 from .words import STILL, listed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
@@ -34,6 +46,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             "lines": [
                 "Over all that was recorded, the calibrated model misses the sensors by hardly more than their noise.",
                 "In some runs and channels it misses more: below the curves, the mean error over half a second shows where.",
+                *forces_words(t),
             ],
         }
     how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"
@@ -41,14 +54,16 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
     if calm:
         return {
             "title": "Here the model errs most, and it is next to nothing",
-            "lines": [*lines, "What remains looks like noise."],
+            "lines": [*lines, "What remains looks like noise.", *forces_words(t)],
         }
-    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part."]}
+    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part.", *forces_words(t)]}
 
 
 def _guess(t: Told) -> dict[str, Any]:
     if t.verdict in ("adequate", "cannot_see"):
         lines = ["Suppose one of these were missing. Which would these runs show?"]
+    elif t.slight:
+        lines = ["Something is there that is too small to matter. Which of these would you say it is?"]
     elif t.verdict == "outside" and not t.found:
         lines = ["Which of these explains it? Try each."]
     else:
@@ -66,7 +81,9 @@ def choices(t: Told) -> list[dict[str, Any]]:
 
 def _answer(t: Told, effect: str) -> str:
     row = t.rows[effect]
-    if t.verdict in ("adequate", "cannot_see") or (t.verdict == "small" and effect in t.found):
+    if t.slight and effect in t.found:
+        return f"Yes, at {multiple_words(t, effect)} the size that would matter."
+    if t.verdict in ("adequate", "cannot_see"):
         if row["power"] >= 0.8:
             return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
         return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
@@ -124,10 +141,11 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "title": "Put one in and watch the error fall",
             "lines": [f"With {each}, the error on {whose} falls to {_comes(t)}."],
         }
-    them = "it" if len(t.found) == 1 else "them"
+    if t.slight:
+        return {"title": f"Put {it(t)} in: hardly anything changes", "lines": [fall_words(t)]}
     watch = "and watch the error fall" if t.falls else "and look where the two curves part"
     return {
-        "title": f"Put {them} in {watch}",
+        "title": f"Put {it(t)} in {watch}",
         "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
     }
 
