@@ -65,6 +65,23 @@ def test_what_forces_brought_down_is_not_told_as_the_work_of_an_effect():
     assert "falls from 0.92 to 0.80" in tale(CASES["with forces"]).cards[1]["lines"][0]
 
 
+def test_a_tie_beside_what_is_sure():
+    """What is sure is no part of the tie; errors that were found along other forces than the last step's are not told."""
+    sure = next(r["effect"] for r in SAMPLE["ranking"] if r["effect"] not in (DRAG, LEAN) and r["values"])
+    ladder = [
+        *SAMPLE["ladder"][:2],
+        LED,
+        {**LED, "step": f"+{sure}", "heldout": 0.88},
+        {**LED, "step": f"+{DRAG}", "heldout": 0.8},
+    ]
+    story = tale(told("tie", [sure, DRAG, LEAN], [[DRAG, LEAN]], ladder=ladder))
+    assert story.cards[0]["lead"] == "One effect, and one of two causes"
+    assert story.cards[1]["lines"][0].startswith("With one rear wheel") and "comes to 0.80" in story.cards[1]["lines"][0]
+    assert "With one rear wheel that rolls harder" in story.screens[2]["lines"][0]
+    assert not any(TITLES[sure] in line.lower() for line in story.screens[3]["lines"])
+    assert [b["error"] for b in story.screens[3]["bars"]] == [0.92, 0.8]
+
+
 def test_of_several_sizes_cards_tell_what_is_seen():
     """The difference of two wheels' lean, of which these runs know nothing, is for the expert's figures."""
     lean = {"sum": {"estimate": 0.025, "se": 0.0005, "unit": "rad", "smallest_interesting": 0.005}}

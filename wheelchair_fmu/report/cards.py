@@ -50,11 +50,13 @@ def _fall_gauge(t: Told) -> dict[str, Any]:
 
 def _what(t: Told) -> tuple[str, list[str]]:
     if t.verdict == "tie":
-        sure = [e for e in t.found if not any(e in tie for tie in t.diagnosis["ties"])]
+        sure = [e for e in t.found if e not in t.tied]
         groups = [
             [sized(t, e) for e in group] for group in grouped(t.diagnosis["effects"], t.diagnosis["ties"]) if len(group) > 1
         ]
         lead = "One of two causes" if len(groups) == 1 and len(groups[0]) == 2 else "One of several causes"
+        if sure:
+            lead = f"{number(len(sure))} {'effect' if len(sure) == 1 else 'effects'}, and {lead[0].lower()}{lead[1:]}"
         return lead, [*(sized(t, e) for e in sure), *(line for group in groups for line in group)]
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
@@ -90,9 +92,9 @@ def _outside(t: Told) -> tuple[str, list[str]]:
 def _how_sure(t: Told) -> tuple[str, list[str]]:
     fall, rivals, forces = fall_words(t), rival_words(t), forces_words(t)
     if t.verdict == "tie":
-        left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
+        left = {e: error for e in t.tied if (error := t.error(e))}
         errors = {f"{error:.2f}" for error in left.values()}
-        if len(left) == len(t.found) > 1 and len(errors) == 1:
+        if len(left) == len(t.tied) > 1 and len(errors) == 1:
             each = "either" if len(left) == 2 else "any of them"
             together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
         else:

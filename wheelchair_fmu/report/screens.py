@@ -90,12 +90,14 @@ def _answer(t: Told, effect: str) -> str:
     comes = t.error(effect)
     error = "" if comes is None else f" The error comes to {comes:.2f}{_once(t, effect)}."
     if effect in t.found:
-        tied = t.verdict == "tie" and any(effect in tie for tie in t.diagnosis["ties"])
+        tied = t.verdict == "tie" and effect in t.tied
         if t.verdict == "outside":
             return f"It helps, but does not suffice.{error}"
         return ("It may be: this or its rival." if tied else "Yes.") + error
     if any(effect == r["effect"] for r in near_rivals(t)):
         return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
+    if comes is None and t.without_forces is not None and row["values"]:
+        return "No: with forces that nobody recorded among the noise, the runs speak less for it."
     if comes is None:
         return "No: it would hardly change what is seen in these runs."
     if row["heldout_before"] is not None and row["heldout_before"] - comes < STILL:
@@ -128,7 +130,12 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"With {_helping(t)}, the error on {whose} {verb} from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
-        each = "either" if len(t.found) == 2 else "any of them"
+        known = [e for e in t.tied if t.error(e) is not None]
+        each = (
+            ("either" if len(t.tied) == 2 else "any of them")
+            if known in ([], t.tied)
+            else listed([t.title(e) for e in known], "or")
+        )
         if not t.falls:
             return {
                 "title": "Put one in: these runs hardly change",
@@ -152,7 +159,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
 
 def _comes(t: Told) -> str:
     """What the error comes to with each of a tie."""
-    errors = [error for e in t.found if (error := t.error(e)) is not None] or [t.fall[1]]
+    errors = [error for e in t.tied if (error := t.error(e)) is not None] or [t.fall[1]]
     least, most = f"{min(errors):.2f}", f"{max(errors):.2f}"
     return least if least == most else f"between {least} and {most}"
 
@@ -169,7 +176,7 @@ def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
             "Why not one of them",
-            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.found)],
+            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.tied)],
         )
     elif t.found and t.verdict != "outside":
         title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]
@@ -208,7 +215,7 @@ def _unmoved(t: Told) -> list[str]:
 def bars(t: Told) -> list[dict[str, Any]]:
     """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]. Effects
     that were put in together are one."""
-    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
+    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.error(r["effect"]) is not None]
     groups = list(dict.fromkeys(tuple(t.partners(e)) for e in tried))[:TRIED]
     each = [
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups

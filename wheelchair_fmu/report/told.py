@@ -82,8 +82,17 @@ class Told:
         return next((group for group in self.together if effect in group), [effect])
 
     def error(self, effect: str) -> float | None:
-        """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere."""
-        return self.fall[1] if set(self.found) == set(self.partners(effect)) else self.rows[effect]["heldout_after"]
+        """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere. None where
+        it is not known, or was found along other unrecorded forces than those of the last step."""
+        last = self.diagnosis["ladder"][-1]["step"]
+        if set(self.found) == set(self.partners(effect)) or (self.key == "heldout" and last == f"+{effect}"):
+            return self.fall[1]
+        return None if self.without_forces is not None else self.rows[effect]["heldout_after"]
+
+    @property
+    def tied(self) -> list[str]:
+        """Those found that these runs cannot tell apart."""
+        return [e for e in self.found if any(e in tie for tie in self.diagnosis["ties"])]
 
     @property
     def proposal(self) -> Mapping[str, Any] | None:
