@@ -123,6 +123,12 @@ def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     reader.settle()
     assert page.evaluate("report.values") == start
     page.wait_for_function("() => document.querySelectorAll('.pins tbody tr').length === 2")
+    assert "mass" not in page.inner_text(".pins tbody tr >> nth=1")
+    page.evaluate("report.put({...report.values, 'chair.m': 85})")
+    reader.settle()
+    page.wait_for_function(
+        "() => document.querySelector('.pins tbody tr:nth-child(2)').innerText.includes('mass m of chair and user 85')"
+    )
     page.wait_for_function("text => document.querySelector('.pins tbody td').innerText === text", arg=f"{TOP['heldout']:.2f}")
     page.click("[aria-label='go to A']")
     reader.settle()
@@ -178,7 +184,12 @@ def test_one_time_for_chair_curves_and_readings(reader):
     zoomed = page.evaluate("[report.timeline.from, report.timeline.to]")
     length = page.evaluate("report.timeline.time.at(-1)")
     assert zoomed == pytest.approx([0.2 * length, 0.5 * length], abs=0.02 * length)
-    page.evaluate("report.timeline.zoom(2, 6)")
+    page.evaluate("report.timeline.zoom(2, 6), report.timeline.go(4)")
+    page.wait_for_function("""() => document.querySelectorAll('.now-line').length === 2 && [...document.querySelectorAll('.now-line')].every((line) => {
+        const { left, width } = line.parentNode.getBoundingClientRect();
+        return Math.abs((line.getBoundingClientRect().left - left) / width - 0.5) < 0.01;
+    })""")  # half way from 2 to 6
+    page.evaluate("report.timeline.go(3)")
     page.check(f"#effect-{HIDDEN}")
     reader.settle()
     assert page.evaluate("report.timeline.plots.map(p => [p.scales.x.min, p.scales.x.max])") == [[2, 6], [2, 6]]

@@ -43,10 +43,13 @@ export function withError(estimate, se, record) {
   return `${unsigned(minus(value.toFixed(Math.min(place, 8))))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
 }
 
+/** A size, or zero where a fit has left next to nothing of it. */
+export const settled = (value, record) => (record.delta && Math.abs(value) < 1e-6 * record.delta ? 0 : value);
+
 /** A value in the unit it is shown in. */
 export function inUnit(value, record, digits = 3) {
   const { unit, factor } = display(record), suffix = unitText(unit);
-  return `${significant(value * factor, digits)}${suffix && suffix !== "°" ? " " : ""}${suffix}`;
+  return `${significant(settled(value, record) * factor, digits)}${suffix && suffix !== "°" ? " " : ""}${suffix}`;
 }
 
 /** "−4.2 to 6.8 °": both ends to the digits that tell them apart. */
