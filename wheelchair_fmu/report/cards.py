@@ -86,6 +86,8 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"
     only = [f"The error comes down only where {listed(bent, 'and')} {come} out as nobody would measure it."] if bent else []
+    if bent and not helped:
+        return "A given value that is wrong, or an effect that nobody knows", only
     return "Something that no effect in the catalogue describes", [*helped, *only]
 
 

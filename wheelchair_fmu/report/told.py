@@ -10,7 +10,7 @@ from typing import Any
 from ..inference.decision.verdict import FORCES
 from ..quantities import Quantity
 from .advice import inspect
-from .words import AGAIN, STILL, listed, probability_words, spoken, title_of, to_measure
+from .words import AGAIN, STILL, listed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -277,6 +277,12 @@ def actions(t: Told) -> list[str]:
         return [*look, *also, *measure, f"Put {it(t)} into the model: wheelchair add {' '.join(found)}."]
     if t.verdict == "outside":
         orders = [f"{o['words'][0].upper()}{o['words'][1:]}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
+        if strained(t.diagnosis, t.records) and not t.proposal:
+            return [
+                *measure,
+                *orders,
+                "If it comes out as before, the model lacks something: write the effect as a file of one expression.",
+            ]
         return [
             "Compare the missing force with what you know of the chair.",
             *orders,
