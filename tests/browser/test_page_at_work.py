@@ -352,6 +352,43 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader.close()
 
 
+def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
+    """A tie beside what is sure, forces that nobody recorded, and seven steps."""
+    told = json.loads(DIAGNOSIS.read_text())
+    first, second, third = (r["effect"] for r in told["ranking"][:3])
+    (nominal, calibrated, last), led = told["ladder"], {**told["ladder"][1], "step": "unrecorded forces"}
+    between = [{**calibrated, "step": f"+{r['effect']}"} for r in told["ranking"][3:5]]
+    told |= {
+        "verdict": "tie",
+        "effects": [first, second, third],
+        "ties": [[second, third]],
+        "odds": [{second: 0.9, third: 0.1}],
+    }
+    told["ladder"] = [nominal, calibrated, led, *between, {**last, "step": f"+{first}"}, {**last, "step": f"+{second}"}]
+    told["noise"] |= {"force": 1.0, "moment": 0.2, "body": 0.5, "lasting": 0.5, "mass": 80.0}
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    reader.close()
+
+
+def test_constants_of_laws_have_words_in_figures(browser, tmp_path):
+    told = json.loads(DIAGNOSIS.read_text())
+    told["calibration"]["effect.caster_friction.rate"] = {
+        "value": 0.08,
+        "se": 0.01,
+        "prior": 0.02,
+        "prior_sd": 0.03,
+        "at_bound": False,
+    }
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    assert "Effect." not in reader.page.text_content("#calibration svg")
+    assert "no two bearings" in reader.page.text_content("#calibration svg")
+    reader.close()
+
+
 def test_print_is_two_pages_on_white(browser, report_file):
     reader = Reader(browser, report_file, scheme="dark")
     reader.page.check(f"#effect-{HIDDEN}")

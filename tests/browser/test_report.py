@@ -256,6 +256,13 @@ def test_the_keyboard_reaches_everything(reader):
     page.keyboard.press("ArrowRight")
     reader.settle()
     assert page.evaluate("report.values")[f"effect.{HIDDEN}.D"] > before
+    page.focus("#where button[tabindex='0']")  # of all cells one; arrow keys go on from there
+    assert page.locator("#where td button[tabindex='0']").count() == 1
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowUp")
+    cell = page.evaluate("document.activeElement.getAttribute('aria-label')")
+    page.keyboard.press("Enter")
+    assert page.evaluate("report.campaign.runs[report.shown.run].name") == cell.split(",")[0]
     page.focus("#run")
     page.keyboard.press("ArrowUp")
     assert page.evaluate("report.shown.run") == int(page.input_value("#run"))

@@ -23,6 +23,7 @@ const WRITTEN = 250; // ms after which the address follows
 const AT_ONCE = 100; // ms within which what follows a movement is seen as part of it
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
+const LONG = 900, STEPS = 4; // letters above the fold, and steps of the staircase, that fill two pages in letters of the usual size
 const DEEP = 60; // changes that can be undone
 const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
@@ -375,6 +376,11 @@ class App {
     byId("link").addEventListener("click", () => this.copy());
   }
 
+  /** Does it have so much to tell that two printed pages take smaller letters? */
+  get long() {
+    return byId("verdict").innerText.length > LONG || this.campaign.diagnosis.ladder.length > STEPS;
+  }
+
   /** The address follows, when things rest. */
   write() {
     clearTimeout(this.writing);
@@ -476,6 +482,7 @@ addEventListener("beforeprint", () => {
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
+  document.documentElement.toggleAttribute("data-long", app.long);
   sheet?.remove();
   if (app.timeline?.result) app.figures.all.overlay.drawing.after(sheet = h("div", { class: "paper" }, app.figures.all.overlay.says.draw(900, look())));
 });

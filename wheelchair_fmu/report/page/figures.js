@@ -57,7 +57,7 @@ export class Figures {
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
     this.add("regimes", "The error against what was going on", this.moments());
-    this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
+    this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1; arrow keys go from cell to cell", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
   }
 
   stairs() {
@@ -93,7 +93,7 @@ export class Figures {
   }
 
   calibrated() {
-    const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
+    const { calibration } = this.campaign.diagnosis, records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
       const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };

@@ -22,6 +22,7 @@ export class Heat {
     place.replaceChildren(h("div", { class: "wide plainly", tabindex: 0, role: "region", "aria-label": caption },
       h("table", { class: "heat" }, h("caption", { class: "unseen" }, caption), h("thead", {}, h("tr", {}, h("td"), heads.map((t) => h("th", { scope: "col" }, t)))), this.body)));
     this.cells = [];
+    this.body.addEventListener("keydown", (event) => this.moved(event));
     new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; }).observe(place);
   }
 
@@ -34,17 +35,39 @@ export class Heat {
       if (made.note && made.note.textContent !== cell.note) made.note.textContent = cell.note;
       if (made.strong !== strong) made.cell.style.setProperty("--loud", (made.strong = strong));
       if (chosen) made.cell.toggleAttribute("data-chosen", chosen(cell.at));
+      if (chosen?.(cell.at)) this.reach(i, j);
     }));
+  }
+
+  /** Of all cells one is reached by the tab key; from there arrow keys go on. */
+  reach(i, j) {
+    const [was, now] = [this.reached, this.cells[i][j].figure];
+    if (was === now) return;
+    if (was) was.tabIndex = -1;
+    now.tabIndex = 0;
+    this.reached = now;
+  }
+
+  moved(event) {
+    const way = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowDown: [1, 0], ArrowUp: [-1, 0] }[event.key], i = this.cells.findIndex((row) => row.some((c) => c.figure === event.target));
+    if (!way || i < 0) return;
+    const [row, column] = [i + way[0], this.cells[i].findIndex((c) => c.figure === event.target) + way[1]];
+    event.preventDefault();
+    if (!this.cells[row]?.[column]) return;
+    this.reach(row, column);
+    this.reached.focus();
   }
 
   build(rows, shape) {
     this.shape = shape;
+    this.reached = null;
     this.cells = rows.map((row) => row.cells.map((cell) => {
-      const figure = h(this.choose ? "button" : "span", this.choose ? { type: "button", class: "plain", "aria-label": cell.label, onclick: () => this.choose(cell.at) } : {});
+      const figure = h(this.choose ? "button" : "span", this.choose ? { type: "button", class: "plain", tabindex: -1, "aria-label": cell.label, onclick: () => this.choose(cell.at) } : {});
       const note = cell.note === undefined ? null : h("small");
       return { figure, note, cell: h("td", {}, figure, note) };
     }));
     this.body.replaceChildren(...rows.map((row, i) => h("tr", {}, h("th", { scope: "row" }, row.name, row.note ? h("small", {}, row.note) : null), this.cells[i].map((c) => c.cell))));
+    if (this.choose && this.cells[0]?.length) this.reach(0, 0);
   }
 }
 
