@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -97,11 +98,14 @@ def test_figures_are_handed_out_whole(page: Page) -> None:
                     "createImageBitmap(files.find(b => b.type === 'image/png')).then(p => { globalThis.picture = p; })"
                 )
                 dark = page.evaluate(DARK)
-                assert dark["width"] == round(85 / 25.4 * 400) and dark["corner"] == [255, 255, 255] and dark["share"] > 0.005
+                assert dark["width"] == round(85 / 25.4 * 400) and min(dark["corner"]) > 250 and dark["share"] > 0.005
 
 
 def test_print_is_two_pages(page: Page) -> None:
-    assert len(re.findall(rb"/Type\s*/Page\b", page.printed())) == 2
+    """Cairo packs its objects: they are read where they unpack."""
+    streams = re.findall(rb"/ObjStm.*?stream\r?\n(.*?)\s*endstream", page.printed(), re.DOTALL)
+    objects = b"".join(zlib.decompressobj().decompress(stream) for stream in streams)
+    assert len(re.findall(rb"/Type\s*/Page\b", objects)) == 2
 
 
 def test_arrow_keys_and_undo(page: Page) -> None:
