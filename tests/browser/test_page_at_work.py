@@ -357,6 +357,8 @@ def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
     told = json.loads(DIAGNOSIS.read_text())
     first, second, third = (r["effect"] for r in told["ranking"][:3])
     (nominal, calibrated, last), led = told["ladder"], {**told["ladder"][1], "step": "unrecorded forces"}
+    turns = {**led["channels"]["yaw_rate"], "heldout": 2.5, "heldout_rms": 0.9}
+    led["channels"] = {**led["channels"], "yaw_rate": turns}
     between = [{**calibrated, "step": f"+{r['effect']}"} for r in told["ranking"][3:5]]
     told |= {
         "verdict": "tie",
@@ -370,6 +372,7 @@ def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
     assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    assert "missed by 0.90 °/s before" in reader.page.inner_text(".cards")  # what forces brought down is no effect's work
     reader.close()
 
 

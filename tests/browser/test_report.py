@@ -377,11 +377,12 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
     assert len({len(r) for r in rows}) == 1
 
 
-def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path):
+@pytest.mark.parametrize("name", ["輪椅", "مقعد"])  # not in the fonts; in them, but joined from right to left
+def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path, name):
     content = unpacked(report_file.read_text(encoding="utf-8"))
-    content["name"] = "輪椅"
-    story = Story([{"head": "What", "lead": "輪椅", "lines": []}] * 3, content["story"]["screens"])
-    (tmp_path / "odd.html").write_text(page_of(content, "輪椅", [], story), encoding="utf-8")
+    content["name"] = name
+    story = Story([{"head": "What", "lead": name, "lines": []}] * 3, content["story"]["screens"])
+    (tmp_path / "odd.html").write_text(page_of(content, name, [], story), encoding="utf-8")
     reader = Reader(browser, tmp_path / "odd.html")
     written = taken(reader, "staircase", "PDF 85 mm", tmp_path).read_bytes()
     assert b"/Subtype /Image" in written and not re.search(EMBEDDED, written)

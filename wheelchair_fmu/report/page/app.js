@@ -187,7 +187,7 @@ class App {
 
   /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
   fallen() {
-    const { begins, models } = this.campaign.diagnosis, [from, to] = [begins, models.at(-1).step];
+    const { begins, models } = this.campaign.diagnosis, [from, to] = [this.forces ? FORCES : begins, models.at(-1).step];
     if (from === to) return;
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
