@@ -10,7 +10,7 @@ import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
 import { UNSEEN, between, degrees, display, inUnit, rms, significant, toPlace, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const LATE = 10; // samples from the end of a run
@@ -47,12 +47,12 @@ export class Figures {
   /** What figures of the whole campaign are of. */
   whole() {
     const { name, runs } = this.campaign, held = runs.filter((r) => r.role === "holdout").length;
-    return `${name}, ${runs.length === 1 ? "one run" : `${runs.length} runs`}${held ? `, ${held} of them held out` : ""}`;
+    return `${isolated(name)}, ${runs.length === 1 ? "one run" : `${runs.length} runs`}${held ? `, ${held} of them held out` : ""}`;
   }
 
   /** Those that need the model. */
   alive() {
-    const { campaign, app } = this, subject = () => `${campaign.name}, ${runOf(campaign.runs[app.shown.run])}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
+    const { campaign, app } = this, subject = () => `${isolated(campaign.name)}, ${runOf(campaign.runs[app.shown.run])}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
     this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
