@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import time
+from base64 import b64decode
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -58,6 +59,10 @@ class Page:
         while not self.evaluate(f"Boolean({expression})"):
             assert time.monotonic() < until, f"never: {expression}"
             time.sleep(0.1)
+
+    def printed(self) -> bytes:
+        """The page as PDF, on the paper that its style sheet asks for."""
+        return b64decode(self._ask("browsingContext.print", context=self._context, background=True)["data"])
 
     def close(self) -> None:
         self._ask("browsingContext.close", context=self._context)

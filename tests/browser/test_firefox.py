@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,14 @@ pytestmark = pytest.mark.nightly
 TOLD = json.loads(DIAGNOSIS.read_text())
 HIDDEN = "rolling_resistance_asymmetry"
 SETTLED = "window.report?.settled && !report.running && !report.fitting"
+DARK = """(() => {
+    const canvas = new OffscreenCanvas(picture.width, picture.height), context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    const {data} = context.getImageData(0, 0, picture.width, picture.height);
+    let dark = 0;
+    for (let i = 0; i < data.length; i += 4) dark += data[i] + data[i + 1] + data[i + 2] < 300;
+    return {width: picture.width, corner: [...data.slice(0, 3)], share: dark / (data.length / 4)};
+})()"""
 TABLE = """report.results.map(({squares, counts}) => Object.fromEntries(
     Object.keys(squares).map(c => [c, Math.sqrt(squares[c] / counts[c])])))"""
 
@@ -71,13 +81,47 @@ def test_its_figures_are_those_of_chromium(page: Page, browser: Any, report_file
     chromium.close()
 
 
-def test_a_figure_is_handed_out_whole(page: Page) -> None:
-    """What writes PDF runs here too, from the same drawing."""
+def test_figures_are_handed_out_whole(page: Page) -> None:
+    """What writes SVG, PNG and PDF runs here too, from the same drawings; a picture has ink on white."""
     page.evaluate("globalThis.files = [], globalThis.made = URL.createObjectURL, 0")
     page.evaluate("URL.createObjectURL = (blob) => (files.push(blob), made.call(URL, blob)), 0")
-    page.evaluate("[...document.querySelectorAll('#staircase .menu button')].find(b => b.textContent === 'PDF 85 mm').click()")
-    page.wait("files.some(b => b.type === 'application/pdf')")
-    assert page.evaluate("files.find(b => b.type === 'application/pdf').slice(0, 5).text()") == "%PDF-"
+    for figure in ("staircase", "overlay", "joint"):
+        for label, kind in (("PDF 85 mm", "application/pdf"), ("PNG 85 mm", "image/png"), ("SVG 170 mm", "image/svg+xml")):
+            page.evaluate("files.length = 0, 0")
+            button = f"[...document.querySelectorAll('#{figure} .menu button')].find(b => b.textContent === '{label}')"
+            page.evaluate(f"{button}.click()")
+            page.wait(f"files.some(b => b.type === '{kind}')")
+            start = page.evaluate(f"files.find(b => b.type === '{kind}').slice(0, 5).text()")
+            assert start.startswith({"PDF 85 mm": "%PDF-", "PNG 85 mm": "\ufffdPNG", "SVG 170 mm": "<?xml"}[label]), figure
+            if kind == "image/png":
+                page.evaluate(
+                    "createImageBitmap(files.find(b => b.type === 'image/png')).then(p => { globalThis.picture = p; })"
+                )
+                dark = page.evaluate(DARK)
+                assert dark["width"] == round(85 / 25.4 * 400) and min(dark["corner"]) > 250 and dark["share"] > 0.005
+
+
+def test_print_is_two_pages(page: Page) -> None:
+    """Cairo packs its objects: they are read where they unpack."""
+    streams = re.findall(rb"/ObjStm.*?stream\r?\n(.*?)\s*endstream", page.printed(), re.DOTALL)
+    objects = b"".join(zlib.decompressobj().decompress(stream) for stream in streams)
+    assert len(re.findall(rb"/Type\s*/Page\b", objects)) == 2
+
+
+def test_arrow_keys_and_undo(page: Page) -> None:
+    """What a person without a pointer uses: a box by its label's click, a slider by its keys, undoing."""
+    page.evaluate(f"document.getElementById('effect-{HIDDEN}').click()")
+    page.wait(f"report.now.heldout < 1.05 && {SETTLED}")
+    size = f"report.values['effect.{HIDDEN}.D']"
+    before = page.evaluate(size)
+    slider = f"document.getElementById('slider-effect.{HIDDEN}.D')"
+    page.evaluate(
+        f"{slider}.focus(), {slider}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'ArrowRight', cancelable: true}})), 0"
+    )
+    page.wait(SETTLED)
+    assert page.evaluate(size) > before
+    page.evaluate("document.getElementById('undo').click()")
+    page.wait(f"{SETTLED} && {size} === {before}")
 
 
 def test_the_workbench_opens_and_takes_in_the_sample(opened: Any, address: str) -> None:

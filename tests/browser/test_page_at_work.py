@@ -123,6 +123,12 @@ def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     reader.settle()
     assert page.evaluate("report.values") == start
     page.wait_for_function("() => document.querySelectorAll('.pins tbody tr').length === 2")
+    assert "mass" not in page.inner_text(".pins tbody tr >> nth=1")
+    page.evaluate("report.put({...report.values, 'chair.m': 85})")
+    reader.settle()
+    page.wait_for_function(
+        "() => document.querySelector('.pins tbody tr:nth-child(2)').innerText.includes('mass m of chair and user 85')"
+    )
     page.wait_for_function("text => document.querySelector('.pins tbody td').innerText === text", arg=f"{TOP['heldout']:.2f}")
     page.click("[aria-label='go to A']")
     reader.settle()
@@ -178,7 +184,12 @@ def test_one_time_for_chair_curves_and_readings(reader):
     zoomed = page.evaluate("[report.timeline.from, report.timeline.to]")
     length = page.evaluate("report.timeline.time.at(-1)")
     assert zoomed == pytest.approx([0.2 * length, 0.5 * length], abs=0.02 * length)
-    page.evaluate("report.timeline.zoom(2, 6)")
+    page.evaluate("report.timeline.zoom(2, 6), report.timeline.go(4)")
+    page.wait_for_function("""() => [...document.querySelectorAll('.now-line')].every((line) => {
+        const { left, width } = line.parentNode.getBoundingClientRect();
+        return Math.abs((line.getBoundingClientRect().left - left) / width - 0.5) < 0.01;
+    })""")  # half way from 2 to 6
+    page.evaluate("report.timeline.go(3)")
     page.check(f"#effect-{HIDDEN}")
     reader.settle()
     assert page.evaluate("report.timeline.plots.map(p => [p.scales.x.min, p.scales.x.max])") == [[2, 6], [2, 6]]
@@ -338,6 +349,46 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
         reader.page.click(f".tab >> nth={i}")
         assert reader.page.locator(".screen:visible h3").inner_text()
     assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
+    reader.close()
+
+
+def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
+    """A tie beside what is sure, forces that nobody recorded, and seven steps."""
+    told = json.loads(DIAGNOSIS.read_text())
+    first, second, third = (r["effect"] for r in told["ranking"][:3])
+    (nominal, calibrated, last), led = told["ladder"], {**told["ladder"][1], "step": "unrecorded forces"}
+    turns = {**led["channels"]["yaw_rate"], "heldout": 2.5, "heldout_rms": 0.9}
+    led["channels"] = {**led["channels"], "yaw_rate": turns}
+    between = [{**calibrated, "step": f"+{r['effect']}"} for r in told["ranking"][3:5]]
+    told |= {
+        "verdict": "tie",
+        "effects": [first, second, third],
+        "ties": [[second, third]],
+        "odds": [{second: 0.9, third: 0.1}],
+    }
+    told["ladder"] = [nominal, calibrated, led, *between, {**last, "step": f"+{first}"}, {**last, "step": f"+{second}"}]
+    told["noise"] |= {"force": 1.0, "moment": 0.2, "body": 0.5, "lasting": 0.5, "mass": 80.0}
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    assert "missed by 0.90 °/s before" in reader.page.inner_text(".cards")  # what forces brought down is no effect's work
+    reader.close()
+
+
+def test_constants_of_laws_have_words_in_figures(browser, tmp_path):
+    told = json.loads(DIAGNOSIS.read_text())
+    told["calibration"]["effect.caster_friction.rate"] = {
+        "value": 0.08,
+        "se": 0.01,
+        "prior": 0.02,
+        "prior_sd": 0.03,
+        "at_bound": False,
+    }
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    assert "Effect." not in reader.page.text_content("#calibration svg")
+    assert "no two bearings" in reader.page.text_content("#calibration svg")
     reader.close()
 
 

@@ -256,6 +256,13 @@ def test_the_keyboard_reaches_everything(reader):
     page.keyboard.press("ArrowRight")
     reader.settle()
     assert page.evaluate("report.values")[f"effect.{HIDDEN}.D"] > before
+    page.focus("#where button[tabindex='0']")  # of all cells one; arrow keys go on from there
+    assert page.locator("#where td button[tabindex='0']").count() == 1
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowUp")
+    cell = page.evaluate("document.activeElement.getAttribute('aria-label')")
+    page.keyboard.press("Enter")
+    assert page.evaluate("report.campaign.runs[report.shown.run].name") == cell.split(",")[0]
     page.focus("#run")
     page.keyboard.press("ArrowUp")
     assert page.evaluate("report.shown.run") == int(page.input_value("#run"))
@@ -290,13 +297,54 @@ def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
     return file
 
 
+def words_of(reader: Reader, file: Path) -> list[str]:
+    """What is wrong with the words of a figure's file: cut off, over one another, or less than six points high."""
+    page = reader.context.new_page()
+    page.goto(file.as_uri())
+    wrong = page.evaluate(Path(__file__).with_name("sheet.js").read_text())
+    page.close()
+    return list(wrong)
+
+
+def table_of(reader: Reader, figure: str, folder: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(taken(reader, figure, "CSV", folder).read_text(encoding="utf-8").splitlines()))
+
+
+def test_tables_hold_the_numbers_of_the_diagnosis(open_report, tmp_path):
+    open_report.set(MODELS["calibrated"])
+    stairs = table_of(open_report, "staircase", tmp_path)
+    assert [(float(r["fitted runs"]), float(r["held-out runs"])) for r in stairs] == [
+        (s["fit"], s["heldout"]) for s in TOLD["ladder"]
+    ]
+    sizes = {f"effect.{r['effect']}.{n}": p for r in TOLD["ranking"] for n, p in r["parameters"].items()}
+    for row in table_of(open_report, "forest", tmp_path):
+        told = sizes[row["parameter"]]
+        assert (float(row["estimate"]), row["unit"]) == (told["estimate"], told["unit"])
+        assert float(row["se"] or "nan") == pytest.approx(told["se"] if told["se"] is not None else np.nan, nan_ok=True)
+        assert float(row["in sizes of interest"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
+    for row in table_of(open_report, "calibration", tmp_path):
+        told = TOLD["calibration"][row["parameter"]]
+        assert [float(row[k]) for k in ("fitted", "se", "given", "sd")] == [
+            told[k] for k in ("value", "se", "prior", "prior_sd")
+        ]
+    cells = open_report.table()
+    for row in table_of(open_report, "where", tmp_path):
+        assert float(row["error, noise = 1"]) == pytest.approx(cells[row["run"]][row["channel"]])
+    rows = table_of(open_report, "physical", tmp_path)
+    told = [s["channels"][c] for c in TOLD["physical"] for s in TOLD["ladder"]]
+    assert [(float(r["RMS error"]), float(r["noise = 1"])) for r in rows] == [(t["heldout_rms"], t["heldout"]) for t in told]
+
+
 @pytest.mark.parametrize(
     "figure",
     [
         "staircase",
         "overlay",
         "joint",
-        *(pytest.param(f, marks=pytest.mark.nightly) for f in ("where", "path", "regimes", "forest", "physical", "profiles")),
+        *(
+            pytest.param(f, marks=pytest.mark.nightly)
+            for f in ("where", "path", "regimes", "forest", "physical", "profiles", "calibration")
+        ),
     ],
 )
 def test_every_figure_can_be_published(open_report, figure, tmp_path):
@@ -313,6 +361,7 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
                 assert "NaN" not in content.decode() and "undefined" not in content.decode()
                 fonts = re.findall(r"font-weight:(\w+);src:url\(data:font/ttf;base64,", content.decode())
                 assert fonts == ["normal", "bold"]
+                assert words_of(open_report, file) == []
             if kind == "PNG":
                 with Image.open(file) as picture:
                     assert picture.width == round(mm / 25.4 * 400)
@@ -328,11 +377,12 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
     assert len({len(r) for r in rows}) == 1
 
 
-def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path):
+@pytest.mark.parametrize("name", ["輪椅", "مقعد"])  # not in the fonts; in them, but joined from right to left
+def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path, name):
     content = unpacked(report_file.read_text(encoding="utf-8"))
-    content["name"] = "輪椅"
-    story = Story([{"head": "What", "lead": "輪椅", "lines": []}] * 3, content["story"]["screens"])
-    (tmp_path / "odd.html").write_text(page_of(content, "輪椅", [], story), encoding="utf-8")
+    content["name"] = name
+    story = Story([{"head": "What", "lead": name, "lines": []}] * 3, content["story"]["screens"])
+    (tmp_path / "odd.html").write_text(page_of(content, name, [], story), encoding="utf-8")
     reader = Reader(browser, tmp_path / "odd.html")
     written = taken(reader, "staircase", "PDF 85 mm", tmp_path).read_bytes()
     assert b"/Subtype /Image" in written and not re.search(EMBEDDED, written)

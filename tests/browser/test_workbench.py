@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -64,7 +65,9 @@ def test_from_an_empty_start_to_an_improved_fmu(page: Any, tmp_path: Path) -> No
     report.close()
     page.click("text=add it: one rear wheel that rolls harder")
     done(page, "add")
-    assert "error on runs held out:" in page.inner_text("#history li[aria-current]")
+    assert re.search(r"as given [\d.]+ → calibrated [\d.]+ → now [\d.]+", page.inner_text("#history li[aria-current]"))
+    offered = page.locator("#effect option").evaluate_all("options => options.map(o => o.value)")
+    assert "rolling_resistance_asymmetry" not in offered  # it is in
     page.wait_for_selector("#old-report:visible")  # the report does not know the effect yet
     assert page.locator("#outcome [data-add=rolling_resistance_asymmetry]").count() == 0
     with page.expect_download() as waiting:
@@ -91,7 +94,7 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     bad.write_text("time [s],F_rl [N],F_rr [N],yaw_rate [furlong]\n0,1,2,3\n0,1,two,3\n")
     take_in(page, bad)
     faults = page.inner_text("#faults")
-    assert "faults to mend" in faults
+    assert "faults to mend" in faults and "find out above" in faults
     assert "unit 'furlong' measures a length" in faults
     assert "'two' is not a number" in faults
     assert page.is_disabled("#diagnose")
@@ -140,6 +143,26 @@ def test_the_sample_is_there_to_try(page: Any) -> None:
     opened.value.wait_for_selector("text=Nothing odd was found")
     assert opened.value.locator("svg").count() >= 1
     opened.value.close()
+
+
+def test_columns_of_devices_are_told_by_what_they_serve(page: Any) -> None:
+    """What is used comes first and the rest is folded; a column from which others are worked out, and one that is turned round,
+    say so; what was taken from another chair is said beside the button. The state is what an import leaves behind."""
+    take_in(page, *recordings())
+    page.evaluate("""() => {
+        const state = structuredClone(workbench.state), [first, second] = Object.keys(state.headers);
+        const columns = {wheel_angle_l: {column: first, sign: -1}, F_rl: {column: second}};
+        state.campaign.recording = [{device: "rim", columns}];
+        state.campaign.run = state.campaign.run.map((run) => ({...run, files: {rim: run.file}}));
+        delete state.campaign.chair;
+        workbench.show(state);
+    }""")
+    used, rest = page.locator("#forms tr[data-used]"), page.locator("#forms details details tbody tr")
+    assert used.count() == 2 and rest.count() == len(page.evaluate("Object.keys(workbench.state.headers)")) - 2
+    chosen = used.first.locator("select").evaluate("e => e.selectedOptions[0].textContent")
+    assert chosen == "wheel angle l, from which other signals are worked out"
+    assert "turned round" in used.first.inner_text() and not rest.first.is_visible()
+    assert "how far the rear axle is behind it" in page.inner_text("#assumed")
 
 
 def test_two_tabs_are_two_pieces_of_work(page: Any, address: str) -> None:

@@ -74,7 +74,7 @@ def test_a_floor_is_ordered_by_nothing(sample, seed):
     rng = np.random.default_rng(seed)
     found = left_of(ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 2.5), wandering(rng, run.time, 0.4))))
     assert found.orders == () and found.like_a_floor
-    assert "it is nobody's effect" in found.words[1]
+    assert "no effect is behind them" in found.words[1]
     shallow = [f"{found.after.along:.2g} N", f"{found.after.moment:.2g} N m"]
     assert all(figure in found.words[0] for figure in shallow)
 
@@ -103,7 +103,7 @@ def test_a_body_that_swings_is_told_in_newton_seconds_and_orders_nothing():
     swings = Unexplained(Strength(20.0, 1.0, 9.0, 100.0), Strength(2.0, 0.3, 4.2, 50.0), orders, forces, 800.0, 0.2)
     assert swings.ordered == () and swings.like_a_floor
     assert "2 N, 0.3 N m and a swing of the rider's body of 4.2 N s" in swings.words[0]
-    assert swings.words[1].startswith("Nothing else orders it")
+    assert swings.words[1].startswith("These forces follow nothing else that was recorded")
     assert swings.as_json()["body"] == 4.2 and swings.as_json()["calibrated"]["body"] == 9.0
 
 

@@ -38,7 +38,7 @@ def told(verdict, effects=(), ties=(), **more):
     ("verdict", "effects", "expected"),
     [
         ("missing", ["drag"], "Missing from the model: air that resists."),
-        ("missing", ["drag", "slope"], "Missing from the model: air that resists and a floor that slopes."),
+        ("missing", ["drag", "slope"], "Missing from the model: air that resists, and a floor that slopes."),
         ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
         ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
         ("outside", [], "Something is left that no effect in the catalogue explains."),

@@ -23,3 +23,9 @@ def test_letters_that_the_fonts_lack_are_named_and_licences_stay_with_the_script
     made = press(["chair", "輪椅\n"])
     assert made["lacking"] == "椅輪"
     assert all("Permission is hereby granted, free of charge" in s for s in made["scripts"])
+
+
+def test_letters_that_join_keep_the_forms_they_take_by_their_neighbours():
+    font = TTFont(BytesIO(subset("normal", "مقعد")))
+    assert "GSUB" in font and len(font.getGlyphOrder()) > 1 + len("مقعد")
+    assert "GSUB" not in TTFont(BytesIO(subset("normal", "chair")))

@@ -11,6 +11,7 @@ from .told import (
     capital,
     exceeds,
     fall_words,
+    forces_words,
     number,
     odds_words,
     rival_words,
@@ -49,11 +50,13 @@ def _fall_gauge(t: Told) -> dict[str, Any]:
 
 def _what(t: Told) -> tuple[str, list[str]]:
     if t.verdict == "tie":
-        sure = [e for e in t.found if not any(e in tie for tie in t.diagnosis["ties"])]
+        sure = [e for e in t.found if e not in t.tied]
         groups = [
             [sized(t, e) for e in group] for group in grouped(t.diagnosis["effects"], t.diagnosis["ties"]) if len(group) > 1
         ]
         lead = "One of two causes" if len(groups) == 1 and len(groups[0]) == 2 else "One of several causes"
+        if sure:
+            lead = f"{number(len(sure))} {'effect' if len(sure) == 1 else 'effects'}, and {lead[0].lower()}{lead[1:]}"
         return lead, [*(sized(t, e) for e in sure), *(line for group in groups for line in group)]
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
@@ -83,32 +86,34 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"
     only = [f"The error comes down only where {listed(bent, 'and')} {come} out as nobody would measure it."] if bent else []
+    if bent and not helped:
+        return "A given value that is wrong, or an effect that nobody knows", only
     return "Something that no effect in the catalogue describes", [*helped, *only]
 
 
 def _how_sure(t: Told) -> tuple[str, list[str]]:
-    fall, rivals = fall_words(t), rival_words(t)
+    fall, rivals, forces = fall_words(t), rival_words(t), forces_words(t)
     if t.verdict == "tie":
-        left = {e: t.rows[e]["heldout_after"] for e in t.found if t.rows[e]["heldout_after"]}
+        left = {e: error for e in t.tied if (error := t.error(e))}
         errors = {f"{error:.2f}" for error in left.values()}
-        if len(left) == len(t.found) > 1 and len(errors) == 1:
+        if len(left) == len(t.tied) > 1 and len(errors) == 1:
             each = "either" if len(left) == 2 else "any of them"
             together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
         else:
             together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
-        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t)]
+        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t), *forces]
     if t.verdict in ("missing", "small") and t.found:
         large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if len(t.found) > 1 else "it is"
         sure, size = (1 - max(large), "too small") if t.verdict == "small" else (min(large), "large enough")
-        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals]
+        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals, *forces]
     if t.verdict == "outside":
         p = t.diagnosis["leftover"].get("p") if t.diagnosis.get("leftover") else None
         chance = [] if p is None or not t.proposal else [f"Noise alone would give as much with a chance of {_chance(p)}."]
-        return "Sure that something is there, less so what", [fall, *chance, *rivals]
+        return "Sure that something is there, less so what", [fall, *chance, *rivals, *forces]
     seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
     share = f"{len(seen)} of {len(t.rows)}"
     lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
-    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}"]
+    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}", *forces]
 
 
 def _chance(p: float) -> str:

@@ -68,12 +68,18 @@ def content(
         "evaluation": b64encode(evaluation(driven(campaign))).decode(),
         "effects": [_effect(e) for e in factory.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
+        "constants": [_parameter(p) for e in factory.catalogue.values() for p in e.owned if p.name in _fitted(diagnosis)],
         "regimes": _regimes(variant),
         "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
         "tuning": TUNING,
         "tolerance": TOLERANCE,
     }
+
+
+def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What came out of calibration, constants of effects' laws among it."""
+    return diagnosis.get("calibration") or {}
 
 
 def _forces(colour: NoiseModel) -> dict[str, Any] | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from importlib.resources import files
 from io import BytesIO
 from pathlib import Path
+from unicodedata import bidirectional, category
 
 import matplotlib
 from fontTools.subset import Options, Subsetter
@@ -34,15 +35,23 @@ def subset(style: str, letters: Iterable[str]) -> bytes:
     """A face of DejaVu Sans with these letters alone, as TrueType; the same letters give the same bytes."""
     options = Options()
     options.hinting = False
-    options.layout_features = []
     options.name_IDs = [0, 1, 2, 4, 6, 13, 14]  # names, copyright and licence
-    options.drop_tables += ["FFTM", "GDEF", "GPOS", "GSUB"]
+    options.drop_tables += ["FFTM"]
+    letters = list(letters)
+    if not any(map(_joins, letters)):
+        options.layout_features = []
+        options.drop_tables += ["GDEF", "GPOS", "GSUB"]
     face, made = _face(style), BytesIO()
     chosen = Subsetter(options)
     chosen.populate(text="".join(letters))
     chosen.subset(face)
     face.save(made)
     return made.getvalue()
+
+
+def _joins(letter: str) -> bool:
+    """Does a letter take a form by its neighbours, which tables of the font tell, or stand on one of them?"""
+    return bidirectional(letter) in ("R", "AL") or category(letter).startswith("M")
 
 
 def _face(style: str) -> TTFont:

@@ -7,7 +7,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from .told import Told, actions, fall_words, near_rivals, rival_words, sized, together_words, why_not
+from .told import (
+    Told,
+    actions,
+    fall_words,
+    forces_words,
+    it,
+    multiple_words,
+    near_rivals,
+    rival_words,
+    sized,
+    together_words,
+    why_not,
+)
 from .words import STILL, listed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
@@ -34,6 +46,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             "lines": [
                 "Over all that was recorded, the calibrated model misses the sensors by hardly more than their noise.",
                 "In some runs and channels it misses more: below the curves, the mean error over half a second shows where.",
+                *forces_words(t),
             ],
         }
     how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"
@@ -41,14 +54,16 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
     if calm:
         return {
             "title": "Here the model errs most, and it is next to nothing",
-            "lines": [*lines, "What remains looks like noise."],
+            "lines": [*lines, "What remains looks like noise.", *forces_words(t)],
         }
-    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part."]}
+    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part.", *forces_words(t)]}
 
 
 def _guess(t: Told) -> dict[str, Any]:
     if t.verdict in ("adequate", "cannot_see"):
         lines = ["Suppose one of these were missing. Which would these runs show?"]
+    elif t.slight:
+        lines = ["Something is there that is too small to matter. Which of these would you say it is?"]
     elif t.verdict == "outside" and not t.found:
         lines = ["Which of these explains it? Try each."]
     else:
@@ -66,19 +81,23 @@ def choices(t: Told) -> list[dict[str, Any]]:
 
 def _answer(t: Told, effect: str) -> str:
     row = t.rows[effect]
-    if t.verdict in ("adequate", "cannot_see") or (t.verdict == "small" and effect in t.found):
+    if t.slight and effect in t.found:
+        return f"Yes, at {multiple_words(t, effect)} the size that would matter."
+    if t.verdict in ("adequate", "cannot_see"):
         if row["power"] >= 0.8:
             return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
         return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
     comes = t.error(effect)
     error = "" if comes is None else f" The error comes to {comes:.2f}{_once(t, effect)}."
     if effect in t.found:
-        tied = t.verdict == "tie" and any(effect in tie for tie in t.diagnosis["ties"])
+        tied = t.verdict == "tie" and effect in t.tied
         if t.verdict == "outside":
             return f"It helps, but does not suffice.{error}"
         return ("It may be: this or its rival." if tied else "Yes.") + error
     if any(effect == r["effect"] for r in near_rivals(t)):
         return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
+    if comes is None and t.without_forces is not None and row["values"]:
+        return "No: with forces that nobody recorded among the noise, the runs speak less for it."
     if comes is None:
         return "No: it would hardly change what is seen in these runs."
     if row["heldout_before"] is not None and row["heldout_before"] - comes < STILL:
@@ -111,7 +130,12 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "lines": [f"With {_helping(t)}, the error on {whose} {verb} from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
-        each = "either" if len(t.found) == 2 else "any of them"
+        known = [e for e in t.tied if t.error(e) is not None]
+        each = (
+            ("either" if len(t.tied) == 2 else "any of them")
+            if known in ([], t.tied)
+            else listed([t.title(e) for e in known], "or")
+        )
         if not t.falls:
             return {
                 "title": "Put one in: these runs hardly change",
@@ -124,17 +148,18 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
             "title": "Put one in and watch the error fall",
             "lines": [f"With {each}, the error on {whose} falls to {_comes(t)}."],
         }
-    them = "it" if len(t.found) == 1 else "them"
+    if t.slight:
+        return {"title": f"Put {it(t)} in: hardly anything changes", "lines": [fall_words(t)]}
     watch = "and watch the error fall" if t.falls else "and look where the two curves part"
     return {
-        "title": f"Put {them} in {watch}",
+        "title": f"Put {it(t)} in {watch}",
         "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
     }
 
 
 def _comes(t: Told) -> str:
     """What the error comes to with each of a tie."""
-    errors = [error for e in t.found if (error := t.error(e)) is not None] or [t.fall[1]]
+    errors = [error for e in t.tied if (error := t.error(e)) is not None] or [t.fall[1]]
     least, most = f"{min(errors):.2f}", f"{max(errors):.2f}"
     return least if least == most else f"between {least} and {most}"
 
@@ -151,7 +176,7 @@ def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
             "Why not one of them",
-            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.found)],
+            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.tied)],
         )
     elif t.found and t.verdict != "outside":
         title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]
@@ -190,7 +215,7 @@ def _unmoved(t: Told) -> list[str]:
 def bars(t: Told) -> list[dict[str, Any]]:
     """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]. Effects
     that were put in together are one."""
-    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["heldout_after"] is not None and r["effect"] in t.titles]
+    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.error(r["effect"]) is not None]
     groups = list(dict.fromkeys(tuple(t.partners(e)) for e in tried))[:TRIED]
     each = [
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups

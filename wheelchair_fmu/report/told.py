@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from math import erf, sqrt
 from typing import Any
 
+from ..inference.decision.verdict import FORCES
 from ..quantities import Quantity
 from .advice import inspect
-from .words import AGAIN, STILL, listed, probability_words, spoken, title_of, to_measure
+from .words import AGAIN, STILL, listed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -47,10 +48,22 @@ class Told:
 
     @property
     def fall(self) -> tuple[float, float]:
-        """The error before the search and at its end."""
+        """The error before anything was put in, and at the end."""
         ladder = self.diagnosis["ladder"]
-        before = next((s for s in ladder if s["step"] == self.diagnosis.get("begins", "calibrated")), ladder[0])
-        return float(before[self.key]), float(ladder[-1][self.key])
+        before = [s for s in ladder if s["step"] in (self.diagnosis.get("begins", "calibrated"), FORCES)] or ladder
+        return float(before[-1][self.key]), float(ladder[-1][self.key])
+
+    @property
+    def without_forces(self) -> float | None:
+        """The error of the calibrated model before forces that nobody recorded were counted among the noise, if they were."""
+        steps = {s["step"]: s for s in self.diagnosis["ladder"]}
+        return float(steps["calibrated"][self.key]) if FORCES in steps else None
+
+    @property
+    def slight(self) -> bool:
+        """Was all that was found left out of the model, as it is too small to matter?"""
+        steps = {s["step"] for s in self.diagnosis["ladder"]}
+        return self.verdict == "small" and not any(f"+{e}" in steps for e in self.found)
 
     @property
     def falls(self) -> bool:
@@ -69,8 +82,17 @@ class Told:
         return next((group for group in self.together if effect in group), [effect])
 
     def error(self, effect: str) -> float | None:
-        """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere."""
-        return self.fall[1] if set(self.found) == set(self.partners(effect)) else self.rows[effect]["heldout_after"]
+        """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere. None where
+        it is not known, or was found along other unrecorded forces than those of the last step."""
+        last = self.diagnosis["ladder"][-1]["step"]
+        if set(self.found) == set(self.partners(effect)) or (self.key == "heldout" and last == f"+{effect}"):
+            return self.fall[1]
+        return None if self.without_forces is not None else self.rows[effect]["heldout_after"]
+
+    @property
+    def tied(self) -> list[str]:
+        """Those found that these runs cannot tell apart."""
+        return [e for e in self.found if any(e in tie for tie in self.diagnosis["ties"])]
 
     @property
     def proposal(self) -> Mapping[str, Any] | None:
@@ -120,10 +142,27 @@ def fall_words(t: Told) -> str:
     before, after = t.fall
     if abs(before - after) < STILL:
         unmoved = "" if t.verdict in ("adequate", "cannot_see") else ", before and after"  # nothing was put in
-        where = ", as before: what was found shows at few moments, and there it is gone" if t.found else unmoved
+        shows = ", as before: what was found shows at few moments, and there it is gone"
+        where = f", with {it(t)} as without" if t.slight else shows if t.found else unmoved
         return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
+
+
+def forces_words(t: Told) -> list[str]:
+    """What forces that nobody recorded have to do with the error."""
+    without = t.without_forces
+    if without is None:
+        return []
+    return [
+        "Forces that nobody recorded, of an uneven floor or of a body that swings, count as noise here. "
+        f"Without them the calibrated model misses the sensors by {without:.{2 if without < 10 else 0}f} times their noise."
+    ]
+
+
+def it(t: Told) -> str:
+    """What was found, in a word."""
+    return "it" if len(t.found) == 1 else "them"
 
 
 def together_words(t: Told) -> list[str]:
@@ -174,18 +213,25 @@ def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
     if all(len(r["parameters"]) > own for r in rivals):
         most = number(max(len(r["parameters"]) for r in rivals)).lower()
         return f"with {most} sizes to choose where this has {number(own).lower()}"
-    return "but explain the runs a little less" if len(rivals) > 1 else "but explains the runs a little less"
+    return f"though the runs speak a little less for {'them' if len(rivals) > 1 else 'it'}"
 
 
 def size_lines(t: Told, effect: str) -> list[str]:
-    lines = [f"{capital(r.meaning)}: {spoken(v['estimate'], v['se'], r.unit)}." for _, v, r in t.sizes(effect)]
-    return [*lines, f"That is {_times(t.multiple(effect))} the size that would matter{_interest(t, effect)}."]
+    sizes = t.sizes(effect)
+    seen = [size for size in sizes if _seen(size[1])] or sizes
+    lines = [f"{capital(r.meaning)}: {spoken(v['estimate'], v['se'], r.unit)}." for _, v, r in seen]
+    return [*lines, f"That is {multiple_words(t, effect)} the size that would matter{_interest(t, effect)}."]
+
+
+def _seen(size: Mapping[str, Any]) -> bool:
+    """Is a size surely not nought?"""
+    return bool(not size["se"] or abs(size["estimate"]) > SURE * size["se"])
 
 
 def sized(t: Told, effect: str) -> str:
     sizes = " and ".join(spoken(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
-    sure = any(not v["se"] or abs(v["estimate"]) > SURE * v["se"] for _, v, _ in t.sizes(effect))
-    size = f"{_times(t.multiple(effect))} the size that would matter" if sure else "a size that these runs leave open"
+    sure = any(_seen(v) for _, v, _ in t.sizes(effect))
+    size = f"{multiple_words(t, effect)} the size that would matter" if sure else "a size that these runs leave open"
     return f"{capital(t.title(effect))}: {sizes}, {size}."
 
 
@@ -194,7 +240,9 @@ def _interest(t: Told, effect: str) -> str:
     return f", {sizes[0]}" if len(set(sizes)) == 1 else ""
 
 
-def _times(multiple: float) -> str:
+def multiple_words(t: Told, effect: str) -> str:
+    """The size found as a multiple of the smallest that would interest anyone."""
+    multiple = t.multiple(effect)
     if multiple < 0.95:
         return f"{multiple:.2g} times"
     return f"{multiple:.1f} times".replace(".0 ", " ") if multiple < 9.95 else f"{multiple:.0f} times"
@@ -226,14 +274,15 @@ def actions(t: Told) -> list[str]:
             if near
             else []
         )
-        return [
-            *look,
-            *also,
-            *measure,
-            f"Put {'it' if len(found) == 1 else 'them'} into the model: wheelchair add {' '.join(found)}.",
-        ]
+        return [*look, *also, *measure, f"Put {it(t)} into the model: wheelchair add {' '.join(found)}."]
     if t.verdict == "outside":
         orders = [f"{o['words'][0].upper()}{o['words'][1:]}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
+        if strained(t.diagnosis, t.records) and not t.proposal:
+            return [
+                *measure,
+                *orders,
+                "If it comes out as before, the model lacks something: write the effect as a file of one expression.",
+            ]
         return [
             "Compare the missing force with what you know of the chair.",
             *orders,

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
@@ -26,13 +27,18 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     several = len(names) > 1
     return {
-        "missing": f"Missing from the model: {listed(names, 'and')}.",
+        "missing": f"Missing from the model: {_all_of(names)}.",
         "small": f"The model is adequate: {listed(names, 'and')} {'are' if several else 'is'} there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
+
+
+def _all_of(names: Sequence[str]) -> str:
+    """ "a, and b": with a comma, as each is long and may have an "and" of its own."""
+    return ", and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
 
 
 def outside(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity] | None = None) -> str:
@@ -141,8 +147,14 @@ def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> l
 
 def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
     before = next((s for s in ladder if s["step"] == "calibrated"), ladder[0])
-    last = ladder[-1]
+    forces, last = next((s for s in ladder if s["step"] == FORCES), None), ladder[-1]
     key, runs = ("heldout", "runs held out") if last.get("heldout") is not None else ("fit", "the fitted runs")
+    if forces:
+        found = "" if last is forces else f", and to {last[key]:.2f} with what was found"
+        counted = "once forces that nobody recorded count as noise"
+        return (
+            f"The error on {runs} falls from {before[key]:.2f} to {forces[key]:.2f} {counted}{found}, where 1.0 is noise alone."
+        )
     if last is before:
         return f"The error on {runs} is {last[key]:.2f} times what noise alone gives, after calibration."
     if abs(last[key] - before[key]) < STILL:

@@ -9,6 +9,7 @@ from typing import Any
 from ..campaign import CHANNELS
 from ..model.generic import library
 from ..model.stage import Effect
+from ..model.variant import Variant
 from ..report.tale import story_of
 from ..report.words import sentence
 from .session import Session
@@ -23,7 +24,7 @@ def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any]
         told = json.loads((session.folder / "diagnosis.json").read_text(encoding="utf-8"))
         every = {**library(), **catalogue}
         titles = {e.id: e.title for e in every.values()}
-        records = {p.name: p for e in every.values() for p in e.owned}
+        records = {p.name: p for p in (*Variant().parameters(), *(p for e in every.values() for p in e.owned))}
         story = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
         return {
             "sentence": sentence(told, titles, records),

@@ -221,7 +221,11 @@ class Workbench:
             "most_upload": self.most_upload,
             "report": report.stat().st_mtime_ns if report.exists() else None,
             "job": self.jobs.told(session.id),
-            "earlier": [{"id": s.id, "name": s.name} for s in Session.latest(self.root, EARLIER) if s.id != session.id],
+            "earlier": [
+                {"id": s.id, "name": s.name, "at": s.looked_at}
+                for s in Session.latest(self.root, EARLIER)
+                if s.id != session.id
+            ],
         }
 
     # -- measurements ---------------------------------------------------------------------------------------

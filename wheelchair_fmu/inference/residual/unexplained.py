@@ -90,10 +90,11 @@ class Unexplained:
         """What a person is told."""
         told = [f"As calibrated, the model needs {_size(self.before)} that nobody recorded; in the end, {_size(self.after)}."]
         if self.forces and not self.ordered and self.like_a_floor:
-            nothing = "Nothing else orders it" if self.orders else "Nothing orders it"
-            told.append(f"{nothing}, and a floor that counts as flat does as much: it is nobody's effect.")
+            nothing = "nothing else" if self.orders else "nothing"
+            flat = "a floor that counts as flat gives as much: no effect is behind them"
+            told.append(f"These forces follow {nothing} that was recorded, and {flat}.")
         elif self.forces and not self.orders:
-            told.append("Nothing that was recorded orders it.")
+            told.append("These forces follow nothing that was recorded.")
         return told + [f"{o.words[0].upper()}{o.words[1:]}." for o in self.orders]
 
     def as_json(self) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import { evidence } from "page/evidence";
 import { Figures } from "page/figures";
 import { lacking, reckoned, rolled } from "page/motion";
 import { mini } from "page/mini";
-import { display, rms, significant, unitText } from "page/numbers";
+import { rms, significant, unitText } from "page/numbers";
 import { Pins } from "page/pins";
 import { Pool } from "page/pool";
 import { refit } from "page/refit";
@@ -23,6 +23,7 @@ const WRITTEN = 250; // ms after which the address follows
 const AT_ONCE = 100; // ms within which what follows a movement is seen as part of it
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
+const LONG = 900, STEPS = 4; // letters above the fold, and steps of the staircase, that fill two pages in letters of the usual size
 const DEEP = 60; // changes that can be undone
 const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
@@ -33,13 +34,13 @@ class App {
     this.timings = [];
     this.costs = [];
     this.doubts = new Map(); // by run: variances of readings by the uncertainty of the last model's values; null while they are made
-    this.steps = new Map(); // by step of the search: brief results of every run
     this.known = new Set(["calibrated", "effects"].flatMap((k) => campaign[k]).flatMap((p) => (p.parameters ?? [p]).map((q) => q.name)).concat(campaign.diagnosis.models.flatMap((m) => Object.keys(m.values))));
     this.state = address.read(location.hash, campaign, this.known);
     if (this.state.theme) document.documentElement.dataset.theme = this.state.theme;
     this.forces = campaign.diagnosis.ladder.some((s) => s.step === FORCES);
     byId("forces").hidden = !this.forces;
     this.figures = new Figures(campaign, this);
+    this.fallen();
     evidence(campaign);
   }
 
@@ -72,7 +73,6 @@ class App {
     byId("plea").hidden = false;
     byId("plea").textContent = `This browser cannot run the model (${why}); everything that the diagnosis stored stands below.`;
     byId("try").hidden = true;
-    byId("physical").hidden = true;
     for (const stage of document.querySelectorAll(".stage")) stage.replaceChildren();
     this.figures.redraw();
   }
@@ -160,7 +160,7 @@ class App {
     this.opened = this.opensAtStart ? [...this.results] : [];
     this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
-    this.earlier();
+    this.later();
     this.pinned();
   }
 
@@ -178,35 +178,29 @@ class App {
     if (best.run !== this.shown.run || best.channel !== this.shown.channel) this.turn(best);
   }
 
-  /** Every step of the search, simulated beside: for what was before, and for errors in units of sensors. */
-  async earlier() {
-    const { runs, diagnosis } = this.campaign, first = [this.start, diagnosis.models.at(-1)], order = [...new Set([...first, ...diagnosis.models])];
-    for (const model of order) {
-      const found = model === this.start && this.opensAtStart ? this.opened : await Promise.all(runs.map((_, run) => this.pool.later({ run, values: model.values, aside: true, brief: true }).catch(() => null)));
-      this.steps.set(model.step, found);
-      if (model === diagnosis.models.at(-1)) this.gained(found);
-      this.figures.all.physical.redraw();
-      this.fallen();
-    }
+  /** The last step of the search, simulated beside, for where it gained. */
+  async later() {
+    if (this.shown.chosen || !this.opensAtStart) return;
+    const { values } = this.campaign.diagnosis.models.at(-1);
+    this.gained(await Promise.all(this.campaign.runs.map((_, run) => this.pool.later({ run, values, aside: true, brief: true }).catch(() => null))));
   }
 
   /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
   fallen() {
-    const [from, to] = [this.start.step, this.campaign.diagnosis.models.at(-1).step];
-    if (from === to || ![from, to].every((s) => this.steps.has(s))) return;
+    const { begins, models } = this.campaign.diagnosis, [from, to] = [this.forces ? FORCES : begins, models.at(-1).step];
+    if (from === to) return;
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
     if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
     const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
-    card.querySelector(".physical")?.remove();
     card.querySelector("p:not(.lead)")?.after(h("p", { class: "physical" }, words));
   }
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
   gained(last) {
-    if (this.shown.chosen || !this.opensAtStart || last.includes(null)) return;
+    if (this.shown.chosen || last.includes(null)) return;
     const mean = (r, c) => r.squares[c] / r.counts[c], fall = (i, c) => (mean(this.opened[i], c) - mean(last[i], c)) * (c in last[i].squares ? 1 : 0);
     this.turnTo(fall, SEEN);
   }
@@ -248,21 +242,13 @@ class App {
     return [low, high];
   }
 
-  /** [{channel, unit, values: [{step, value, times}]}] of runs held out, as they are known. */
+  /** [{channel, unit, values: [{step, value, times}]}] of runs held out, where there are any, as the search had them. */
   physical() {
-    const { campaign } = this, wanted = this.judgedRuns();
-    return campaign.channels.map((record) => {
-      const { factor, unit } = display(record);
-      return { channel: channelOf(record.name), unit: unitText(unit), values: campaign.diagnosis.models.filter((m) => this.steps.has(m.step)).map((m) => {
-        let squares = 0, counts = 0, gaps = 0;
-        for (const i of wanted) {
-          const r = this.steps.get(m.step)[i];
-          if (!r || !(record.name in r.squares)) continue;
-          squares += r.squares[record.name]; counts += r.counts[record.name]; gaps += r.gaps[record.name];
-        }
-        return { step: stepOf(campaign, m.step), value: counts ? factor * Math.sqrt(gaps / counts) : undefined, times: counts ? Math.sqrt(squares / counts) : NaN };
-      }) };
-    });
+    const { campaign } = this, { ladder } = campaign.diagnosis;
+    return campaign.channels.map(({ name }) => {
+      const told = ladder.filter((s) => s.channels?.[name]).map((s) => ({ step: stepOf(campaign, s.step), ...s.channels[name] }));
+      return { channel: channelOf(name), unit: unitText(told[0]?.unit ?? ""), values: told.map((e) => ({ step: e.step, value: e.heldout_rms ?? e.fit_rms, times: e.heldout ?? e.fit })) };
+    }).filter((r) => r.values.length);
   }
 
   judgedRuns() {
@@ -390,6 +376,11 @@ class App {
     byId("link").addEventListener("click", () => this.copy());
   }
 
+  /** Does it have so much to tell that two printed pages take smaller letters? */
+  get long() {
+    return byId("verdict").innerText.length > LONG || this.campaign.diagnosis.ladder.length > STEPS;
+  }
+
   /** The address follows, when things rest. */
   write() {
     clearTimeout(this.writing);
@@ -491,6 +482,7 @@ addEventListener("beforeprint", () => {
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
+  document.documentElement.toggleAttribute("data-long", app.long);
   sheet?.remove();
   if (app.timeline?.result) app.figures.all.overlay.drawing.after(sheet = h("div", { class: "paper" }, app.figures.all.overlay.says.draw(900, look())));
 });

@@ -1,7 +1,7 @@
 // What the reader sets: steps of the search, effects with their sizes, calibrated values.
 
 import { h, symbols } from "page/dom";
-import { display, inUnit, significant, unitText } from "page/numbers";
+import { display, inUnit, settled, significant, unitText } from "page/numbers";
 import { capital, stepOf } from "page/words";
 
 const STEPS = 400; // of a slider
@@ -135,7 +135,7 @@ export class Controls {
     }
     this.again.disabled = ![...this.boxes.values()].some(({ box }) => box.checked); // not hidden: nothing moves under a pointer that drags
     for (const [name, { range, number, factor, record }] of this.sliders) {
-      const value = (this.values[name] ?? this.campaign.known[name] ?? record.default) * factor, active = document.activeElement;
+      const value = settled(this.values[name] ?? this.campaign.known[name] ?? record.default, record) * factor, active = document.activeElement;
       if (this.shown.get(name) === value && active !== range && active !== number) continue;
       this.shown.set(name, value);
       if (document.activeElement !== range || Math.abs(range.valueAsNumber - value) > 1e-9 * Math.abs(value)) range.value = value;

@@ -2,7 +2,7 @@
 
 import { indexed } from "page/dom";
 
-const NS = "http://www.w3.org/2000/svg";
+const NS = "http://www.w3.org/2000/svg", XML = "http://www.w3.org/XML/1998/namespace";
 const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good"];
 
 /** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
@@ -23,7 +23,7 @@ export function look() {
 
 export function svg(tag, attributes = {}, ...children) {
   const made = document.createElementNS(NS, tag);
-  for (const [name, value] of Object.entries(attributes)) if (value !== null && value !== undefined) made.setAttribute(name, value);
+  for (const [name, value] of Object.entries(attributes)) if (value !== null && value !== undefined) name.startsWith("xml:") ? made.setAttributeNS(XML, name, value) : made.setAttribute(name, value);
   made.append(...children.flat(Infinity).filter((c) => c !== null && c !== undefined && c !== false));
   return made;
 }
@@ -37,7 +37,7 @@ export const text = (x, y, words, fill, anchor = "start", more = {}) => svg("tex
 
 /** The same, symbols with their index below the line. */
 export function symbolic(x, y, words, fill, anchor, more) {
-  const made = text(x, y, "", fill, anchor, more);
+  const made = text(x, y, "", fill, anchor, { ...more, "xml:space": "preserve" }); // else some programs drop the space after an index
   let low = false;
   made.replaceChildren(...indexed(String(words)).map(([t, below]) => {
     const piece = svg("tspan", { dy: below === low ? null : below ? 3 : -3, "font-size": below ? "9.5" : null }, t);

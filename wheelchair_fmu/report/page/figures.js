@@ -5,14 +5,15 @@ import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { forest, panels } from "page/forest";
 import { Heat, QUIET, heat } from "page/heat";
-import { profiles, together } from "page/landscape";
+import { crossings, profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { between, degrees, display, rms, significant, unitText, withError } from "page/numbers";
+import { UNSEEN, between, degrees, display, inUnit, rms, significant, toPlace, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
+const LATE = 10; // samples from the end of a run
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
 
 /** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
@@ -25,9 +26,11 @@ export class Figures {
     Object.assign(this, { campaign, app, ladder: campaign.diagnosis.ladder.map((s) => ({ ...s, name: stepOf(campaign, s.step) })) });
     this.all = {};
     this.add("staircase", "The error falling, step by step", this.stairs());
-    this.add("forest", "Every effect's size, with its 95 % interval", this.sizes());
+    this.add("forest", "Sizes of effects, with their 95 % intervals", this.sizes());
     if (campaign.diagnosis.calibration && Object.keys(campaign.diagnosis.calibration).length) this.add("calibration", "Calibrated values beside what was given", this.calibrated());
     else byId("calibration").remove();
+    if (this.ladder.some((s) => s.channels)) this.add("physical", "The error in the sensors' own units", this.units());
+    else byId("physical").remove(); // an older diagnosis
     this.landscape();
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
@@ -36,20 +39,25 @@ export class Figures {
 
   add(id, title, says, own = false) {
     const { campaign } = this;
-    this.all[id] = new Figure(byId(id), { title, subject: () => campaign.name, file: () => `${campaign.name}-${id}`, ...says }, own);
+    this.all[id] = new Figure(byId(id), { title, subject: () => this.whole(), file: () => `${campaign.name}-${id}`, ...says }, own);
     if (!own) this.all[id].redraw();
     return this.all[id];
   }
 
+  /** What figures of the whole campaign are of. */
+  whole() {
+    const { name, runs } = this.campaign, held = runs.filter((r) => r.role === "holdout").length;
+    return `${isolated(name)}, ${runs.length === 1 ? "one run" : `${runs.length} runs`}${held ? `, ${held} of them held out` : ""}`;
+  }
+
   /** Those that need the model. */
   alive() {
-    const { campaign, app } = this, subject = () => `${campaign.name}, ${runOf(campaign.runs[app.shown.run])}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
+    const { campaign, app } = this, subject = () => `${isolated(campaign.name)}, ${runOf(campaign.runs[app.shown.run])}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
     this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
     this.add("where", "Where the error is", this.places(), true);
     this.add("regimes", "The error against what was going on", this.moments());
-    this.add("physical", "The same in the sensors' own units", this.units());
-    this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
+    this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1; arrow keys go from cell to cell", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
   }
 
   stairs() {
@@ -80,12 +88,12 @@ export class Figures {
     return {
       draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}, ${significant(Math.abs(r.value), 2)} times that size`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
   }
 
   calibrated() {
-    const { calibration } = this.campaign.diagnosis, records = new Map(this.campaign.calibrated.map((p) => [p.name, p]));
+    const { calibration } = this.campaign.diagnosis, records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
       const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
@@ -123,8 +131,16 @@ export class Figures {
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
       columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "fall of twice the log likelihood": all.flatMap((p) => p.ys) }),
-      caption: () => "How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval.",
+      caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again, as a fall of twice the log likelihood; below the dashed line lies the 95 % interval. ${curves.map((c) => this.sure(c)).join(" ")}`,
     };
+  }
+
+  /** A profile in words: its lowest place, and its 95 % interval as far as it was followed. */
+  sure(curve) {
+    const { record, name } = this.sizeOf(curve.parameter), ends = crossings(curve.values, curve.heights, curve.level);
+    if (!ends.every(Number.isFinite)) return `${name}: ${inUnit(curve.estimate, record, 4)}.`;
+    const { unit, factor } = display(record), told = toPlace(curve.estimate * factor, ((ends[1] - ends[0]) * factor) / 4);
+    return `${name}: ${told}${unit === "deg" ? "" : " "}${unitText(unit)}, from ${between(...ends, record)}.`.replace(" ,", ",");
   }
 
   joined(joint) {
@@ -134,7 +150,7 @@ export class Figures {
     return {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "fall of twice the log likelihood": cells.map((c) => c[2]) }),
-      caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter.`,
+      caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter. The point is what fits best, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
 
@@ -156,8 +172,8 @@ export class Figures {
       caption: () => {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";
-        const apart = measured ? Math.hypot(model.x.at(-1) - measured.x.at(-1), model.y.at(-1) - measured.y.at(-1)) : NaN;
-        return `Solid: where the sensors say the chair went; dashed: the model.${Number.isFinite(apart) ? ` At the end they are ${significant(apart, 2)} m apart.` : ""}`;
+        const last = measured ? measured.x.findLastIndex((v, i) => Number.isFinite(v + measured.y[i])) : -1;
+        return `Solid: where the sensors say the chair went; dashed: the model.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
       },
     };
   }
@@ -185,8 +201,14 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => "Error of each run and channel in units of the noise. Colour begins where it is more than noise.",
+      caption: () => `Error of each run and channel in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
     };
+  }
+
+  /** The greatest error of a run's channel. */
+  greatest() {
+    const cells = this.placed().flatMap((r) => r.cells).filter((c) => Number.isFinite(c.value)), most = cells.reduce((a, b) => (a && a.value >= b.value ? a : b), null);
+    return most ? ` The greatest is ${rms(most.value)}, of the ${channelOf(most.at[1])} of ${runOf(this.campaign.runs[most.at[0]])}.` : "";
   }
 
   placed() {
@@ -200,10 +222,10 @@ export class Figures {
   moments() {
     const { app, campaign } = this, panels = () => this.against ?? [];
     return {
-      subject: () => `${campaign.name}, all runs`, file: () => `${campaign.name}-regimes-${app.shown.channel}`,
+      file: () => `${campaign.name}-regimes-${app.shown.channel}`,
       draw: (width, look) => drawnAgainst(width, look, panels()),
       columns: () => ({ regime: panels().flatMap((p) => p.xs.map(() => p.label)), at: panels().flatMap((p) => p.xs), "mean error, noise = 1": panels().flatMap((p) => p.means), "2.5 % lie below": panels().flatMap((p) => p.lows), "2.5 % lie above": panels().flatMap((p) => p.highs) }),
-      caption: () => `Error of the ${channelOf(app.shown.channel)} in all runs, measured less model, in units of the noise: its mean, and about it where 95 of 100 readings lie; a perfect model keeps within the shading. A line that leaves zero shows when the model fails.${this.worst()}`,
+      caption: () => `Error of the ${channelOf(app.shown.channel)} in all runs, measured less model, in units of the noise: its mean, and about it where 95 of 100 readings lie; of a perfect model 95 of 100 lie between the dashed lines. A line that leaves zero shows when the model fails.${this.worst()}`,
     };
   }
 
@@ -214,15 +236,21 @@ export class Figures {
   }
 
   units() {
-    const rows = () => this.app.physical();
+    const all = this.app.physical();
     return {
       draw: (width, look) => {
-        const all = rows(), shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
+        const shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
         return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
       },
-      columns: () => { const cells = rows().flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
-      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.`,
+      columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
+      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.${this.missed(all)}`,
     };
+  }
+
+  /** What a step of the search changed most, in the unit of a sensor. */
+  missed(rows) {
+    const known = rows.filter((r) => r.values.length > 1 && r.values.every((v) => v.value !== undefined)), most = known.reduce((a, b) => (a && a.values[0].times >= b.values[0].times ? a : b), null);
+    return most ? ` The ${most.channel} is missed by ${listed(most.values.map((v) => `${significant(v.value, 2)} ${most.unit} ${v.step}`))}.` : "";
   }
 
   /** What follows a change at once, where it is in sight. */
@@ -241,7 +269,7 @@ export class Figures {
     this.against = against(campaign.regimes, campaign.runs, app.results, app.shown.channel);
     this.heats();
     for (const id of ["path", "overlay", "where"]) this.all[id].said();
-    for (const id of ["staircase", "physical", "regimes"]) this.all[id].redraw();
+    for (const id of ["staircase", "regimes"]) this.all[id].redraw();
   }
 
   redraw() {

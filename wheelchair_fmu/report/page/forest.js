@@ -32,7 +32,8 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
     for (const [v] of marks) drawn.push(line(across(v), from, across(v), to, v === 0 ? look.faint : look.line));
   }
   for (const [v, words] of marks) drawn.push(text(across(v), end + 15, words, look.faint, "middle", { "font-size": 11 }));
-  drawn.push(text(across(0), 14, shaded, look.faint, "middle", { "font-size": 11 }));
+  const half = long(shaded, look, 11) / 2 + 2;
+  drawn.push(text(Math.max(half, Math.min(width - half, across(0))), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
   drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
   return canvas(width, end + 40, drawn);
@@ -73,17 +74,23 @@ export function bars(width, look, rows) {
   return canvas(width, y + 18, [...drawn, text(noise - 2, y + 12, "1.00: noise alone", look.faint, "start", { "font-size": 11 })]);
 }
 
+/** What an axis of curves with bands goes from and to: all of the curves, and of the bands what does not press them flat. */
+function heights(all) {
+  const there = all.flatMap((p) => p.ys.flatMap((v, i) => (v === null ? [] : [{ v, by: 2 * p.ses[i] }]))), by = there.map((t) => t.by).sort((a, b) => a - b);
+  const [least, greatest] = [Math.min(0, ...there.map((t) => t.v)), Math.max(0, ...there.map((t) => t.v))], room = Math.max(0.6 * (greatest - least), by[by.length >> 1] ?? 1);
+  return [Math.max(least - room, Math.min(least, ...there.map((t) => t.v - t.by))), Math.min(greatest + room, Math.max(greatest, ...there.map((t) => t.v + t.by)))];
+}
+
 /** Small panels of curves with bands: [{label, xs, ys, ses}], one unit. */
 export function panels(width, look, all, unit) {
-  const abreast = width < 480 ? 1 : width < 760 ? 2 : 3, wide = width / abreast, high = 176, drawn = [];
-  const values = all.flatMap((p) => p.ys.flatMap((v, i) => (v === null ? [] : [v - 2 * p.ses[i], v + 2 * p.ses[i]]))), [low, most] = [Math.min(0, ...values), Math.max(0, ...values)];
+  const abreast = Math.max(1, Math.min(3, Math.floor(width / 180))), wide = width / abreast, high = 176, drawn = [], [low, most] = heights(all);
   all.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * high + 10, w = wide - 58, hh = high - 58, there = p.xs.map((_, i) => i).filter((i) => p.ys[i] !== null);
     const shown = there.length > 1 ? there : p.xs.map((_, i) => i), [from, to] = [p.xs[shown[0]], p.xs[shown.at(-1)]], across = (v) => x0 + (w * (v - from)) / (to - from), down = (v) => y0 + hh * (1 - (v - low) / (most - low || 1));
     for (const [v, words] of ticked(ticks(low, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), v === 0 ? look.faint : look.line), text(x0 - 5, down(v) + 4, words, look.faint, "end", { "font-size": 10.5 }));
-    for (const [v, words] of ticked(ticks(from, to, 4))) drawn.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
+    for (const [v, words] of ticked(ticks(from, to, Math.min(4, w / 50)))) drawn.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
     if (there.length) {
-      const edge = (way) => there.map((i) => `${across(p.xs[i]).toFixed(1)} ${down(p.ys[i] + way * 1.96 * p.ses[i]).toFixed(1)}`);
+      const edge = (way) => there.map((i) => `${across(p.xs[i]).toFixed(1)} ${down(Math.min(most, Math.max(low, p.ys[i] + way * 1.96 * p.ses[i]))).toFixed(1)}`);
       drawn.push(svg("path", { d: `M${edge(1).join("L")}L${edge(-1).reverse().join("L")}Z`, fill: look.error, "fill-opacity": 0.22 }),
         svg("path", { d: `M${there.map((i) => `${across(p.xs[i]).toFixed(1)} ${down(p.ys[i]).toFixed(1)}`).join("L")}`, stroke: look.error, "stroke-width": 2, fill: "none" }),
         there.map((i) => svg("circle", { cx: across(p.xs[i]), cy: down(p.ys[i]), r: 3, fill: look.error })));

@@ -52,8 +52,10 @@ export function columns(bench) {
   const needed = Object.keys(headers).length && bench.state.faults.some((f) => f.severity === "error");
   return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
     const given = (devices ? devices.find((d) => d.device === one.name).columns : campaign.columns) ?? {};
-    const rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options));
-    return h("div", {}, one.name ? device(bench, devices.findIndex((d) => d.device === one.name)) : null, table(["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], rows));
+    const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
+    const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => (!devices || "used" in row.dataset) === there));
+    return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, used.length ? table(heads, used) : null,
+      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}columns${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
   }));
 }
 
@@ -71,15 +73,17 @@ function device(bench, i) {
 /** The files of a device, in all runs. */
 const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? campaign.run : []).map((run) => run.files?.[device]).filter(Boolean));
 
-function columnRow(bench, header, place, given, options) {
+function columnRow(bench, header, place, given, options, record) {
   const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
   const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
   const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6 });
-  const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : {};
-  const which = select(`channel of ${header}`, { ...options, ...unused }, channel, () => change());
+  const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
+  const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
+  const derived = channel && !(channel in options) ? { [channel]: `${channel.replaceAll("_", " ")}, from which other signals are worked out` } : {};
+  const which = select(`channel of ${header}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.value.trim()));
   const files = headers[header].filter((f) => !place.files || place.files.has(f));
-  return h("tr", {}, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which), h("td", {}, unit), h("td", {}, radius));
+  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */

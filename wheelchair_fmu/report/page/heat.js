@@ -6,6 +6,7 @@ import { rms, significant } from "page/numbers";
 
 export const QUIET = 1.1; // whitened RMS without colour
 const LOUD = 6; // and with all of it
+const NOTE = 10; // size of a cell's second line: six points where a figure is 85 mm wide
 const STRONGEST = 55; // per cent of colour, on which text in ink still stands out
 
 /** How much colour an error has, in per cent. */
@@ -21,6 +22,7 @@ export class Heat {
     place.replaceChildren(h("div", { class: "wide plainly", tabindex: 0, role: "region", "aria-label": caption },
       h("table", { class: "heat" }, h("caption", { class: "unseen" }, caption), h("thead", {}, h("tr", {}, h("td"), heads.map((t) => h("th", { scope: "col" }, t)))), this.body)));
     this.cells = [];
+    this.body.addEventListener("keydown", (event) => this.moved(event));
     new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; }).observe(place);
   }
 
@@ -33,34 +35,56 @@ export class Heat {
       if (made.note && made.note.textContent !== cell.note) made.note.textContent = cell.note;
       if (made.strong !== strong) made.cell.style.setProperty("--loud", (made.strong = strong));
       if (chosen) made.cell.toggleAttribute("data-chosen", chosen(cell.at));
+      if (chosen?.(cell.at)) this.reach(i, j);
     }));
+  }
+
+  /** Of all cells one is reached by the tab key; from there arrow keys go on. */
+  reach(i, j) {
+    const [was, now] = [this.reached, this.cells[i][j].figure];
+    if (was === now) return;
+    if (was) was.tabIndex = -1;
+    now.tabIndex = 0;
+    this.reached = now;
+  }
+
+  moved(event) {
+    const way = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowDown: [1, 0], ArrowUp: [-1, 0] }[event.key], i = this.cells.findIndex((row) => row.some((c) => c.figure === event.target));
+    if (!way || i < 0) return;
+    const [row, column] = [i + way[0], this.cells[i].findIndex((c) => c.figure === event.target) + way[1]];
+    event.preventDefault();
+    if (!this.cells[row]?.[column]) return;
+    this.reach(row, column);
+    this.reached.focus();
   }
 
   build(rows, shape) {
     this.shape = shape;
+    this.reached = null;
     this.cells = rows.map((row) => row.cells.map((cell) => {
-      const figure = h(this.choose ? "button" : "span", this.choose ? { type: "button", class: "plain", "aria-label": cell.label, onclick: () => this.choose(cell.at) } : {});
+      const figure = h(this.choose ? "button" : "span", this.choose ? { type: "button", class: "plain", tabindex: -1, "aria-label": cell.label, onclick: () => this.choose(cell.at) } : {});
       const note = cell.note === undefined ? null : h("small");
       return { figure, note, cell: h("td", {}, figure, note) };
     }));
     this.body.replaceChildren(...rows.map((row, i) => h("tr", {}, h("th", { scope: "row" }, row.name, row.note ? h("small", {}, row.note) : null), this.cells[i].map((c) => c.cell))));
+    if (this.choose && this.cells[0]?.length) this.reach(0, 0);
   }
 }
 
 /** The same as a drawing. */
 export function heat(width, look, heads, rows) {
-  const left = Math.min(0.36 * width, 14 + Math.max(...rows.map((r) => long(r.name, look)))), wide = (width - left) / heads.length, drawn = [];
-  const size = wide < 64 ? 10 : 11, named = heads.map((t) => broken(t, wide - 4, look, size, 400, 5)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
+  const called = (r) => (r.note ? `${r.name} (${r.note})` : r.name), left = Math.min(0.3 * width, 14 + Math.max(...rows.map((r) => long(called(r), look)))), wide = (width - left) / heads.length, drawn = [];
+  const size = wide < 64 ? 10 : 11, named = heads.map((t) => broken(t, wide - 4, look, size, 400, 7)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
   named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": size }))));
   let y = top;
   for (const row of rows) {
-    const name = broken(row.name, left - 12, look, 12, 400, 3), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, 9.5, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));
+    const name = broken(called(row), left - 12, look, 12, 400, 3), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, NOTE, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));
     const high = Math.max([24, 32, 45][name.length - 1], 24 + 11 * noted - (noted ? 1 : 0));
     name.forEach((t, k) => drawn.push(text(left - 8, y + high / 2 + 4 + 13 * (k - (name.length - 1) / 2), t, look.ink, "end")));
     row.cells.forEach((c, j) => {
       const x = left + wide * j, middle = x + wide / 2;
       drawn.push(svg("rect", { x: x + 1, y: y + 1, width: wide - 2, height: high - 2, fill: look.error, "fill-opacity": loud(c.value) / 100, stroke: look.line }),
-        text(middle, y + (noted ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), notes[j].map((t, k) => text(middle, y + 27 + 11 * k, t, look.faint, "middle", { "font-size": 9.5 })));
+        text(middle, y + (noted ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), notes[j].map((t, k) => text(middle, y + 27 + 11 * k, t, look.faint, "middle", { "font-size": NOTE })));
     });
     y += high;
   }

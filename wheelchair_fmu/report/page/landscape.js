@@ -1,6 +1,6 @@
 // The likelihood about the estimates: by each size alone, and by the sizes of two rivals together.
 
-import { broken, canvas, course, fitted, line, long, svg, text, ticked, ticks } from "page/draw";
+import { broken, canvas, course, line, long, svg, text, ticked, ticks } from "page/draw";
 
 const HIGH = 236;
 
@@ -15,9 +15,19 @@ export function profiles(width, look, all, level) {
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
     drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : Math.min(y, y0 + hh))), look.accent, { "stroke-width": 2 }));
     broken(p.label, wide - 12, look, 12, 400, 2).forEach((t, k) => drawn.push(text(x0 + w / 2, y0 + hh + 34 + 14 * k, t, look.ink, "middle")));
-    if (n % abreast === 0) drawn.push(text(0, 0, "worse fit", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
+    if (n % abreast === 0) drawn.push(text(0, 0, "fall of 2 ln L", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
+}
+
+/** Where a curve of heights rises through a level either side of its lowest point; NaN where it ends before. */
+export function crossings(xs, ys, level) {
+  const root = ys.map((y) => (y === null ? Infinity : Math.sqrt(Math.max(y, 0)))), least = root.indexOf(Math.min(...root)), goal = Math.sqrt(level); // of a parabola, straight
+  return [-1, 1].map((way) => {
+    for (let i = least; xs[i + way] !== undefined; i += way)
+      if (root[i + way] >= goal) return Number.isFinite(root[i + way]) ? xs[i] + ((goal - root[i]) / (root[i + way] - root[i])) * (xs[i + way] - xs[i]) : NaN;
+    return NaN;
+  });
 }
 
 const BETWEEN = 8; // points drawn from one of a curve to the next
@@ -104,7 +114,7 @@ function solved(a, b) {
 /** Two sizes together: contours of 50 and 95 % about the best, and either size alone on its axis. `pair` is the landscape's
  *  with `names`, `deltas` and `bounds` [[least, greatest], ...]; both axes are in the smallest sizes that would matter. */
 export function together(width, look, pair) {
-  const left = 60, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, deltas, bounds } = pair, [about, heights] = finer(pair.about, pair.heights);
+  const left = 70, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, deltas, bounds } = pair, [about, heights] = finer(pair.about, pair.heights);
   const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
   const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [joined(contour(heights, about, level)).map((points) => within(points.map(at), bounds)), dash]);
   const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat()).filter(([v]) => Number.isFinite(v))], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
@@ -116,8 +126,10 @@ export function together(width, look, pair) {
   for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
-  drawn.push(text(left + w / 2, top + hh + 36, measured(pair.names[0], width - left, look), look.ink, "middle"), text(0, 0, measured(pair.names[1], top + hh + 30, look), look.ink, "middle", { transform: `translate(16 ${top + hh / 2}) rotate(-90)` }));
-  return canvas(width, top + hh + 46, drawn);
+  const [below, beside] = [measured(pair.names[0], w + 40, look), measured(pair.names[1], hh, look)];
+  below.forEach((t, k) => drawn.push(text(left + w / 2, top + hh + 36 + 14 * k, t, look.ink, "middle")));
+  beside.forEach((t, k) => drawn.push(text(0, 0, t, look.ink, "middle", { transform: `translate(${14 + 14 * k} ${top + hh / 2}) rotate(-90)` })));
+  return canvas(width, top + hh + 32 + 14 * below.length, drawn);
 }
 
 /** A course as far as it lies within bounds, to the very bounds, with a gap where it does not. */
@@ -135,5 +147,5 @@ function within(points, bounds) {
   return out;
 }
 
-/** A name with what its axis counts, or, where that has no place, as much of it as has. */
-const measured = (name, room, look) => [`${name}, in sizes that matter`, `${name} [1 matters]`].find((t) => long(t, look) <= room) ?? fitted(name, room, look);
+/** Lines of a name with what its axis counts, or, where that has no place, of the name alone. */
+const measured = (name, room, look) => (long(`${name}, in sizes that matter`, look) <= room ? [`${name}, in sizes that matter`] : broken(name, room, look, 12, 400, 2));

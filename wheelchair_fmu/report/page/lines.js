@@ -5,6 +5,7 @@ import { display, unitText } from "page/numbers";
 import { channelOf } from "page/words";
 
 const LEFT = 54, RIGHT = 8;
+const APART = 14; // between two ticks, so that their numbers stand free
 const MOST = 1500; // points of a curve
 const ROOM = 0.12; // of the curves' height that a band may add at either side
 
@@ -25,7 +26,8 @@ export function lines(width, look, time, [from, to], panels) {
     const down = (v) => top + panel.height * (1 - (v - low) / (high - low));
     if (panel.band) drawn.push(svg("rect", { x: LEFT, width: width - LEFT - RIGHT, y: down(panel.band), height: down(-panel.band) - down(panel.band), fill: look.band }));
     if (panel.edges) drawn.push(svg("path", { d: area(xs, ...panel.edges.map((edge) => shown.map((i) => down(Math.min(Math.max(edge[i], low), high))))), fill: look.band }));
-    for (const v of ticks(low, high, Math.max(3, panel.height / 40))) drawn.push(line(LEFT, down(v), width - RIGHT, down(v), look.line), text(LEFT - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
+    const values = panel.band && (panel.height * panel.band) / (high - low) > APART ? [-panel.band, 0, panel.band] : ticks(low, high, Math.max(3, panel.height / 40));
+    for (const v of values) drawn.push(line(LEFT, down(v), width - RIGHT, down(v), look.line), text(LEFT - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
     for (const [, values, colour, thick, dash] of panel.lines) {
       const { at, lapse } = present(time, values), own = at.filter((i) => time[i] >= from && time[i] <= to), every = Math.max(1, Math.floor(own.length / MOST)), xs = [], ys = [];
       own.forEach((i, k) => {
@@ -67,7 +69,7 @@ export function path(width, look, motion) {
   const scale = Math.min((width - 2 * frame) / (right - left + 2 * room), 420 / (bottom - top + 2 * room)), height = scale * (bottom - top + 2 * room) + 80;
   const put = (u, v) => [width / 2 + scale * (u - (left + right) / 2), 24 + scale * (v - top + room)], drawn = [], end = height - 50;
   for (const u of ticks(left, right, width / 110)) { const [x] = put(u, top); drawn.push(line(x, 22, x, end, look.line), text(x, end + 16, tick(u), look.faint, "middle", { "font-size": 11 })); }
-  for (const v of ticks(top, bottom, 4)) { const [, y] = put(left, v); drawn.push(line(frame, y, width - 10, y, look.line), text(frame - 6, y + 4, tick(lengthways ? v : -v), look.faint, "end", { "font-size": 11 })); }
+  for (const v of ticks(top, bottom, Math.min(4, Math.max(1, (scale * (bottom - top)) / 24)))) { const [, y] = put(left, v); drawn.push(line(frame, y, width - 10, y, look.line), text(frame - 6, y + 4, tick(lengthways ? v : -v), look.faint, "end", { "font-size": 11 })); }
   let at = frame;
   for (const [name, p, dash] of every) {
     const points = [...p.x.keys()].filter((i) => i % Math.max(1, Math.floor(p.x.length / 700)) === 0).map((i) => (lengthways ? put(p.x[i], p.y[i]) : put(p.y[i], -p.x[i])));

@@ -27,31 +27,36 @@ export function significant(value, digits = 3) {
 export function toPlace(value, noise) {
   if (!Number.isFinite(value)) return "–";
   const place = noise > 0 ? Math.min(8, Math.max(0, -Math.floor(Math.log10(noise) + 1e-9))) : 3;
-  return minus(value.toFixed(place)).replace(/^−(0(\.0*)?)$/, "$1");
+  return unsigned(minus(value.toFixed(place)));
 }
+
+export const UNSEEN = "not seen"; // a size whose error is a hundred times as large, and more
 
 /** "1.607 ± 0.008 N": the error to two digits at most, the estimate to the same place. */
 export function withError(estimate, se, record) {
   const { unit, factor } = display(record), suffix = unitText(unit), space = suffix === "°" || !suffix ? "" : " ";
   const [value, error] = [estimate * factor, se === null ? null : se * factor];
   if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
-  if (value !== 0 && error > 100 * Math.abs(value)) return `not seen${space}${suffix ? ` [${suffix}]` : ""}`;
+  if (value !== 0 && error > 100 * Math.abs(value)) return UNSEEN;
   const [first, exponent] = error.toExponential(0).split("e").map(Number);
   const place = Math.max(0, (first < 3 ? 1 : 0) - exponent);
-  return `${minus(value.toFixed(Math.min(place, 8)))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
+  return `${unsigned(minus(value.toFixed(Math.min(place, 8))))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
 }
+
+/** A size, or zero where a fit has left next to nothing of it. */
+export const settled = (value, record) => (record.delta && Math.abs(value) < 1e-6 * record.delta ? 0 : value);
 
 /** A value in the unit it is shown in. */
 export function inUnit(value, record, digits = 3) {
   const { unit, factor } = display(record), suffix = unitText(unit);
-  return `${significant(value * factor, digits)}${suffix && suffix !== "°" ? " " : ""}${suffix}`;
+  return `${significant(settled(value, record) * factor, digits)}${suffix && suffix !== "°" ? " " : ""}${suffix}`;
 }
 
 /** "−4.2 to 6.8 °": both ends to the digits that tell them apart. */
 export function between(from, to, record) {
   const { unit, factor } = display(record), [a, b] = [from * factor, to * factor], span = Math.abs(b - a);
   const place = span > 0 ? Math.min(Math.max(0, 1 - Math.floor(Math.log10(span))), 4) : 2;
-  const text = (v) => minus(v.toFixed(place)).replace(/^−(0(\.0*)?)$/, "$1");
+  const text = (v) => unsigned(minus(v.toFixed(place)));
   return `${text(a)} to ${text(b)}${unit === "deg" ? "" : " "}${unitText(unit)}`.trim();
 }
 
@@ -67,3 +72,4 @@ export function probability(p) {
 export const rms = (value) => (value === null || value === undefined || Number.isNaN(value) ? "–" : value.toFixed(2));
 
 const minus = (text) => text.replace(/^-/, "−");
+const unsigned = (text) => text.replace(/^−(0(\.0*)?)$/, "$1"); // zero has no sign

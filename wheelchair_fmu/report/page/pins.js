@@ -5,6 +5,7 @@ import { inUnit, rms } from "page/numbers";
 import { listed, titleOf } from "page/words";
 
 export const LABELS = ["A", "B", "C"];
+const PLAINLY = 3, NAMED = 3; // standard errors from what was fitted, and values that are told
 
 export class Pins {
   /** `pinned(kept)` is called with [{label, values}] when they change, `put(values)` to go to one. */
@@ -45,6 +46,14 @@ export class Pins {
 
   words(values) {
     const on = this.campaign.effects.filter((e) => e.parameters.some((p) => values[p.name]));
-    return listed(on.map((e) => `${titleOf(this.campaign, e.id)} (${e.parameters.map((p) => inUnit(values[p.name] ?? 0, p)).join(", ")})`)) || "no effect";
+    const effects = listed(on.map((e) => `${titleOf(this.campaign, e.id)} (${e.parameters.map((p) => inUnit(values[p.name] ?? 0, p)).join(", ")})`)) || "no effect";
+    return [effects, ...this.elsewhere(values).map((p) => `${p.meaning} ${inUnit(values[p.name], p)}`)].join("; ");
+  }
+
+  /** Calibrated values that are plainly not those of any step of the search: the furthest first. */
+  elsewhere(values) {
+    const { calibrated, diagnosis: { calibration, models } } = this.campaign, fitted = models.filter((m) => m.step !== "nominal");
+    const off = (p) => Math.min(...fitted.map((m) => Math.abs(values[p.name] - m.values[p.name]) / (calibration?.[p.name]?.se || Infinity)));
+    return calibrated.filter((p) => p.name in values && off(p) > PLAINLY).sort((a, b) => off(b) - off(a)).slice(0, NAMED);
   }
 }

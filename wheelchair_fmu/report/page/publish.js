@@ -6,6 +6,8 @@ import { FONT, PRINT, PRINTED, broken, svg, text } from "page/draw";
 
 export const WIDTHS = { 85: 400, 170: 720 }; // mm, and the units of drawing that are as wide
 const DPI = 400;
+// Letters that join, change places or stand on others, or run from right to left: a browser sets them, what writes PDF does not.
+const SHAPED = /[\p{M}\p{Script=Arabic}\p{Script=Hebrew}\p{Script=Syriac}\p{Script=Thaana}\p{Script=Nko}\p{Script=Thai}\p{Script=Lao}\p{Script=Devanagari}\p{Script=Bengali}\p{Script=Tamil}]/u;
 const MARGIN = 12, HEAD = 17, LINE = 14;
 let press = null;
 
@@ -56,13 +58,13 @@ async function painted(element, mm) {
   return made;
 }
 
-/** Lines and letters; a picture of them where a name has letters that the fonts do not. */
+/** Lines and letters; a picture of them where a name has letters that the fonts do not have, or that need setting. */
 async function pdf(element, mm) {
   const [, , across, down] = element.getAttribute("viewBox").split(" ").map(Number), high = (mm * down) / across, box = { x: 0, y: 0, width: mm, height: high };
   const made = new jspdf.jsPDF({ unit: "mm", format: [mm, high], orientation: high > mm ? "portrait" : "landscape", compress: true, putOnlyUsedFonts: true });
   const said = [...element.querySelectorAll("text")].map((t) => t.textContent).join("");
   made.setDocumentProperties({ title: element.querySelector("title").textContent, subject: element.querySelector("desc").textContent });
-  if ([...said].some((c) => press.lacking.includes(c))) made.addImage(await painted(element, mm), "PNG", 0, 0, mm, high, undefined, "FAST");
+  if (SHAPED.test(said) || [...said].some((c) => press.lacking.includes(c))) made.addImage(await painted(element, mm), "PNG", 0, 0, mm, high, undefined, "FAST");
   else {
     for (const [style, font] of Object.entries(press.fonts)) {
       made.addFileToVFS(`${style}.ttf`, font);

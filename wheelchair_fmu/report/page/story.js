@@ -86,11 +86,13 @@ export class Story {
     }
   }
 
-  /** The button puts in the last step of the search, or the likeliest effect where nothing was found. */
+  /** The button puts in the last step of the search; where nothing was added to the model, what was found and left out as it is
+   *  small, at its size, or the likeliest effect at the smallest that would matter. */
   putting() {
-    const begins = this.campaign.diagnosis.models.find((m) => m.step === this.campaign.diagnosis.begins), first = this.campaign.diagnosis.ranking.find((r) => this.campaign.effects.some((e) => e.id === r.effect));
+    const { models, begins: step, ranking, effects } = this.campaign.diagnosis, begins = models.find((m) => m.step === step);
+    const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), first = known.find((r) => effects.includes(r.effect)) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
-    this.with = this.last === begins ? { ...begins.values, ...Object.fromEntries(sizes) } : this.last.values;
+    this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
     this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });

@@ -109,6 +109,7 @@ export class Timeline {
   build(shape, data) {
     this.shape = shape;
     for (const plot of this.plots) plot.destroy();
+    this.marks = null;
     const colour = (name) => () => this.look[name];
     const series = [this.lines.map(([, , name, width, dash]) => ({ stroke: colour(name), width, dash, points: { show: false }, ...(name === "measured" ? { gaps: this.gaps } : { paths: smooth }) })), [{ stroke: colour("error"), width: 1, points: { show: false }, gaps: this.gaps }]];
     this.plots = [this.unit, "error ÷ noise"].map((label, i) => new uPlot(this.options(i, label, series[i]), data[i], this.charts[i]));
@@ -119,13 +120,14 @@ export class Timeline {
   options(index, label, series) {
     const axis = { stroke: () => this.look.faint, grid: { stroke: () => this.look.line, width: 1 }, ticks: { stroke: () => this.look.line, width: 1, size: 4 }, font: "12px system-ui, sans-serif" };
     return {
-      ...this.size(index), padding: [8, 6, 0, 0], legend: { show: false }, series: [{}, ...series],
+      ...this.size(index), padding: [8, 6, index ? 0 : 8, 0], legend: { show: false }, series: [{}, ...series],
       cursor: { sync: { key: "time" }, drag: { x: true, y: false, dist: 6, setScale: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false, range: () => [this.from, this.to] }, y: { range: index ? (_, low, high) => { const most = 1.05 * Math.max(4, -low || 0, high || 0); return [-most, most]; } : undefined } },
       axes: [{ ...axis, show: index === 1, size: 40, label: index ? "time [s]" : undefined, labelSize: 18, labelFont: "12px system-ui, sans-serif" },
         { ...axis, size: AXIS - 18, space: index ? 24 : 36, label, labelSize: 18, labelFont: "12px system-ui, sans-serif", values: (_, vs) => ticked(vs).map(([, words]) => words) }],
       hooks: {
         setSelect: [(plot) => this.selected(plot)],
+        draw: [() => this.mark()],
         drawClear: [(plot) => (index ? this.noise(plot) : this.band(plot))],
         init: [(plot) => {
           plot.over.addEventListener("dblclick", () => this.whole.click());
@@ -195,20 +197,23 @@ export class Timeline {
     return low;
   }
 
+  /** The cursor's line in both charts; they call this once they have another scale or size, too. */
+  mark() {
+    const inside = this.at >= this.from && this.at <= this.to;
+    this.marks?.forEach((mark, k) => { mark.style.transform = inside ? `translateX(${this.plots[k].valToPos(this.at, "x")}px)` : "translateX(-9999px)"; });
+  }
+
   place() {
     if (!this.result) return;
     const i = this.sample;
-    this.plots.forEach((plot, k) => {
-      const inside = this.at >= this.from && this.at <= this.to;
-      this.marks[k].style.transform = inside ? `translateX(${plot.valToPos(this.at, "x")}px)` : "translateX(-9999px)";
-    });
+    this.mark();
     for (const { name, read, measured, model, error } of this.cells) {
       const k = latest(this.run.channels[name], i);
       write(measured, read(this.run.channels[name][k]));
       write(model, read(this.result.predicted[name][i]));
       write(error, toPlace(this.result.errors[name][k], 0.1));
     }
-    const said = `${(this.at - this.time[0]).toFixed(2)} s`;
+    const said = `${this.at.toFixed(2)} s`;
     write(this.clock, said);
     if (this.scrub.valueAsNumber !== this.at) {
       this.scrub.value = this.at;

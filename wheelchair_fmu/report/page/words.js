@@ -20,7 +20,10 @@ export function shortOf(name) {
 
 export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
 export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
-export const runOf = (run) => (run.role === "holdout" ? `${run.name} (held out)` : run.name);
+
+/** A name in a sentence: one that is written from right to left leaves the order of the words about it as it is. */
+export const isolated = (name) => (/[\p{Script=Arabic}\p{Script=Hebrew}\p{Script=Syriac}\p{Script=Thaana}]/u.test(name) ? `\u2068${name}\u2069` : name);
+export const runOf = (run) => (run.role === "holdout" ? `${isolated(run.name)} (held out)` : isolated(run.name));
 
 /** "a, b and c" */
 export const listed = (names, word = "and") => (names.length > 1 ? `${names.slice(0, -1).join(", ")} ${word} ${names.at(-1)}` : names.join(""));

@@ -3,13 +3,15 @@
 import { byId, h, save, symbols } from "page/dom";
 import { chair, columns, noise, priors, runs } from "page/forms";
 import { rms, unitText } from "page/numbers";
-import { capital } from "page/words";
+import { capital, listed } from "page/words";
 
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
 const PLACE = /^(?:run )?(?<where>.+?): (?<what>.+)$/; // of a fault's sentence
 const FIRST = { diagnose: "of ten short runs it takes about a minute", add: "it takes some seconds", try: "it takes some seconds" };
 const DONE = { import: "the files were read together", calibrate: "calibrated", diagnose: "diagnosed", add: "added and refitted", try: "tried" };
+
+const PLACES = { a: "how far the casters' pivots are ahead of the centre of mass", b: "how far the rear axle is behind it", t_f: "how far the casters' pivots are apart" };
 
 class Refused extends Error {}
 
@@ -80,19 +82,24 @@ class Workbench {
     this.showEffects();
     this.showJob(state.job);
     this.showOutcome();
-    byId("earlier").replaceChildren(...(state.earlier.length ? ["Earlier work: ", ...state.earlier.map((s) => h("a", { class: "button", href: `/s/${s.id}` }, s.name))] : []));
+    byId("earlier").replaceChildren(...(state.earlier.length ? ["Earlier work: ", ...state.earlier.map((s) => h("a", { class: "button", href: `/s/${s.id}` }, `${s.name}, ${when(s.at)}`))] : []));
   }
 
   showFaults() {
     const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), remarks = faults.filter((f) => f.severity !== "error");
-    const tally = !files.length && !errors.length ? "" : errors.length ? `${errors.length} fault${errors.length > 1 ? "s" : ""} to mend before anything can be concluded` : "These recordings can be read.";
+    const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), by = raw ? ": find out above what is in these files, or mend them by hand" : "";
+    const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
     byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
       remarks.length ? h("details", {}, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}`), causes(remarks)) : "");
-    byId("lab").hidden = !files.length || (!errors.length && !Array.isArray(campaign?.recording));
+    byId("lab").hidden = !files.length || (!errors.length && raw);
+    byId("import").setAttribute("aria-pressed", errors.length > 0);
     byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
     byId("preview-link").hidden = !files.length;
     byId("preview").href = `${this.here}/preview`;
     this.ready = files.length > 0 && !errors.length;
+    const assumed = Object.entries(PLACES).filter(([name]) => campaign?.chair?.[name] === undefined).map(([, words]) => words);
+    byId("assumed").hidden = !this.ready || !assumed.length;
+    byId("assumed").textContent = `Not given, and so taken from another chair: ${listed(assumed)}. Measure it and write it above under “What is known of the chair”: a wrong value there passes for an effect, or hides one.`;
     this.enable();
   }
 
@@ -133,9 +140,9 @@ class Workbench {
   /** The likeliest effects of the last diagnosis come first. */
   showEffects() {
     const { effects, words, outcome } = this.state, select = byId("effect"), chosen = select.value, order = new Map((outcome?.order ?? []).map((id, i) => [id, i]));
-    const all = [...effects].sort((a, b) => (order.get(a.id) ?? 1e9) - (order.get(b.id) ?? 1e9));
+    const there = new Set(this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label)), all = effects.filter((e) => !there.has(`+ ${e.id}`)).sort((a, b) => (order.get(a.id) ?? 1e9) - (order.get(b.id) ?? 1e9));
     select.replaceChildren(...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
-    if (this.ranked === (outcome?.order ?? []).join() && effects.some((e) => e.id === chosen)) select.value = chosen;
+    if (this.ranked === (outcome?.order ?? []).join() && all.some((e) => e.id === chosen)) select.value = chosen;
     this.ranked = (outcome?.order ?? []).join();
     if (byId("readable").childElementCount) return;
     byId("readable").append(...words.readable.map((q) => h("option", { value: q.name })));
@@ -194,7 +201,7 @@ class Workbench {
     if (!done) return;
     const inModel = this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label), add = outcome.effects.filter((e) => !inModel.includes(`+ ${e}`));
     box.replaceChildren(
-      outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This is of the model, or of the measurements, before the last change, and so is the report. Diagnose again for what is so now."),
+      outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This verdict and its report are from before the last change. Diagnose again for what is missing now."),
       h("h3", {}, outcome.sentence),
       h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, symbols(l)))))),
       h("p", { class: "tools wide-tools" }, add.map((e) => h("button", { type: "button", class: "step", "aria-pressed": "true", "data-add": e, onclick: () => this.job("add", { effect: e }) }, `add it: ${this.titleOf(e)}`)),
@@ -293,21 +300,30 @@ class Workbench {
   }
 }
 
+const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
 const whole = (seconds) => (seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 
 /** Faults by their cause: what is wrong alike in many places is said once, with the places behind it. */
-function causes(faults) {
+const causes = (faults) => h("ul", {}, [...byCause(faults)].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? fault.text
+  : h("details", {}, h("summary", {}, h("b", {}, `in ${places.length} places: `), what), h("small", {}, places.join("; "))))));
+
+/** {what is wrong: {fault, places}} */
+function byCause(faults) {
   const found = new Map();
   for (const fault of faults) {
     const { where, what } = fault.text.match(PLACE)?.groups ?? { where: "", what: fault.text };
     if (!found.has(what)) found.set(what, { fault, places: [] });
     found.get(what).places.push(where);
   }
-  return h("ul", {}, [...found].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? fault.text
-    : h("details", {}, h("summary", {}, h("b", {}, `in ${places.length} places: `), what), h("small", {}, places.join("; "))))));
+  return found;
 }
 
-const fall = (ladder) => `error on runs held out: ${ladder.map((s) => rms(s.heldout)).join(" → ")}`;
+/** The error as it came down, with what each figure is of. */
+function fall(ladder) {
+  const held = ladder.every((s) => s.heldout !== null), told = (s) => rms(held ? s.heldout : s.fit), [first, ...more] = ladder;
+  const steps = more.map((s, i) => `${s.step === "calibrated" ? "calibrated " : i === more.length - 1 ? "now " : ""}${told(s)}`);
+  return `error on ${held ? "runs held out" : "fitted runs"}: as given ${told(first)}${steps.length ? ` → ${steps.join(" → ")}` : ""}; 1.00 is noise alone`;
+}
 
 /** Every file of what was dropped, folders too, as [path, file]. */
 async function dropped(transfer) {
