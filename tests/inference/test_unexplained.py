@@ -45,18 +45,19 @@ def to_one_side(run, without):
 
 @pytest.mark.parametrize(
     ("forces", "of", "by"),
-    [
-        (spring, "moment", "caster angle"),
-        (lumpy, "force", "left wheel's angle"),
-        (to_one_side, "moment", "constant"),
-        (swung, "force", "stroke"),
-    ],
+    [(spring, "moment", "caster angle"), (lumpy, "force", "left wheel's angle"), (to_one_side, "moment", "constant")],
 )
 def test_what_a_force_goes_with_is_told(sample, forces, of, by):
     found = left_of(ridden(sample, np.random.default_rng(1), forces))
     assert found.orders and (found.orders[0].of, found.orders[0].by) == (of, by)
     assert found.orders[0].share > 0.5
     assert any(w.startswith(f"The missing {of} ") for w in found.words)
+
+
+def test_what_swings_once_in_each_stroke_is_the_riders_body(sample):
+    found = left_of(ridden(sample, np.random.default_rng(1), swung))
+    assert found.after.body > 0.2 and found.after.along < 0.2 and found.orders == ()
+    assert "a swing of the rider's body of " in found.words[0]
 
 
 def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
