@@ -94,5 +94,5 @@ def _words(found: Sequence[Slipping]) -> str:
         f"{runs}: a rear wheel changed its speed there as the chair did not, so it slipped, as on a floor whose friction holds "
         f"about {held:.2f} of the wheel's load; wheels of this model roll, so no effect is looked for, as it could only make "
         f"up for that; leave these runs out, or take the law of wheels that slip: wheel = "
-        f'"spinning" in the [laws] of a variant, with tyre.mu = {held:.2f}"
+        f'"spinning" in the [laws] of a variant, with tyre.mu = {held:.2f}'
     )
