@@ -18,7 +18,7 @@ from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms
 from ..report.saving import save
-from ..report.words import helpers, outside, tied, verdict_words
+from ..report.words import helpers, outside, tied, to_measure, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -104,8 +104,9 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         out.print(f"{name.removeprefix('effect.')} = {d.final.values[name]:.4g} {unit}, 95 % within {low:.4g} to {high:.4g}")
     if d.next_experiment:
         n = d.next_experiment
-        times = "once" if n["repeats"] == 1 else f"{n['repeats']} times"
-        out.print(f"Measure {n['manoeuvre']} next, {times}{_aim(d, n['separates'])}: {n['why']}.")
+        times = "" if n["repeats"] == 1 else f", {n['repeats']} times"
+        what = to_measure(n["manoeuvre"], {p.name: p for p in d.models.factory.variant.parameters()})
+        out.print(f"Measure {what} next{times}{_aim(d, n['separates'])}: {n['why']}.")
     out.print(f"{d.seconds:.1f} s")
 
 

@@ -57,10 +57,10 @@ def lead(values: Sequence[Calibrated], left: Unexplained | None) -> dict[str, An
     is the share of that force's mean square which it would be about; None where nobody can say."""
     bent = [v.record.name for v in values if v.beyond]
     if bent:
-        names = " and ".join(bent)
+        it, them = ("it", "it") if len(bent) == 1 else ("they", "them")
         return _experiment(
-            f"{names} measured again",
-            f"{names} came out as nobody would have measured it: that is wrong, or something is missing",
+            f"{' and '.join(bent)} measured again",
+            f"{it} came out as nobody would have measured {them}, so that is wrong, or something is missing",
         )
     order = left.orders[0] if left and left.orders else None
     if order is None:
