@@ -30,6 +30,7 @@ NEAR = 2.0  # mean square innovation of a model that is about right: of one that
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
 PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
 AT_BOUND = 1e-3  # of a parameter's scale
+STEEPEST = 1e100  # slope in standard deviations per unit, of whose squares no computer loses count
 LEAST_SHARE = 0.2  # of a step that is tried
 REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
@@ -110,7 +111,11 @@ class Problem:
         return dict(zip(self.names, map(float, theta), strict=True))
 
     def linearised(self, theta: np.ndarray) -> Evidence:
-        return self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta), self.names)
+        """Raises SimulationError too where slopes lead nowhere."""
+        found = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta), self.names)
+        if not np.abs(found.S).max(initial=0.0) < STEEPEST:
+            raise SimulationError("slopes by the parameters are beyond all numbers, as of casters that flip by chance")
+        return found
 
     def squares(self, here: Evidence, theta: np.ndarray) -> float:
         """What a descent makes small: squared innovations, and the prior's."""

@@ -96,11 +96,8 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
     thetas = [[start[n] for n in names] for start in starts]
     begun = []
     for start in most_promising(likelihood, known, names, thetas, BEGUN, known.r):
-        values = dict(zip(names, map(float, start.theta), strict=True))
         try:
-            here = likelihood.evidence(models.campaign.fit, values, names)
-            if np.isfinite(here.S).all():  # casters that flip by chance have slopes beyond all numbers, which lead nowhere
-                begun.append(models.refit(every, values, here, most=1))
+            begun.append(models.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
         except SimulationError:
             continue
     begun.sort(key=lambda fit: fit.misfit)

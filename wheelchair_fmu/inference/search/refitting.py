@@ -76,7 +76,10 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
             ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival))
             rival = min(rival, ended[-1].misfit)
     best = min(ended, key=lambda f: f.misfit, default=None)
-    return models.refit(effects, best.values) if best and constants else best
+    try:
+        return models.refit(effects, best.values) if best and constants else best
+    except SimulationError:
+        return best  # by the law as its record has it
 
 
 def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, least: float) -> list[Start]:
