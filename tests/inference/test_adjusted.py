@@ -102,12 +102,20 @@ def test_the_fall_of_an_effect_is_less_by_what_is_paid_for_its_constants(swingin
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     "hidden",
-    [{"trunk_motion": {"swing": 0.015}}, {"caster_friction": {"M": 0.15}, "floor_cross_slope": {"theta": 0.003}}],
-    ids=["a body that swings", "bearings that stick, on a cross-slope"],
+    [
+        {"trunk_motion": {"swing": 0.015}},
+        {"trunk_motion": {"amplitude": 0.03}},
+        {"caster_friction": {"M": 0.15}, "floor_cross_slope": {"theta": 0.003}},
+    ],
+    ids=[
+        "a body that swings",
+        "a body that leans, and has no swing to tell the constants of",
+        "bearings that stick, on a cross-slope",
+    ],
 )
 def test_what_another_chair_does_in_its_own_way_is_named(hidden, tmp_path):
     """The other simulator's rider swings at 1.09 Hz, and its bearings' friction builds up over 0.05 rad/s."""
-    found = diagnose(read(make(tmp_path / "campaign", hidden, seed=41)), generic=library())
+    found = diagnose(read(make(tmp_path / "campaign", hidden, seed=41, redraw=41000)), generic=library())
     assert found.verdict == "missing" and set(hidden) <= set(found.effects) <= {*hidden, "caster_trail"}
     assert max(found.ladder[-1].fit, found.ladder[-1].heldout) < 1.05
     assert not [c.record.name for c in found.calibration if c.beyond]

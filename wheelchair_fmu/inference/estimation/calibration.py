@@ -41,8 +41,9 @@ class Calibrated:
 
     @property
     def beyond(self) -> bool:
-        """Would it be another chair, rather than one that was measured with an ordinary error?"""
-        return abs(self.off) > REACH - CLOSE
+        """Would it be another chair, rather than one that was measured with an ordinary error? A constant of an effect's law is
+        nobody's measurement: what the law does not do, however it is bent, is among what is left."""
+        return abs(self.off) > REACH - CLOSE and not self.record.adjusted
 
     @property
     def words(self) -> str:
@@ -50,7 +51,8 @@ class Calibrated:
         unit = "" if self.record.unit.name == "1" else f" {self.record.unit.name}"
         value, prior, sd = (f"{float(f'{v:.{d}g}'):.9g}" for v, d in ((self.value, 4), (self.prior, 4), (self.prior_sd, 2)))
         told = f"{self.record.name} comes out at {value}{unit}"
-        given = f"{abs(self.off):.1f} standard deviations from the {prior} ± {sd}{unit} given"
+        known = f"usual {prior} ± {sd}{unit}" if self.record.adjusted else f"{prior} ± {sd}{unit} given"
+        given = f"{abs(self.off):.1f} standard deviations from the {known}"
         if self.beyond:
             return (
                 f"{told}, {given}, where the search stops: the value given is wrong, or it stands in for what the model lacks"
