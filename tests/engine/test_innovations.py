@@ -218,22 +218,27 @@ def test_colour_is_by_time_where_rows_belong_to_several_loggers():
     assert white @ white == pytest.approx(flat @ np.linalg.solve(V[np.ix_(keep, keep)], flat), rel=1e-8)
 
 
+def coasting(time: np.ndarray, mass: float) -> SimpleNamespace:
+    """A chair of this mass (kg) that nothing slows down, whose speed is read at these times (n,)."""
+    n = len(time)
+    half = np.zeros((n - 1, 1, 4))
+    half[:, 0, 0] = np.diff(time) / 2 / mass  # a straight line between two samples
+    return SimpleNamespace(
+        time=time,
+        transition=np.ones((n - 1, 1, 1)),
+        push_before=half,
+        push_after=half,
+        by_state=np.ones((n, 1, 1)),
+        by_push=np.zeros((n, 1, 4)),
+    )
+
+
 @pytest.mark.parametrize("phi", [0.0, 0.8])
 def test_noise_of_a_push_moves_the_chair_alike_however_many_rows_lie_between_its_samples(phi):
     """A chair of 1 kg, a push at 100 Hz with noise of 1 N, readings in between: variance of its speed after 4 s."""
 
     def speed_variance(time: np.ndarray) -> float:
-        n, gaps = len(time), np.diff(time)
-        half = np.zeros((n - 1, 1, 4))
-        half[:, 0, 0] = gaps / 2  # a straight line between two samples
-        run = SimpleNamespace(
-            time=time,
-            transition=np.ones((n - 1, 1, 1)),
-            push_before=half,
-            push_after=half,
-            by_state=np.ones((n, 1, 1)),
-            by_push=np.zeros((n, 1, 4)),
-        )
+        run, n = coasting(time, 1.0), len(time)
         noise = Noise(np.ones(1), np.full(1, phi), np.full(1, 1e-9), np.zeros(1), np.zeros((1, 1)), np.full(1, 0.01))
         return float(Whitener(run, [0], noise, np.ones((n, 1), bool)).spread[-1, 0] ** -2)
 
@@ -248,17 +253,7 @@ def test_a_body_that_swings_is_as_far_off_at_the_start_as_later():
     """A chair of 2 kg and a body whose momentum p has a standard deviation of 3 N s: simulated without it from the speed of
     both, the chair is off by p / m at any time."""
     time, p, m, (alpha, beta) = 0.01 * np.arange(300), 3.0, 2.0, (10.0, 5.0)
-    half = np.zeros((299, 1, 4))
-    half[:, 0, 0] = 0.01 / 2 / m
-    n = len(time)
-    run = SimpleNamespace(
-        time=time,
-        transition=np.ones((n - 1, 1, 1)),
-        push_before=half,
-        push_after=half,
-        by_state=np.ones((n, 1, 1)),
-        by_push=np.zeros((n, 1, 4)),
-    )
+    run, n = coasting(time, m), len(time)
     driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * p
     common = np.eye(2) + 2 * np.sqrt(alpha * beta) / (alpha + beta) * np.eye(2)[::-1]
     body = Disturbance(

@@ -251,7 +251,7 @@ def _climbed(models: Models, stepped: Callable[[Sequence[Step]], None]) -> tuple
     late = late_by_slopes(found.models, found.effects, named, found.top.fit)
     if not late:
         return first, found
-    again = _where_wheels_roll(begin(replace(found.models, factory=found.models.factory.retimed(late))))
+    again = begin(replace(found.models, factory=found.models.factory.retimed(late)))
     notes = tuple(dict.fromkeys((*first.notes, *again.notes)))
     again = replace(again, notes=notes, retimed={**first.retimed, **late, **again.retimed})
     return again, selection(again, stepped).to_the_top()
@@ -259,9 +259,9 @@ def _climbed(models: Models, stepped: Callable[[Sequence[Step]], None]) -> tuple
 
 def _where_wheels_roll(first: Beginning) -> Beginning:
     """The same with nothing to look for where wheels slipped that roll by law: a search would find effects that seem to make up
-    for it, one after another."""
+    for it, one after another. Where forces lead the runs, that was asked before."""
     models = first.models
-    said = slipped(models.campaign, models.factory.variant)
+    said = () if models.factory.leads else slipped(models.campaign, models.factory.variant)
     if not said:
         return first
     return replace(first, models=replace(models, factory=models.factory.narrowed()), notes=(*first.notes, *said))

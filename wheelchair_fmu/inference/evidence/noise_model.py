@@ -20,10 +20,8 @@ SWING = 0.15  # s over which an error of the momentum of the rider's body is for
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
 # s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
 SWUNG = (0.1, 0.2)
-RISES = (
-    1 / 3,
-    2 / 3,
-)  # of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
+# of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
+RISES = (1 / 3, 2 / 3)
 FORCED = 6  # processes of `disturbance`
 
 
@@ -42,9 +40,8 @@ class NoiseModel:
     mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
     stroke: float = 0.0  # N, RMS push of the runs that they were found for; 0: of any
     by_run: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # times `sd` that a channel's noise is in a run
-    shown: Mapping[str, float] = field(
-        default_factory=dict
-    )  # times what readings show by themselves, where that tells runs apart
+    # times what readings show by themselves, where that tells runs apart
+    shown: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, channel: str, run: Run) -> float:
         """Standard deviation of a channel's noise in a run; in one that is new, what its readings show where that tells runs

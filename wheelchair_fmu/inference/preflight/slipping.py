@@ -17,6 +17,7 @@ from ...campaign import Campaign, Run
 from ...campaign.channels import SIDES
 from ...model.variant import Variant
 from ...model.wheel.spinning import PARAMETERS
+from ..evidence.noise_model import HANDS
 
 OVER = 0.2  # s, over which speeds are compared
 WITHIN = 10  # times that so long has
@@ -25,7 +26,6 @@ BEYOND_NOISE = 8.0  # standard deviations of what the noise of the readings make
 PUSHED = 0.05  # of its load, at least, by which a wheel that slips is pushed
 SLIPPERY = 0.01  # share of a run's time, at least, in which one slips
 INERTIA = next(p.default for p in PARAMETERS if p.symbol == "I_wheel")
-PUSHES = ("push.F_rl", "push.F_rr")
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def slipped(campaign: Campaign, variant: Variant) -> tuple[str, ...]:
 
 def slipping(run: Run, campaign: Campaign, variant: Variant) -> Slipping | None:
     """Whether a rear wheel slips in a run; None too where its readings do not tell."""
-    if not {*SIDES, "a_x"} <= set(run.channels) or not set(PUSHES) <= set(run.inputs):
+    if not {*SIDES, "a_x"} <= set(run.channels) or not set(HANDS) <= set(run.inputs):
         return None
     chair = {**{p.name: p.default for p in variant.parameters()}, **variant.values, **campaign.known, **run.set}
     load = chair["chair.m"] * chair["g"] * chair["chair.a"] / (2 * (chair["chair.a"] + chair["chair.b"]))
@@ -56,7 +56,7 @@ def slipping(run: Run, campaign: Campaign, variant: Variant) -> Slipping | None:
     turned = _change(_read(run, "yaw_rate", grid)) if "yaw_rate" in run.channels else 0.0
     noise = campaign.noise.get(SIDES[0], 0.0) * np.sqrt(2) / OVER
     slips, held = np.zeros(len(felt), bool), []
-    for side, push, arm in zip(SIDES, PUSHES, (0.5, -0.5), strict=True):
+    for side, push, arm in zip(SIDES, HANDS, (0.5, -0.5), strict=True):
         gained = _change(_read(run, side, grid))
         amiss = gained - felt - arm * chair["chair.t_r"] * turned
         force = np.interp(grid + OVER / 2, run.time, run.inputs[push])[: len(felt)]

@@ -171,8 +171,8 @@ def _secants(
     """What the effect really does at its smallest interesting size, and at minus that where that may be another thing:
     (N, k) per unit, each. `known` is the evidence at `values`, where it is off. Of a group each member is tried beside those
     before it, by which it acts."""
-    records = [w.records[n] for n in w.parameters(effect)]
     names = w.parameters(effect)
+    records = [w.records[n] for n in names]
     values = {**dict(zip(names, w.unfitted(names).tolist(), strict=True)), **values}
     found = []
     for sign in (1.0,) if w.linear(effect) else (1.0, -1.0):
