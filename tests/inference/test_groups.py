@@ -164,3 +164,21 @@ def test_a_start_whose_slopes_are_beyond_all_numbers_leads_nowhere(tmp_path, mon
     monkeypatch.setattr(joint, "most_promising", lambda *_: [start])
     with np.errstate(all="ignore"):
         assert joint._fitted(models, base, group, group) is None
+
+
+def test_effects_of_one_law_are_tried_with_its_constants_as_records_have_them(sample):
+    """A bearing whose friction sets in within no swivel rate at all is a switch, which takes a thousand steps a sample."""
+    w = ModelFactory(sample, Variant())
+    rate = "effect.caster_friction.rate"
+    (casters,) = joint.kin(w)
+    tried = joint.tries(w, casters)
+    assert {one[rate] for one in tried} == {w.records[rate].default}
+    assert {one["effect.caster_friction.M"] for one in tried} >= {0.0, w.records["effect.caster_friction.M"].delta}
+
+
+def test_a_group_that_no_record_names_has_its_members_all_the_same(sample):
+    w = ModelFactory(sample, Variant())
+    several = ("caster_friction", "caster_inertia", "caster_trail")
+    group = "+".join(several)
+    assert group not in w.groups and w.members(group) == several and not w.linear(group)
+    assert set(w.estimated(group)) == {n for e in several for n in w.estimated(e)}

@@ -9,7 +9,6 @@ from io import BytesIO
 from pathlib import Path
 from unicodedata import bidirectional, category
 
-import matplotlib
 from fontTools.subset import Options, Subsetter
 from fontTools.ttLib import TTFont
 
@@ -55,6 +54,8 @@ def _joins(letter: str) -> bool:
 
 
 def _face(style: str) -> TTFont:
+    import matplotlib  # here, not above: see `canvas`
+
     return TTFont(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / FACES[style], recalcTimestamp=False)
 
 

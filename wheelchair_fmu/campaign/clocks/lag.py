@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy
 
 from .equation import Equation
 from .fine import refine
@@ -89,7 +89,7 @@ def find(equations: Sequence[Equation]) -> Lag | None:
 def _rival(support: np.ndarray, better: np.ndarray, best: int) -> tuple[int | None, float]:
     """The maximum of a profile that comes nearest to the best, and by how much it is behind over as long a time as it shares:
     strokes that are all alike fit as well one stroke later, in a record that is one stroke shorter."""
-    peaks = find_peaks(np.nan_to_num(better, nan=-1.0))[0]
+    peaks = scipy.signal.find_peaks(np.nan_to_num(better, nan=-1.0))[0]
     others = peaks[(np.abs(peaks - best) > WIDE) & (better[peaks] > SERIOUS * better[best])]
     if not len(others):
         return None, float(better[best])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import fftconvolve
+import scipy
 
 from .equation import Equation
 
@@ -31,7 +31,7 @@ def _profile_of(e: Equation) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     b = [np.where(there, v, 0.0) for v in (np.ones(len(there)), *(s.value for s in e.seen))]
 
     def along(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return fftconvolve(x, y[::-1])
+        return scipy.signal.fftconvolve(x, y[::-1])
 
     lags = e.time[0] - e.seen[0].start + step * (np.arange(len(a[0]) + len(b[0]) - 1) - (len(b[0]) - 1))
     nj, nk = len(a) - 2, len(b) - 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.signal import lsim
+import scipy
 
 from .smoothing import NODES, WIDTH, Smooth, smooth
 
@@ -92,7 +92,7 @@ class Device:
         total = np.nan_to_num(np.sum([p.value for p in pushes], axis=0))
         system = ([1.0, 0.0] if speed else [1.0], [1.0, 2 * DAMPING * BODY, BODY**2])
         start = float(np.median(total[:NODES]))
-        return self.grid, lsim(system, total - start, self.width / NODES * np.arange(len(total)))[1]
+        return self.grid, scipy.signal.lsim(system, total - start, self.width / NODES * np.arange(len(total)))[1]
 
     def _fitted(self, s: Smooth) -> Smooth:
         first, end = self._grid

@@ -145,8 +145,8 @@ class ModelFactory:
         return {member for e in (*effects, *self.variant.effects) for member in self.members(e)}
 
     def members(self, effect: str) -> tuple[str, ...]:
-        """The effects of a group, or the one effect that this is."""
-        return self.groups.get(effect, (effect,))
+        """The effects of a group, which its name has, or the one effect that this is."""
+        return tuple(effect.split(TOGETHER))
 
     def parameters(self, effect: str) -> tuple[str, ...]:
         """Full names of the parameters of an effect, or of a group of them, that say how large it is."""
@@ -166,7 +166,7 @@ class ModelFactory:
 
     def linear(self, effect: str) -> bool:
         """Does the slope at zero tell what the effect does at the size it has? Of a group it never does."""
-        if effect in self.groups:
+        if len(self.members(effect)) > 1:
             return False
         record = self.catalogue[effect]
         return not (record.even or record.rows or record.needs or any(p.adjusted for p in record.owned))

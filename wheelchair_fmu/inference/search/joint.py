@@ -83,16 +83,21 @@ def kin(w: ModelFactory) -> list[tuple[str, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
+def tries(w: ModelFactory, group: Sequence[str]) -> list[dict[str, float]]:
+    """Several sizes of each effect of a group, combined, with the constants of their laws as records have them."""
+    names = [n for e in group for n in w.parameters(e)]
+    sizes = list(product(*([f * w.records[n].delta for f in SIZES] for n in names)))
+    if len(sizes) > TRIES:
+        sizes = [sizes[i] for i in np.random.default_rng(0).choice(len(sizes), TRIES, replace=False)]
+    constants = {n: w.records[n].default for e in group for n in w.constants(e)}
+    return [{**constants, **dict(zip(names, one, strict=True))} for one in sizes]
+
+
 def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[str]) -> Fit | None:
     """The most likely model with all of a group that starts from several sizes of each lead to."""
     every, known = (*base.effects, *new), base.fit.evidence
     likelihood, names = models.likelihood(every), models.names(every)
-    own = [n for e in group for n in models.factory.parameters(e)]
-    sizes = [[f * models.factory.records[n].delta for f in SIZES] for n in own]
-    tries = list(product(*sizes))
-    if len(tries) > TRIES:
-        tries = [tries[i] for i in np.random.default_rng(0).choice(len(tries), TRIES, replace=False)]
-    starts = [{**dict.fromkeys(names, 0.0), **base.fit.values, **dict(zip(own, one, strict=True))} for one in tries]
+    starts = ({**base.fit.values, **sizes} for sizes in tries(models.factory, group))
     thetas = [[start[n] for n in names] for start in starts]
     begun = []
     for start in most_promising(likelihood, known, names, thetas, BEGUN, known.r):
