@@ -30,6 +30,7 @@ ENDED = 3  # refits go on to their end
 HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
 # where less is promised no refit starts, and if no size at all promises so much, refits start from
 GRID = (1.0, 2.0, 4.0)  # of δ as well
+RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
 
 Start = tuple[dict[str, float], Evidence | None]  # values, and what is known there
 
@@ -50,6 +51,8 @@ def candidate(
         return None
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
+    if found.evidence.rms > RISEN * base.fit.evidence.rms:
+        return None  # no fit: the model without the effect is one with it
     try:
         held = likelihood.restarted(likelihood.evidence(models.campaign.holdout, found.values), found.values)
     except SimulationError:

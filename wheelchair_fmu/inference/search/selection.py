@@ -15,6 +15,7 @@ from .candidate import Candidate
 from .joint import parted, together
 from .judge import surely_large
 from .pruning import pruned
+from .refitting import RISEN
 from .rounds import Round
 from .screen import AT_THE_FLOOR
 from .search import searched
@@ -22,7 +23,6 @@ from .ties import beside, overtaker
 
 MOST_EFFECTS = 4  # that are put in: whoever lacks more needs another model
 MOST_STEPS = 8  # that put one in, or one in the place of another
-RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 
