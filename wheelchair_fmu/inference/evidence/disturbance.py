@@ -8,7 +8,7 @@ figure that a person can read: 145 N of unexplained force, or 11.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -60,13 +60,14 @@ class Strength:
         return replace(along, moment=self.moment, lasting=self.lasting)
 
 
-def strength(evidence: Evidence, t_r: float, b: float) -> Strength:
+def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = None) -> Strength:
     """The most likely strength, given evidence of one model with its filters; zero where the readings ask for none.
 
     What turns a chair says how uneven a floor is: `t_r` is the distance (m) between the wheels, `b` that from the axle to the
     CM, where a slope to the side pulls. Along the heading a body pushes as well, and readings hardly tell the two apart. So the
     moment is found without a floor, and what there is along the heading beside a floor that is as steep along the way.
-    Uncertain clocks and baselines of runs are taken as they are.
+    The search begins `about` a strength, where one is known that is nearly it. Uncertain clocks and baselines of runs are taken
+    as they are.
     """
 
     def misfit(strength: Strength) -> float:
@@ -75,8 +76,7 @@ def strength(evidence: Evidence, t_r: float, b: float) -> Strength:
 
     none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
     without = misfit(none)
-    begin = (replace(none, **dict(zip(SIZES, map(float, sizes * USUAL), strict=True))) for sizes in np.array(START))
-    least, begun = min(((misfit(at), at) for at in begin), key=lambda tried: tried[0])
+    least, begun = min(((misfit(at), at) for at in _starts(none, about)), key=lambda tried: tried[0])
     if least > without:
         return none
     found = _likeliest(misfit, begun, (*SIZES, "lasting"))
@@ -87,6 +87,18 @@ def strength(evidence: Evidence, t_r: float, b: float) -> Strength:
         for name, usual in zip(SIZES, USUAL, strict=True)
     }
     return replace(found, **felt, fall=without - misfit(found))
+
+
+def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
+    """From where a search may begin: what is known already, none of it so small that nothing draws it up, or else anywhere."""
+    if about:
+        known = [getattr(about, name) for name in SIZES]
+        at: Sequence[np.ndarray] = [np.maximum(known, START[0] * USUAL)]
+        none = replace(none, lasting=about.lasting)
+    else:
+        at = [sizes * USUAL for sizes in np.array(START)]
+    for sizes in at:
+        yield replace(none, **dict(zip(SIZES, map(float, sizes), strict=True)))
 
 
 def _likeliest(misfit: Callable[[Strength], float], begun: Strength, by: Sequence[str]) -> Strength:
@@ -119,7 +131,8 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
     likelihood.noise_model = found.put_into(likelihood.noise_model)
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
-        before, found = found, strength(evidence, chair["chair.t_r"], chair["chair.b"])
+        known = found if found.fall else None
+        before, found = found, strength(evidence, chair["chair.t_r"], chair["chair.b"], known)
         if not found.fall or _alike(before, found):
             break
         likelihood.noise_model = found.put_into(likelihood.noise_model)
