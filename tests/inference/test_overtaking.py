@@ -23,9 +23,15 @@ def fit(misfit):
     return Fit((), {}, np.zeros((0, 0)), Evidence((), ()), misfit, np.zeros(0))
 
 
-def one(effect, misfit):
+def readings(apart):
+    """Evidence that is so far from that of 0, in squares."""
+    return Evidence((Some(r=np.array([[np.sqrt(apart)]]), run=Some(time=np.arange(2.0))),), ())
+
+
+def one(effect, misfit, held=None):
     support = Some(fitted=-misfit / 2, large=-misfit / 2)
-    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=None, support=support, scale=1.0)
+    heldout = None if held is None else readings(held)
+    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=heldout, support=support, scale=1.0)
 
 
 @pytest.mark.parametrize(
@@ -131,19 +137,21 @@ def test_ties_of_a_search_again_are_with_the_effect_of_the_model_whoever_was_fou
 
 
 @pytest.mark.parametrize(
-    ("behind", "ahead", "se", "is_tied"),
+    ("behind", "ahead", "held", "is_tied"),
     [
-        (9.0, -300.0, 60.0, True),  # as likely on fitted runs
-        (12.0, 5.0, 2.0, True),  # and on all runs together
-        (20.0, 5.0, 2.0, False),
-        (40.0, 5.0, 60.0, True),  # nobody can tell on held-out runs
-        (60.0, 5.0, 60.0, False),  # but it explains too little
-        (40.0, -300.0, 60.0, False),
+        (9.0, -300.0, 80.0, True),  # as likely on fitted runs
+        (12.0, 5.0, 40.0, True),  # and on all runs together
+        (20.0, 5.0, 40.0, False),
+        (40.0, -5.0, 3.0, True),  # nobody can tell on held-out runs
+        (40.0, 1.0, 5.0, False),  # where somebody could, whoever is ahead
+        (60.0, -5.0, 3.0, False),  # but it explains too little
+        (40.0, -300.0, None, False),  # nothing was held out
     ],
 )
-def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, behind, ahead, se, is_tied):
-    monkeypatch.setattr(ties, "_ahead_on_heldout", lambda one, other: (ahead, se) if one is not other else (0.0, 0.0))
-    candidates = [Some(**vars(one(e, m)), lawful=True, matters=True) for e, m in (("drag", 0.0), ("speed", behind))]
+def test_who_explains_nearly_as_much_is_tied_by_what_is_held_out(monkeypatch, behind, ahead, held, is_tied):
+    monkeypatch.setattr(ties, "_ahead_on_heldout", lambda one, other: ahead if one is not other else 0.0)
+    drag, speed = one("drag", 0.0, held=0.0), one("speed", behind, held)
+    candidates = [Some(**vars(c), lawful=True, matters=True) for c in (drag, speed)]
     assert tied(Some(candidates=candidates, again=False, policy=DEFAULT), "drag") == (
         ("drag", "speed") if is_tied else ("drag",)
     )

@@ -120,9 +120,10 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
 
 def _present(r: Round, c: Candidate) -> float:
     """The probability that a candidate is there at any size, beside nothing; by its standard errors where these say less than
-    the fall of −2 log likelihood does."""
+    the fall of −2 log likelihood does, and by held-out runs resampled by blocks of time."""
     large, slight = c.support.large - c.excess, c.support.slight - (1 - c.support.left) * c.excess
-    return float(special.expit(np.logaddexp(large, slight) + r.log_prior))
+    without, _ = _of_blocks(c, c.heldout, [r.heldout, c.heldout])
+    return float(np.mean(special.expit(np.logaddexp(large, slight) + r.log_prior - without)))
 
 
 def _belief(s: Support, there: float) -> Belief:
@@ -135,11 +136,13 @@ def _resampled(r: Round, candidates: Sequence[Candidate]) -> np.ndarray:
     leader = candidates[0]
     fitted = [r.fit.evidence, *(c.fit.evidence for c in candidates)]
     heldout = [r.heldout, *(c.heldout for c in candidates)]
-    out = np.zeros((len(fitted), RESAMPLES))
-    for of, models in ((leader.fit.evidence, fitted), (leader.heldout, heldout)):
-        if of is None or not of.runs:
-            continue
-        blocks = np.array([difference_blocks(of, m) if m is not None else 0 * difference_blocks(of, of) for m in models])
-        totals = np.array([resampled_totals(one) for one in blocks])
-        out += (totals - blocks.sum(axis=1)[:, None]) / (2 * leader.scale)
-    return out
+    return _of_blocks(leader, leader.fit.evidence, fitted) + _of_blocks(leader, leader.heldout, heldout)
+
+
+def _of_blocks(leader: Candidate, own: Evidence | None, models: Sequence[Evidence | None]) -> np.ndarray:
+    """The same by some of the runs, (m, RESAMPLES) of so many models."""
+    if own is None or not own.runs:
+        return np.zeros((len(models), RESAMPLES))
+    blocks = np.array([difference_blocks(own, m) if m is not None else 0 * difference_blocks(own, own) for m in models])
+    totals = np.array([resampled_totals(one) for one in blocks])
+    return (totals - blocks.sum(axis=1)[:, None]) / (2 * leader.scale)

@@ -1,13 +1,15 @@
-"""Effects that a campaign cannot tell apart: as likely within odds of a hundred to one, or as good on what was held out; and
-the search again, beside all others that were found, that tells."""
+"""Effects that a campaign cannot tell apart: as likely within odds of a hundred to one, or such as no run that was held out
+tells apart; and the search again, beside all others that were found, that tells."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ...errors import SimulationError
-from ..estimation.statistics import difference_blocks, resampled_totals
+from ..estimation.statistics import difference_blocks
 from ..models.hypothesis import Model
 from ..models.models import Models
 from .candidate import Candidate, ranked
@@ -19,6 +21,8 @@ from .search import ALIKE, SHORTLIST
 
 HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
+CHANCE = 4.0  # sum of squares D by which readings of two models differ: above, the mean of −2 log odds between them, D, is
+# larger than their standard deviation, 2 √D
 
 
 def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], ...]:
@@ -35,10 +39,10 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     for c in r.candidates:
         if c is leader or not c.lawful:
             continue
-        ahead, se = (0.0, 0.0) if r.again else _ahead_on_heldout(c, leader)
+        ahead = 0.0 if r.again else _ahead_on_heldout(c, leader)
         behind = _behind(c, leader)
         near = behind <= r.policy.tied or (behind - ahead / leader.scale <= r.policy.tied and c.matters)
-        same = abs(ahead) < se and c.matters and c.drop >= NEARLY * leader.drop
+        same = not r.again and _unchecked(c, leader) and c.matters and c.drop >= NEARLY * leader.drop
         if near or same:
             group.append(c.effect)
     return tuple(group)
@@ -99,10 +103,17 @@ def _behind(one: Candidate, other: Candidate) -> float:
     return 2 * (other.support.fitted - one.support.fitted)
 
 
-def _ahead_on_heldout(one: Candidate, other: Candidate) -> tuple[float, float]:
-    """By how much one predicts the held-out runs better than the other, in −2 log likelihood, and the bootstrap's standard
-    error of that; 0 where none were held out."""
+def _unchecked(one: Candidate, other: Candidate) -> bool:
+    """Were runs held out, on which two models differ by less than chance moves their odds? This asks the models alone: which of
+    them came out ahead is chance's doing then."""
     if one.heldout is None or other.heldout is None or not one.heldout.runs:
-        return 0.0, 0.0
-    blocks = difference_blocks(other.heldout, one.heldout)
-    return float(blocks.sum()), float(resampled_totals(blocks).std())
+        return False
+    runs = zip(one.heldout.runs, other.heldout.runs, strict=True)
+    return float(sum(np.nansum((a.r - b.r) ** 2) for a, b in runs)) <= CHANCE * other.scale
+
+
+def _ahead_on_heldout(one: Candidate, other: Candidate) -> float:
+    """By how much one predicts the held-out runs better than the other, in −2 log likelihood; 0 where none were held out."""
+    if one.heldout is None or other.heldout is None or not one.heldout.runs:
+        return 0.0
+    return float(difference_blocks(other.heldout, one.heldout).sum())
