@@ -158,7 +158,6 @@ class App {
   firstTime() {
     this.exactAt = performance.now();
     this.opened = this.opensAtStart ? [...this.results] : [];
-    this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
     this.later();
     this.pinned();
@@ -187,7 +186,7 @@ class App {
 
   /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
   fallen() {
-    const { begins, models } = this.campaign.diagnosis, [from, to] = [this.forces ? FORCES : begins, models.at(-1).step];
+    const { begins: from, models } = this.campaign.diagnosis, to = models.at(-1).step;
     if (from === to) return;
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];

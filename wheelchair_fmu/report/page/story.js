@@ -119,7 +119,7 @@ export class Story {
   }
 
   drawPut(rested) {
-    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, told = ladder.find((s) => s.step === begins), start = this.app.forces ? this.app.began : told;
+    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, start = ladder.find((s) => s.step === begins);
     const several = this.campaign.diagnosis.effects.length > 1 && !this.campaign.diagnosis.ties.length, it = several ? "them" : "it";
     this.toggle.textContent = this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
