@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from io import BytesIO
 from math import radians, tanh
@@ -102,6 +103,17 @@ def test_files_stay_in_their_folder(client, bench, name):
 def test_an_empty_start_has_no_faults_of_a_file_that_nobody_wrote(client):
     state = client.get(f"{client.base}/state").json()
     assert state["faults"] == [] and state["files"] == [] and state["outcome"] is None
+
+
+def test_what_is_too_small_to_matter_is_not_offered_to_be_put_in(client, bench):
+    session = Session(bench.root, client.base.rpartition("/")[2])
+    told = json.loads(SAMPLE_DIAGNOSIS.read_text(encoding="utf-8"))
+    upload(client, *recordings())
+    offered = []
+    for verdict in ("missing", "small"):
+        (session.folder / "diagnosis.json").write_text(json.dumps({**told, "verdict": verdict}), encoding="utf-8")
+        offered.append(client.get(f"{client.base}/state").json()["outcome"]["effects"])
+    assert offered == [told["effects"], []]
 
 
 def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(client, bench):

@@ -106,8 +106,8 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
     wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
     if wheelbase is not None and ahead is not None and ahead >= wheelbase:
         raise UsageError(
-            f"--cm-ahead {ahead:g} is beyond the casters' pivots, which --wheelbase puts {wheelbase:g} m ahead of the rear axle; "
-            "measure both from the axle"
+            f"--cm-ahead {ahead:g} is beyond the casters' pivots, which --wheelbase puts {wheelbase:g} m ahead of the rear "
+            "axle; measure both from the axle"
         )
 
 

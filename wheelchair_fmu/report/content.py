@@ -78,8 +78,9 @@ def content(
 
 
 def _along_forces(diagnosis: Mapping[str, Any]) -> dict[str, Any]:
-    """A diagnosis as the page runs it, with forces that nobody recorded among the noise all along: the search begins at the step
-    that counts them. The calibrated model of before, whose error in the staircase is without them, is none of its models."""
+    """A diagnosis as the page runs it, with forces that nobody recorded among the noise all along: the search begins at the
+    step that counts them. The calibrated model of before, whose error in the staircase is without them, is none of its
+    models."""
     models = [m for m in diagnosis["models"] if m["step"] != "calibrated"]
     known = any(m["step"] == UNRECORDED for m in models)  # an older diagnosis tells no values of that step
     return {**diagnosis, "models": models, "begins": UNRECORDED} if known else dict(diagnosis)

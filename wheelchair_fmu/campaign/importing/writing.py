@@ -50,7 +50,6 @@ class Wanted:
     clocks: Mapping[str, Mapping[str, Mapping[str, float]]] | None = None  # by run and device, where they were looked for
     noise: Mapping[str, float] = field(default_factory=dict)  # SI, by channel, as the samples show it
 
-
     @property
     def pivots_ahead(self) -> float | None:
         """How far the casters' pivots are ahead of the centre of mass."""
