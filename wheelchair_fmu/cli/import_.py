@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich import box
@@ -119,7 +119,7 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
     """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
     body = any(plan.body for plan in found.plans)
     asked = {name: words for name, words in SIZES.items() if getattr(wanted, name) is None and (body or name != "person")}
-    answers = {name: answer for name, words in asked.items() if (answer := _number(words)) is not None}
+    answers: dict[str, Any] = {name: answer for name, words in asked.items() if (answer := _number(words)) is not None}
     axes = wanted.axes
     if not axes and open_axes(found.plans):
         axes = {"right": AXES[0], "left": AXES[1]}.get(

@@ -1,6 +1,6 @@
 // The error falling, step by step, on a logarithmic axis from the noise.
 
-import { broken, canvas, line, long, round, svg, text, tick } from "page/draw";
+import { broken, canvas, line, long, round, svg, text, tick, whole } from "page/draw";
 import { rms } from "page/numbers";
 
 const MARKS = [0.8, 1, 1.2, 1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
@@ -16,7 +16,7 @@ export function staircase(width, look, steps, now) {
   const drawn = spaced.map((v) => [line(left, down(v), width - right, down(v), v === 1 ? look.ink : look.line, v === 1 ? { "stroke-dasharray": "5 4" } : {}), text(left - 7, down(v) + 4, tick(v), look.faint, "end")]);
   drawn.push(text(left + 4, down(1) - 5, "noise alone", look.faint, "start", { "font-size": 11 })); // falling, the steps leave this corner free
   const told = []; // in front of all lines
-  const names = every.map((s) => broken(s.name, wide - 8, look, 12, 400, 7));
+  const size = whole(every.map((s) => s.name), wide - 5, look, [12, 11, 10]), names = every.map((s) => broken(s.name, wide - 5, look, size, 400, 7));
   every.forEach((s, i) => {
     const x = left + wide * i, middle = x + wide / 2, next = every[i + 1], gap = Math.min(22, wide / 4);
     for (const [key, filled] of [["fit", false], ["heldout", true]]) {
@@ -29,7 +29,7 @@ export function staircase(width, look, steps, now) {
       if (wide < NARROW) told.push(backed(middle + side, down(v) + ((s.heldout >= s.fit) === filled ? -11 : 20), rms(v), look, "middle", weight));
       else told.push(backed(middle + side + (filled ? 8 : -7), down(v) + (filled ? -7 : 17), rms(v), look, filled ? "start" : "end", weight));
     }
-    names[i].forEach((t, k) => drawn.push(text(middle, top + high + under + 14 * k, t, look.ink, "middle")));
+    names[i].forEach((t, k) => drawn.push(text(middle, top + high + under + 14 * k, t, look.ink, "middle", { "font-size": size })));
   });
   drawn.push(told);
   const second = left + 40 + long("runs held out", look);
