@@ -81,9 +81,12 @@ def _along_forces(diagnosis: Mapping[str, Any]) -> dict[str, Any]:
     """A diagnosis as the page runs it, with forces that nobody recorded among the noise all along: the search begins at the
     step that counts them. The calibrated model of before, whose error in the staircase is without them, is none of its
     models."""
-    models = [m for m in diagnosis["models"] if m["step"] != "calibrated"]
-    known = any(m["step"] == UNRECORDED for m in models)  # an older diagnosis tells no values of that step
-    return {**diagnosis, "models": models, "begins": UNRECORDED} if known else dict(diagnosis)
+    if diagnosis["begins"] != "calibrated":  # a chair that came with effects begins with these in
+        return dict(diagnosis)
+    told = {m["step"]: m["values"] for m in diagnosis["models"]}
+    calibrated = told.pop("calibrated")  # of an older diagnosis the only ones that are known
+    told = {"nominal": told.pop("nominal"), UNRECORDED: calibrated, **told}
+    return {**diagnosis, "begins": UNRECORDED, "models": [{"step": step, "values": values} for step, values in told.items()]}
 
 
 def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:

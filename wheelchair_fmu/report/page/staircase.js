@@ -35,7 +35,7 @@ export function staircase(width, look, steps, now) {
   const second = left + 40 + long("runs held out", look);
   drawn.push(svg("circle", { cx: left + 6, cy: 10, r: 5, fill: look.model, stroke: look.model }), text(left + 16, 14, "runs held out", look.ink),
     svg("circle", { cx: second, cy: 10, r: 4.5, fill: look.paper, stroke: look.model, "stroke-width": 2 }), text(second + 10, 14, "fitted runs", look.ink));
-  drawn.push(text(0, 0, "error, noise = 1", look.ink, "middle", { transform: `translate(11 ${top + high / 2}) rotate(-90)` }));
+  drawn.push(text(0, 0, "error, noise = 1", look.ink, "middle", { transform: `translate(12 ${top + high / 2}) rotate(-90)` }));
   return canvas(width, top + high + under + 6 + 14 * Math.max(...names.map((n) => n.length)), drawn);
 }
 
