@@ -10,7 +10,7 @@ help:
 	@echo "make setup   a virtual environment in $(VENV) with everything to run and test"
 	@echo "make demo    build the FMU, run the loop on the sample campaign, build the improved FMU"
 	@echo "make test    the tests, but for those of make nightly"
-	@echo "make test-browser   the report in Chromium, by Playwright (apt-get install chromium)"
+	@echo "make test-browser   both pages in Chromium, by Playwright, and in Firefox with PYTEST_ADDOPTS="-m nightly" (apt-get install chromium firefox-esr)"
 	@echo "make docs    write the pages that are made from records: docs/campaign.md, docs/effects.md, docs/variables.md, docs/quantities.md, docs/options.md"
 	@echo "make docs/report.png   the picture of the report in README.md, in Chromium"
 	@echo "make site    the documentation as a site in out/site, with the Python reference; fails with any warning or lost link"

@@ -31,8 +31,8 @@ from wheelchair_fmu.model.generic import library
 from .bands import inside
 
 MEASUREMENTS = Path(__file__).resolve().parents[2] / "shared" / "measurements"
-# by the protocols: mass, radius, track, wheelbase, from the CM to the rear axle, track of the casters; where the sensor sits
-GIVEN = {
+OPTIONS = ("--mass", "--radius", "--track", "--wheelbase", "--cm-ahead", "--caster-track")
+GIVEN = {  # by the protocols; and where the sensor sits
     "lab-00": (117, 0.306, 0.565, 0.44, 0.10, 0.43),
     "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
     "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
@@ -45,19 +45,15 @@ BODIES = {"true_rider": "with the body's motion known", "law_only_rider": "by a 
 
 def imported(measurements: Path, lab: str, out: Path) -> Path:
     """The campaign of a lab's raw files, with what stands in its protocol."""
-    mass, radius, track, wheelbase, b, t_f = GIVEN[lab]
+    sizes = [word for one in zip(OPTIONS, GIVEN[lab], strict=True) for word in one]
     runs = json.loads((measurements / "lab-answers.json").read_text())[lab]["runs"]
     kept = [word for run, told in runs.items() if told["role"] == "holdout" for word in ("--holdout", run)]
-    words = ["import", measurements / lab, "-o", out, "--mass", mass, "--radius", radius, "--track", track, *kept]
-    done = CliRunner().invoke(app, [str(word) for word in words])
+    done = CliRunner().invoke(app, [str(word) for word in ("import", measurements / lab, "-o", out, *sizes, *kept)])
     if done.exit_code:
         raise RuntimeError(f"{lab}: wheelchair import ended with {done.exit_code}: {done.output}")
-    text = (out / "campaign.toml").read_text(encoding="utf-8")
-    for key, value in (("a = ", wheelbase - b), ("b = ", b), ("t_f = ", t_f)):
-        text = text.replace(f"# {key}", f"{key}{value:.3f} #", 1)
     if lab in AT:
-        text = text.replace("# at = [0.0, 0.0]", f"at = {AT[lab]} #", 1)
-    (out / "campaign.toml").write_text(text, encoding="utf-8")
+        text = (out / "campaign.toml").read_text(encoding="utf-8")
+        (out / "campaign.toml").write_text(text.replace("# at = [0.0, 0.0]", f"at = {AT[lab]} #", 1), encoding="utf-8")
     return out
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
+from tests.browser.conftest import CHROMIUM, DIAGNOSIS, LOOKS, SAMPLE, Reader, pages_of, report_of
 from wheelchair_fmu.report.page import page as page_of
 from wheelchair_fmu.report.page import unpacked
 from wheelchair_fmu.report.tale import Story
@@ -163,6 +162,7 @@ def test_the_way_past_the_text_keeps_the_state(reader):
     assert page.evaluate("window.same") and page.is_checked(f"#effect-{HIDDEN}")
 
 
+@CHROMIUM
 def test_without_scripts_the_story_is_there(browser, report_file):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
@@ -371,7 +371,7 @@ def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
     (tmp_path / "told.json").write_text(json.dumps(told))
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
-    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    assert pages_of(printed) == 2
     assert "missed by 0.90 °/s before" in reader.page.inner_text(".cards")  # what forces brought down is no effect's work
     reader.close()
 
@@ -397,5 +397,5 @@ def test_print_is_two_pages_on_white(browser, report_file):
     reader.page.check(f"#effect-{HIDDEN}")
     reader.settle()
     printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
-    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+    assert pages_of(printed) == 2
     reader.close()

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.browser.conftest import DIAGNOSIS, LOOKS, SAMPLE, Reader, report_of
+from tests.browser.conftest import CHROMIUM, DIAGNOSIS, LOOKS, SAMPLE, Reader, handed_out, launched, report_of
 from tests.flips import flipping
 from tests.kit import tracked, with_settings
 from wheelchair_fmu.campaign import Campaign, moving, read
@@ -276,7 +276,8 @@ def test_a_value_out_of_bounds_is_not_taken(reader):
     page.evaluate("for (const d of document.querySelectorAll('#controls details')) d.open = true")
     number = page.locator('[aria-label^="tyre.C_lambda ["]')
     before = page.evaluate("report.values")
-    number.fill("-3")
+    number.fill("")
+    number.press_sequentially("-3")
     number.blur()
     assert page.evaluate("report.values") == before
     assert not number.evaluate("e => e.checkValidity()")
@@ -289,12 +290,11 @@ EMBEDDED = rb"/FontFile2 \d+ 0 R"
 def taken(reader: Reader, figure: str, label: str, folder: Path) -> Path:
     """The file that a figure's menu hands out."""
     reader.page.click(f"#{figure} .menu > summary")
-    with reader.page.expect_download() as waiting:
-        reader.page.locator(f"#{figure} .menu button", has_text=label).click()
+    button = reader.page.locator(f"#{figure} .menu button", has_text=label)
+    name, content = handed_out(reader.page, button.click)
     reader.page.keyboard.press("Escape")
-    file = folder / waiting.value.suggested_filename
-    waiting.value.save_as(file)
-    return file
+    (folder / name).write_bytes(content)
+    return folder / name
 
 
 def words_of(reader: Reader, file: Path) -> list[str]:
@@ -429,3 +429,22 @@ def test_one_file_small_and_shut(report_file):
     assert report_file.stat().st_size <= 1.8e6
     assert "default-src 'none'" in text
     assert 'src="http' not in text
+
+
+@CHROMIUM
+@pytest.mark.nightly
+def test_firefox_has_the_figures_of_chromium(driver, browser, report_file):
+    values = {**MODELS[f"+{HIDDEN}"], "tyre.C_lambda": 4500.0, "effect.push_force_delay.tau": 0.013}
+    other, told = launched(driver, "firefox"), []
+    for one in (browser, other):
+        reader = Reader(one, report_file)
+        reader.set(values)
+        edges = reader.page.evaluate("report.band(report.results[report.shown.run], null).map(e => [...e])")
+        told.append((reader.page.evaluate("report.shown"), reader.table(), edges))
+        reader.close()
+    other.close()
+    (shown, table, edges), (there, other_table, other_edges) = told
+    assert shown == there
+    for run in table:
+        assert table[run] == pytest.approx(other_table[run], rel=1e-9), run
+    np.testing.assert_allclose(edges, other_edges, rtol=1e-9, atol=1e-9)

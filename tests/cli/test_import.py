@@ -39,7 +39,8 @@ def raw(tmp_path_factory):
 @pytest.fixture(scope="module")
 def made(raw, tmp_path_factory):
     out = tmp_path_factory.mktemp("made") / "campaign"
-    return out, imported(raw, "-o", out, "--radius", lab.RADIUS, "--mass", 90, "--track", 0.56)
+    sizes = ("--radius", lab.RADIUS, "--mass", 90, "--track", 0.56, "--wheelbase", 0.44, "--cm-ahead", 0.1)
+    return out, imported(raw, "-o", out, *sizes)
 
 
 def test_a_folder_of_recordings_becomes_a_campaign(made):
@@ -47,7 +48,7 @@ def test_a_folder_of_recordings_becomes_a_campaign(made):
     assert done.exit_code == 0, done.output
     assert {f.name for f in out.iterdir()} == {"campaign.toml", "preview.html", "preview.png", "runs"}
     content = tomllib.loads((out / "campaign.toml").read_text(encoding="utf-8"))
-    assert content["chair"] == {"m": 90, "t_r": 0.56} and content["wheel"] == {"R": lab.RADIUS}
+    assert content["chair"] == {"m": 90, "a": 0.34, "b": 0.1, "t_r": 0.56} and content["wheel"] == {"R": lab.RADIUS}
     assert content["nuisance"] == dict.fromkeys(("F_rl", "F_rr", "yaw_rate", "a_x", "a_y"), True)
     assert [run["role"] for run in content["run"]] == ["fit", "fit", "holdout"]
     for run in content["run"]:
@@ -87,7 +88,12 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(["--radius", "-1"], "no size of a wheelchair"), (["--axes", "ISO"], "no axes"), (["--holdout", "run9"], "no run 'run9'")],
+    [
+        (["--radius", "-1"], "no size of a wheelchair"),
+        (["--wheelbase", "0.4", "--cm-ahead", "0.4"], "beyond the casters' pivots"),
+        (["--axes", "ISO"], "no axes"),
+        (["--holdout", "run9"], "no run 'run9'"),
+    ],
 )
 def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
     done = imported(raw, "-o", tmp_path / "c", *words)
@@ -96,12 +102,12 @@ def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
 
 def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
     monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
-    done = CliRunner().invoke(
-        app, ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"], input="x\n88,5\n\n"
-    )
+    words = ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"]
+    done = CliRunner().invoke(app, words, input="x\n88,5\n\n0,44\n0.1\n\n")
     assert done.exit_code == 0 and "give a number" in done.output, done.output
     content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
-    assert content["chair"] == {"m": 88.5, "t_r": 0.5} and content["wheel"] == {}
+    assert content["chair"] == {"m": 88.5, "a": 0.34, "b": 0.1, "t_r": 0.5} and content["wheel"] == {}
+    assert "rider alone" not in done.output, "no marker is on a body"
     assert "the wheels' radius is missing" in done.output and "plausible" not in done.output, "what was left open is said"
 
 
@@ -113,7 +119,7 @@ def test_at_a_terminal_it_asks_for_the_wheel_and_the_unit_that_no_file_tells(tmp
         time, right = lab.seen(s, 100, 0.2, "wheel_speed_r")
         pd.DataFrame({"t [s]": time, "speed right": right / 0.3}).to_csv(tmp_path / f"run{i}_tacho.csv", index=False)
     words = ["import", str(tmp_path), "-o", str(tmp_path / "c"), "--mass", "90", "--radius", "0.3", "--track", "0.56"]
-    done = CliRunner().invoke(app, words, input="left\nkg\nrad/s\n")
+    done = CliRunner().invoke(app, words, input="left\nkg\nrad/s\n\n\n\n")
     assert done.exit_code == 0, done.output
     assert (
         "wheel: on which wheel is it" in done.output and "'kg' is no unit of it; give one such as m/s or rad/s" in done.output
@@ -122,7 +128,7 @@ def test_at_a_terminal_it_asks_for_the_wheel_and_the_unit_that_no_file_tells(tmp
     tacho, wheel = sorted(content["recording"], key=lambda one: one["device"])
     assert tacho["columns"]["wheel_speed_r"] == {"column": "speed right", "unit": "rad/s"}
     assert set(wheel["columns"]) >= {"F_rl", "wheel_angle_l"}
-    done = CliRunner().invoke(app, [*words, "--force"], input="\n\n")
+    done = CliRunner().invoke(app, [*words, "--force"], input="\n\n\n\n\n")
     assert "no name tells of which wheel" in done.output and "next: fill in what is open" in done.output
 
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from benchmarks.labs import GIVEN, imported
-from tests.browser.conftest import Reader, browser, report_of  # noqa: F401 (which is a fixture)
+from tests.browser.conftest import CHROMIUM, Reader, browser, driver, report_of  # noqa: F401 (two are fixtures)
 from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
 from wheelchair_fmu.campaign import read
@@ -106,6 +106,7 @@ OFF = """async ask => {
 }"""
 
 
+@CHROMIUM
 @pytest.mark.nightly
 def test_the_pages_errors_are_those_of_the_search_and_its_bands_hold(found, browser, tmp_path):  # noqa: F811
     """Where nobody recorded all forces, clocks are unsure and rims have baselines: bands of 95 % hold 90 to 98 % of the samples

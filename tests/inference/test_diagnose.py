@@ -17,6 +17,7 @@ from wheelchair_fmu.inference.decision.verdict import Diagnosis, _structured, di
 from wheelchair_fmu.inference.estimation.interval import half_width
 from wheelchair_fmu.inference.estimation.statistics import correlation_time, sandwich
 from wheelchair_fmu.inference.explain.ranking import as_json
+from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.policy import DEFAULT
@@ -69,6 +70,16 @@ def test_the_ranking_tells_the_last_model(sampled):
     row = as_json(sampled)["ranking"][0]
     assert row["parameters"]["D"]["estimate"] == sampled.final.values[DRAG]
     assert row["heldout_after"] == pytest.approx(sampled.ladder[-1].heldout, abs=0.005)
+
+
+def test_every_step_is_told_with_the_values_that_it_was_judged_by(sampled):
+    """By the noise that was known in the end, whose evidence the last search left in the models."""
+    models = {m["step"]: m["values"] for m in story(sampled)["models"]}
+    assert list(models) == [step.name for step in sampled.ladder]
+    assert models["nominal"] == {} and models[sampled.ladder[-1].name] == sampled.top.values
+    likelihood = sampled.models.likelihood()
+    again = likelihood.evidence(sampled.models.campaign.fit, models["calibrated"], tune_start=2)
+    assert again.rms == pytest.approx(sampled.ladder[1].fit, rel=2e-3)
 
 
 def test_who_watches_is_told_the_whole_staircase(watched):

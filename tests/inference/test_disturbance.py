@@ -131,6 +131,7 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     for e, other in zip(first.runs, again.runs, strict=True):
         np.testing.assert_allclose(e.path, other.path, atol=0.1 * max(noise.force, noise.moment))
     assert float(np.mean(first.r**2)) == pytest.approx(1, abs=0.03)
+    assert first.summary().rms == pytest.approx(first.rms, rel=1e-9), "what is kept of a run is judged as the run was"
 
 
 def test_values_among_unrecorded_forces_are_found_without_bias(sample):

@@ -30,7 +30,7 @@ def test_errors_of_pushes_that_are_found_are_the_likeliest(swinging):
     campaign, likelihood = swinging
     felt = likelihood.evidence(campaign.runs, INERTIA, tune_start=TUNED)
     for e in felt.runs:
-        assert e.pushed is not None
+        assert e.pushed is not None and e.summary().rms == pytest.approx(e.rms, rel=1e-6)
         assert np.sqrt(np.nanmean(e.r**2)) == pytest.approx(1, abs=0.05)
 
         def unlikely(share, e=e):

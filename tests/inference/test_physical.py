@@ -63,7 +63,7 @@ def test_the_sample_is_off_by_what_its_channels_say(sample):
     _, measured, predicted = likelihood.readings(run, {}, likelihood.starts[run.name])
     at = evidence.runs[0].channels.index("yaw_rate")
     by_hand = np.degrees(np.sqrt(np.nanmean((measured - predicted)[:, at] ** 2)))
-    step = Step.of("nominal", likelihood.evidence([], {}), evidence)
+    step = Step.of("nominal", likelihood.evidence([], {}), evidence, {})
     assert step.as_json()["physical"]["yaw_rate"] == pytest.approx(by_hand)
     assert channel_errors(evidence)[run.name]["yaw_rate"].rms == pytest.approx(by_hand)
     told = step.as_json()["channels"]["yaw_rate"]

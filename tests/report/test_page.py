@@ -27,6 +27,7 @@ def told(verdict, effects=(), ties=(), **more):
         {
             "effect": e,
             "parameters": {"k": {"estimate": 1.2345, "se": 0.021, "unit": "N.s/m"}},
+            "p": 1e-3,
             "verdict": "tie" if any(e in group for group in ties) else "missing",
         }
         for e in effects
@@ -51,6 +52,13 @@ def told(verdict, effects=(), ties=(), **more):
 )
 def test_a_verdict_is_one_sentence(verdict, effects, expected):
     assert sentence(told(verdict, effects), TITLES) == expected
+
+
+def test_what_noise_may_give_is_not_said_to_be_there():
+    """Where the table beside it says that noise alone would give as much four times of five."""
+    found = told("small", ["drag"])
+    found["ranking"][0]["p"] = 0.8
+    assert sentence(found, TITLES) == "The model is adequate: air that resists may be there, and is too small to matter."
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from io import BytesIO
 from math import radians, tanh
@@ -104,6 +105,17 @@ def test_an_empty_start_has_no_faults_of_a_file_that_nobody_wrote(client):
     assert state["faults"] == [] and state["files"] == [] and state["outcome"] is None
 
 
+def test_what_is_too_small_to_matter_is_not_offered_to_be_put_in(client, bench):
+    session = Session(bench.root, client.base.rpartition("/")[2])
+    told = json.loads(SAMPLE_DIAGNOSIS.read_text(encoding="utf-8"))
+    upload(client, *recordings())
+    offered = []
+    for verdict in ("missing", "small"):
+        (session.folder / "diagnosis.json").write_text(json.dumps({**told, "verdict": verdict}), encoding="utf-8")
+        offered.append(client.get(f"{client.base}/state").json()["outcome"]["effects"])
+    assert offered == [told["effects"], []]
+
+
 def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(client, bench):
     session = Session(bench.root, client.base.rpartition("/")[2])
     upload(client, *recordings())
@@ -142,11 +154,13 @@ def test_files_of_a_lab_are_read_together_and_that_can_be_undone(client, tmp_pat
     files = [(f.name, f.read_bytes()) for f in sorted(tmp_path.iterdir())]
     before = upload(client, *files).json()["campaign"]
     assert client.post(f"{client.base}/jobs", json={"kind": "import", "mass": "heavy"}).status_code == 400
-    client.post(f"{client.base}/jobs", json={"kind": "import", "mass": 90, "radius": lab.RADIUS, "track": 0.56})
+    sizes = {"mass": 90, "radius": lab.RADIUS, "track": 0.56, "wheelbase": 0.44, "cm_ahead": 0.1, "caster_track": 0.43}
+    client.post(f"{client.base}/jobs", json={"kind": "import", **sizes})
     wait_for(lambda: client.get(f"{client.base}/job").json()["state"] != "running")
     state = client.get(f"{client.base}/state").json()
     assert state["job"]["state"] == "done", state["job"]["lines"]
-    assert state["campaign"]["chair"]["m"] == 90 and {len(run["files"]) for run in state["campaign"]["run"]} == {2}
+    assert state["campaign"]["chair"] == {"m": 90, "a": 0.34, "b": 0.1, "t_r": 0.56, "t_f": 0.43}
+    assert {len(run["files"]) for run in state["campaign"]["run"]} == {2}
     assert not [f for f in state["faults"] if f["severity"] == "error"]
     assert len(state["history"]["steps"]) == 2 and state["history"]["steps"][1]["label"] == "files read anew"
     assert client.post(f"{client.base}/history", json={"by": -1}).json()["campaign"] == before

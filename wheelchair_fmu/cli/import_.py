@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich import box
@@ -21,6 +21,7 @@ from ..campaign.formats import format_of
 from ..campaign.importing import (
     AXES_CURE,
     RADIUS,
+    SIZES,
     Choice,
     Found,
     Plan,
@@ -58,6 +59,11 @@ def import_(
     ] = None,
     radius: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     track: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
+    wheelbase: Annotated[float | None, typer.Option(metavar="M", help="From the rear axle to the casters' pivots.")] = None,
+    cm_ahead: Annotated[
+        float | None, typer.Option(metavar="M", help="From the rear axle forward to the centre of mass of chair and rider.")
+    ] = None,
+    caster_track: Annotated[float | None, typer.Option(metavar="M", help="Of the casters' pivots.")] = None,
     axes: Annotated[str, typer.Option(help="SAE-J670 or ISO-8855, where no signal tells.")] = "",
     holdout: Annotated[
         list[str] | None, typer.Option(metavar="RUN", help="A run to keep for checking; else the last fifth.")
@@ -67,11 +73,12 @@ def import_(
     link: Annotated[bool, typer.Option("--link", help="Link to the recordings in place of copying them.")] = False,
 ) -> None:
     """Find out which file is which run and device, which column is what, and how the clocks stand; write a campaign of it."""
-    _usable(output, axes, force, {"--mass": mass, "--person": person, "--radius": radius, "--track": track})
+    given = (mass, person, radius, track, wheelbase, cm_ahead, caster_track)
+    _usable(output, axes, force, dict(zip(SIZES, given, strict=True)))
     with working("reading"):
         found = find(files, radius)
     kept = held_out(found.runs, holdout or [])
-    wanted = Wanted(output.resolve().name, mass, person, radius, track, axes, kept)
+    wanted = Wanted(output.resolve().name, *given, axes=axes, holdout=kept)
     if _at_terminal() and not yes:
         found = _told(files, radius, found)
         wanted = _asked(wanted, found)
@@ -93,9 +100,15 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
         raise UsageError(f"{output / FILE} is there already and stays as it is; give another folder, or --force to replace it")
     if axes and axes not in AXES:
         raise UsageError(f"no axes {axes!r}; use {' or '.join(AXES)}")
-    for option, value in sizes.items():
+    for name, value in sizes.items():
         if value is not None and not 0 < value < 1000:
-            raise UsageError(f"{option} {value:g} is no size of a wheelchair; give it in kg or m")
+            raise UsageError(f"--{name.replace('_', '-')} {value:g} is no size of a wheelchair; give it in kg or m")
+    wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
+    if wheelbase is not None and ahead is not None and ahead >= wheelbase:
+        raise UsageError(
+            f"--cm-ahead {ahead:g} is beyond the casters' pivots, which --wheelbase puts {wheelbase:g} m ahead of the rear "
+            "axle; measure both from the axle"
+        )
 
 
 def _at_terminal() -> bool:
@@ -104,20 +117,15 @@ def _at_terminal() -> bool:
 
 def _asked(wanted: Wanted, found: Found) -> Wanted:
     """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
-    answers: dict[str, float | None] = {}
-    for name, words in (
-        ("mass", "mass of chair and rider, kg"),
-        ("radius", "radius of the rear wheels, m"),
-        ("track", "track of the rear wheels, m"),
-    ):
-        known = getattr(wanted, name)
-        answers[name] = known if known is not None else _number(words)
+    body = any(plan.body for plan in found.plans)
+    asked = {name: words for name, words in SIZES.items() if getattr(wanted, name) is None and (body or name != "person")}
+    answers: dict[str, Any] = {name: answer for name, words in asked.items() if (answer := _number(words)) is not None}
     axes = wanted.axes
     if not axes and open_axes(found.plans):
         axes = {"right": AXES[0], "left": AXES[1]}.get(
             typer.prompt("no signal tells: does y point to the right or left", "right"), ""
         )
-    return replace(wanted, axes=axes, mass=answers["mass"], radius=answers["radius"], track=answers["track"])
+    return replace(wanted, axes=axes, **answers)
 
 
 def _told(files: Sequence[Path], radius: float | None, found: Found) -> Found:

@@ -53,7 +53,7 @@ def content(
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
-        "diagnosis": diagnosis,
+        "diagnosis": _along_forces(diagnosis) if leads else diagnosis,
         "landscape": {"profiles": [], "pair": None} if leads else landscape(models, diagnosis),
         "runs": [_run(r, campaign, colour, leads) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
@@ -75,6 +75,18 @@ def content(
         "tuning": TUNING,
         "tolerance": TOLERANCE,
     }
+
+
+def _along_forces(diagnosis: Mapping[str, Any]) -> dict[str, Any]:
+    """A diagnosis as the page runs it, with forces that nobody recorded among the noise all along: the search begins at the
+    step that counts them. The calibrated model of before, whose error in the staircase is without them, is none of its
+    models."""
+    if diagnosis["begins"] != "calibrated":  # a chair that came with effects begins with these in
+        return dict(diagnosis)
+    told = {m["step"]: m["values"] for m in diagnosis["models"]}
+    calibrated = told.pop("calibrated")  # of an older diagnosis the only ones that are known
+    told = {"nominal": told.pop("nominal"), UNRECORDED: calibrated, **told}
+    return {**diagnosis, "begins": UNRECORDED, "models": [{"step": step, "values": values} for step, values in told.items()]}
 
 
 def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -20,7 +20,7 @@ from .told import (
     together_words,
     why_not,
 )
-from .words import STILL, listed, strained
+from .words import STILL, listed, perhaps, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
 TRIED = 6  # effects in the picture of the rivals
@@ -63,7 +63,8 @@ def _guess(t: Told) -> dict[str, Any]:
     if t.verdict in ("adequate", "cannot_see"):
         lines = ["Suppose one of these were missing. Which would these runs show?"]
     elif t.slight:
-        lines = ["Something is there that is too small to matter. Which of these would you say it is?"]
+        there = "may be there, and it" if perhaps(t.diagnosis) else "is there that"
+        lines = [f"Something {there} is too small to matter. Which of these would you say it is?"]
     elif t.verdict == "outside" and not t.found:
         lines = ["Which of these explains it? Try each."]
     else:

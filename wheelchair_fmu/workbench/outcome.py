@@ -18,8 +18,8 @@ COMMAND = "wheelchair "  # what a sentence names that is for a terminal; here a 
 
 
 def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any] | None:
-    """{"sentence", "cards", "effects": found ones of the catalogue, "order": all of its ranking, "fresh": whether it is of the
-    model and the campaign as they are}; None before any diagnosis, and where its file cannot be read."""
+    """{"sentence", "cards", "effects": those of the catalogue to be put in, "order": all of its ranking, "fresh": whether it is
+    of the model and the campaign as they are}; None before any diagnosis, and where its file cannot be read."""
     try:
         told = json.loads((session.folder / "diagnosis.json").read_text(encoding="utf-8"))
         every = {**library(), **catalogue}
@@ -29,7 +29,7 @@ def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any]
         return {
             "sentence": sentence(told, titles, records),
             "cards": [{**card, "lines": [line for line in card["lines"] if COMMAND not in line]} for card in story.cards],
-            "effects": [e for e in told["effects"] if e in catalogue],
+            "effects": [e for e in told["effects"] if e in catalogue and told["verdict"] != "small"],
             "order": [row["effect"] for row in told["ranking"] if row["effect"] in catalogue],
             "fresh": session.diagnosed,
         }

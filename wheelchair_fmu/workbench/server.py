@@ -23,6 +23,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, Response
 from starlette.routing import Route
 
+from ..campaign.importing import SIZES
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
@@ -291,7 +292,7 @@ class Workbench:
     def _import(self, session: Session, asked: dict[str, Any]) -> Job:
         """Find out which file is which run and device, and what its columns are; the campaign.toml that was there can be had
         back."""
-        sizes = [(f"--{name}", number(asked, name)) for name in ("mass", "radius", "track") if asked.get(name) is not None]
+        sizes = [(f"--{name.replace('_', '-')}", number(asked, name)) for name in SIZES if asked.get(name) is not None]
 
         def after(outputs: list[str]) -> None:
             with self.locks.held(session):

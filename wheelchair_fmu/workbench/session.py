@@ -235,7 +235,7 @@ class Session:
             return found, {}
         seen = self.seen(known)
         campaign, faults = seen.campaign, seen.faults
-        found += [{"text": str(f), "severity": f.severity} for f in faults]
+        found += [{"text": str(f), "severity": f.severity, "column": f.column} for f in faults]
         return found, campaign.noise if campaign else {}
 
     def seen(self, known: Mapping[str, tuple[float, float]]) -> Judged:

@@ -26,11 +26,12 @@ from .deciding import RADIUS, decide
 from .frames import AXES_CURE
 from .gathering import opened, sources
 from .taking import taken
-from .writing import Wanted, axes_of, needs_radius, open_axes, text
+from .writing import SIZES, Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
     "AXES_CURE",
     "RADIUS",
+    "SIZES",
     "Choice",
     "Found",
     "Plan",

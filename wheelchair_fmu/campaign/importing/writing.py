@@ -41,19 +41,36 @@ class Wanted:
     person: float | None = None
     radius: float | None = None
     track: float | None = None
+    wheelbase: float | None = None
+    cm_ahead: float | None = None
+    caster_track: float | None = None
     axes: str = ""
     holdout: Sequence[str] = ()
     at_rest: Mapping[str, bool] = field(default_factory=dict)
     clocks: Mapping[str, Mapping[str, Mapping[str, float]]] | None = None  # by run and device, where they were looked for
     noise: Mapping[str, float] = field(default_factory=dict)  # SI, by channel, as the samples show it
 
+    @property
+    def pivots_ahead(self) -> float | None:
+        """How far the casters' pivots are ahead of the centre of mass."""
+        return None if self.wheelbase is None or self.cm_ahead is None else self.wheelbase - self.cm_ahead
 
+
+SIZES = {  # of a chair, as they are asked for: what no file tells
+    "mass": "mass of chair and rider, kg",
+    "person": "mass of the rider alone, kg",
+    "radius": "radius of the rear wheels, m",
+    "track": "track of the rear wheels, m",
+    "wheelbase": "from the rear axle to the casters' pivots, m",
+    "cm_ahead": "from the rear axle forward to the centre of mass, m",
+    "caster_track": "track of the casters' pivots, m",
+}
 CHAIR = (
     ("m", "mass", "chair and rider, kg"),
-    ("a", "", "from the centre of mass forward to the casters' pivots, m"),
-    ("b", "", "from the centre of mass back to the rear axle, m"),
+    ("a", "pivots_ahead", "from the centre of mass forward to the casters' pivots, m"),
+    ("b", "cm_ahead", "from the centre of mass back to the rear axle, m"),
     ("t_r", "track", "track of the rear wheels on the floor, m"),
-    ("t_f", "", "track of the casters' pivots, m"),
+    ("t_f", "caster_track", "track of the casters' pivots, m"),
 )
 
 
@@ -107,8 +124,8 @@ def _why_axes(plans: Sequence[Plan], wanted: Wanted) -> str:
 
 def _chair(wanted: Wanted) -> str:
     lines = ["[chair]"]
-    for key, option, meaning in CHAIR:
-        value = getattr(wanted, option) if option else None
+    for key, name, meaning in CHAIR:
+        value = getattr(wanted, name)
         lines.append(_line(f"{key} = {value:g}", meaning) if value is not None else f"# {key} =   # {meaning}: fill in")
     meaning = "radius of the rear wheels with the person in the chair, m"
     radius = f"# R =   # {meaning}: fill in" if wanted.radius is None else _line(f"R = {wanted.radius:g}", meaning)

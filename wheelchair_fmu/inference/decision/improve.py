@@ -47,7 +47,7 @@ def add(
         say(f"refitting with {one}")
         on = (*now.effects, one)
         models, now = models.with_given(on, now.fit) if one != effect else _with(models, now, one)
-        ladder = (*ladder, Step.of(f"+{one}", now.fit.evidence, now.heldout))
+        ladder = (*ladder, Step.of(f"+{one}", now.fit.evidence, now.heldout, now.fit.values))
     notes = (*begun.heard(clocks(now.fit.evidence, now.heldout)), *models.setting.notes)
     records = models.likelihood(now.effects).records
     return Improved(improved(chair, now.effects, now.fit, campaign), now.fit, records, ladder, notes)

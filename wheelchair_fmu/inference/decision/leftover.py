@@ -79,5 +79,5 @@ def settled(
     estimate, covariance = estimates(top.fit, models.factory.parameters(proposal.effect))
     kept = every[:-1]
     steps = tuple(step for step in found.ladder if not step.name.startswith("+") or step.name[1:] in kept)
-    last = Step.of(f"+{proposal.effect}", top.fit.evidence, top.heldout)
+    last = Step.of(f"+{proposal.effect}", top.fit.evidence, top.heldout, top.fit.values)
     return kept, replace(proposal, fit=top.fit, heldout=top.heldout, estimate=estimate, covariance=covariance), (*steps, last)

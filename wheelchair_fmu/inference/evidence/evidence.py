@@ -72,7 +72,7 @@ class RunEvidence:
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
         brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)))
-        return brief if self.path is None else replace(brief, path=None, added=0.0, driven=None)
+        return brief if self.driven is None else replace(brief, predicted=self.foretold, path=None, added=0.0, driven=None)
 
     @property
     def misfit(self) -> float:

@@ -29,7 +29,7 @@ def story(d: Diagnosis) -> dict[str, Any]:
         "noise": asdict(noise_model),
         "fingerprint": d.models.factory.campaign.fingerprint,
         "made_by": {"version": __version__, "code": code_fingerprint()},
-        "models": [{"step": s.name, "values": dict(models[s.name])} for s in d.ladder if s.name in models],
+        "models": [{"step": name, "values": dict(values)} for name, values in models.items()],
     }
 
 
@@ -39,11 +39,6 @@ def _beginning(d: Diagnosis) -> str:
 
 
 def _models(d: Diagnosis) -> dict[str, Mapping[str, float]]:
-    """Fitted values by step of the staircase, from where the search began; what came between is not kept."""
-    known = {r.effects: r.fit.values for r in d.rounds}
-    models: dict[str, Mapping[str, float]] = {"nominal": {}, _beginning(d): d.rounds[0].fit.values}
-    for i in range(len(d.already) + 1, len(d.included) + 1):
-        if d.included[:i] in known:
-            models[f"+{d.included[i - 1]}"] = known[d.included[:i]]
-    models[d.ladder[-1].name] = d.top.values
-    return models
+    """Values by step of the staircase: as given, and those fitted from where the search began."""
+    first = next((i for i, step in enumerate(d.ladder) if step.name == _beginning(d)), 1)
+    return {step.name: step.values for step in (d.ladder[0], *d.ladder[first:])}

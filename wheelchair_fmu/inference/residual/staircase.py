@@ -15,8 +15,8 @@ from .physical import Errors, as_json, channel_errors
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the staircase: whitened RMS on fitted and on held-out runs, the errors of both by run and channel, and the
-    whitened RMS of both by channel."""
+    """One step of the staircase: whitened RMS on fitted and on held-out runs, the errors of both by run and channel, the
+    whitened RMS of both by channel, and the fitted `values` of the model that leaves them."""
 
     name: str
     fit: float
@@ -25,12 +25,13 @@ class Step:
     heldout_errors: Errors = field(default_factory=dict)
     fit_whitened: Mapping[str, float] = field(default_factory=dict)
     heldout_whitened: Mapping[str, float] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, name: str, fitted: Evidence, held: Evidence) -> Step:
-        """The step up to a model that leaves this on fitted and on held-out runs."""
+    def of(cls, name: str, fitted: Evidence, held: Evidence, values: Mapping[str, float]) -> Step:
+        """The step up to a model of these values that leaves this on fitted and on held-out runs."""
         errors = channel_errors(fitted), channel_errors(held)
-        return cls(name, fitted.rms, held.rms, *errors, fitted.channel_rms(), held.channel_rms())
+        return cls(name, fitted.rms, held.rms, *errors, fitted.channel_rms(), held.channel_rms(), values)
 
     @property
     def left(self) -> float:

@@ -95,9 +95,8 @@ def late_by_slopes(models: Models, effects: Sequence[str], named: Container[str]
 def first_steps(models: Models) -> Beginning:
     """The calibrated model, and the staircase up to there, with the noise as it is known."""
     models, base, nominal, nominal_held = models.calibrated()
-    return Beginning(
-        models, base, (Step.of("nominal", nominal, nominal_held), Step.of("calibrated", base.fit.evidence, base.heldout))
-    )
+    calibrated = Step.of("calibrated", base.fit.evidence, base.heldout, base.fit.values)
+    return Beginning(models, base, (Step.of("nominal", nominal, nominal_held, {}), calibrated))
 
 
 def _late(run: str, late: Late, unique: bool) -> str:

@@ -157,7 +157,8 @@ class Selection:
         """The step up to the model with the first so many effects of a round's."""
         fewer = last.effects[:count]
         fit = last.fit if fewer == last.effects else self.models.fitted(fewer, last.fit.values)
-        return Step.of(f"+{fewer[-1]}", fit.evidence, self.models.heldout(self.models.likelihood(fewer), fit.values))
+        held = self.models.heldout(self.models.likelihood(fewer), fit.values)
+        return Step.of(f"+{fewer[-1]}", fit.evidence, held, fit.values)
 
     def _step(self) -> Selection:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""
@@ -198,4 +199,4 @@ def selection(beginning: Beginning, stepped: Callable[[Sequence[Step]], None]) -
 
 
 def _step_to(model: Model) -> Step:
-    return Step.of(f"+{model.effects[-1]}", model.fit.evidence, model.heldout)
+    return Step.of(f"+{model.effects[-1]}", model.fit.evidence, model.heldout, model.fit.values)

@@ -23,7 +23,7 @@ const WRITTEN = 250; // ms after which the address follows
 const AT_ONCE = 100; // ms within which what follows a movement is seen as part of it
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
-const LONG = 900, STEPS = 4; // letters above the fold, and steps of the staircase, that fill two pages in letters of the usual size
+const ON_PAPER = { overlay: 703, missing: 703, forest: 860, staircase: 520, physical: 560 }; // px; A4 has 703 of CSS between its margins
 const DEEP = 60; // changes that can be undone
 const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
@@ -158,7 +158,6 @@ class App {
   firstTime() {
     this.exactAt = performance.now();
     this.opened = this.opensAtStart ? [...this.results] : [];
-    this.began = this.opensAtStart ? this.now : null;
     if (!this.shown.chosen) this.turnTo((i, c) => this.results[i].squares[c] / this.results[i].counts[c]);
     this.later();
     this.pinned();
@@ -187,7 +186,7 @@ class App {
 
   /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
   fallen() {
-    const { begins, models } = this.campaign.diagnosis, [from, to] = [this.forces ? FORCES : begins, models.at(-1).step];
+    const { begins: from, models } = this.campaign.diagnosis, to = models.at(-1).step;
     if (from === to) return;
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
@@ -376,11 +375,6 @@ class App {
     byId("link").addEventListener("click", () => this.copy());
   }
 
-  /** Does it have so much to tell that two printed pages take smaller letters? */
-  get long() {
-    return byId("verdict").innerText.length > LONG || this.campaign.diagnosis.ladder.length > STEPS;
-  }
-
   /** The address follows, when things rest. */
   write() {
     clearTimeout(this.writing);
@@ -476,18 +470,21 @@ addEventListener("resize", () => {
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
 addEventListener("hashchange", () => { if (address.isState(location.hash) && location.hash !== app.hash) location.reload(); });
-let theme, sheet = null;
+let theme, papers = [];
 addEventListener("beforeprint", () => {
   theme = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
-  document.documentElement.toggleAttribute("data-long", app.long);
-  sheet?.remove();
-  if (app.timeline?.result) app.figures.all.overlay.drawing.after(sheet = h("div", { class: "paper" }, app.figures.all.overlay.says.draw(900, look())));
+  for (const p of papers) p.remove();
+  papers = Object.entries(ON_PAPER).filter(([id]) => app.figures.all[id] && (id !== "overlay" || app.timeline?.result)).map(([id, width]) => {
+    const { says, drawing } = app.figures.all[id], paper = h("div", { class: "paper" }, says.draw(width, look()));
+    drawing.after(paper);
+    return paper;
+  });
 });
 addEventListener("afterprint", () => {
-  sheet?.remove();
+  for (const p of papers.splice(0)) p.remove();
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
   app.recolour();

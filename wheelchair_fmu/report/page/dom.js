@@ -12,8 +12,8 @@ export function h(tag, attributes = {}, ...children) {
   return made;
 }
 
-/** Words whose symbols have their index below the line: C_λ. */
-export const symbols = (words) => indexed(words).map(([t, below]) => (below ? h("sub", {}, t) : t));
+/** Words whose symbols have their index below the line, C_λ, and whose sizes stay on one: 1.22 ± 0.19 N. */
+export const symbols = (words) => indexed(words.replace(/ ± ([\d.]+)( (?=\S))?/g, (_, error, unit) => `\u00a0±\u00a0${error}${unit ? "\u00a0" : ""}`)).map(([t, below]) => (below ? h("sub", {}, t) : t));
 
 /** Words in pieces [[text, whether it is an index]]. */
 export function indexed(words) {

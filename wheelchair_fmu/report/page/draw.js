@@ -118,6 +118,9 @@ export function broken(words, width, look, size = 12, weight = 400, most = Infin
   return [...lines.slice(0, most - 1), cut(lines.slice(most - 1).join(" "), fits)];
 }
 
+/** The first of these sizes at which no word is broken on lines of this width, or the last. */
+export const whole = (names, width, look, sizes) => sizes.find((size) => names.flatMap((t) => t.split(/\s+/)).every((w) => long(w, look, size) <= width)) ?? sizes.at(-1);
+
 /** A word as [{text, on}], with hyphens where it is too wide; `on` says that it goes on from the piece before. */
 function pieces(word, fits) {
   if (fits(word)) return [{ text: word, on: false }];

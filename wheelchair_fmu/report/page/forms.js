@@ -1,10 +1,12 @@
 // The workbench's forms: what the campaign says of its runs, columns, noise and chair. Each change is sent at once.
 
-import { h } from "page/dom";
+import { h, symbols } from "page/dom";
 import { course, extent, svg } from "page/draw";
 import { significant, unitText } from "page/numbers";
+import { capital } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
+const ROLLING = /^(F_r|wheel_)/; // channels that may be logged as torques or as turning
 const FEW = 6; // runs that are shown without asking where something is wrong
 const WIDE = 110, HIGH = 30; // px of a signal beside its column
 
@@ -49,7 +51,7 @@ export function columns(bench) {
   const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
   const tables = devices ? devices.map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }))
     : [{ name: "", files: null, of: (content) => (content.columns ??= {}), explicit: false }];
-  const needed = Object.keys(headers).length && bench.state.faults.some((f) => f.severity === "error");
+  const needed = bench.state.faults.some((f) => f.severity === "error" && f.column); // which are mended here
   return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
     const given = (devices ? devices.find((d) => d.device === one.name).columns : campaign.columns) ?? {};
     const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
@@ -61,7 +63,8 @@ export function columns(bench) {
 
 /** A device's name and where it sits. */
 function device(bench, i) {
-  const { device: name, at } = bench.state.campaign.recording[i];
+  const { device: name, at, columns = {} } = bench.state.campaign.recording[i];
+  if (!("a_x" in columns || "a_y" in columns)) return h("p", {}, h("b", {}, name)); // of which it makes no difference
   const change = (words) => bench.save((c) => {
     const place = words.split(/[,;\s]+/).filter(Boolean).map(Number);
     if (place.length) c.recording[i].at = place;
@@ -76,12 +79,14 @@ const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? cam
 function columnRow(bench, header, place, given, options, record) {
   const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
   const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
-  const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6 });
+  const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
+  const rolls = () => { radius.hidden = !ROLLING.test(which.value); };
   const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
   const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
   const derived = channel && !(channel in options) ? { [channel]: `${channel.replaceAll("_", " ")}, from which other signals are worked out` } : {};
   const which = select(`channel of ${header}`, { ...options, ...unused, ...derived }, channel, () => change());
-  const change = () => bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.value.trim()));
+  const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
+  rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f));
   return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
 }
@@ -148,8 +153,8 @@ export function priors(bench) {
       delete all[p.name];
       put((all[group] ??= {}), key, sd);
     });
-    return field(p.name, `standard deviation about ${value}${bracket(p.unit)}`, campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
-      significant(p.uncertainty * (Math.abs(value) || 1), 2), `prior of ${p.name}`);
+    return field(p.name, p.meaning + bracket(p.unit), campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
+      significant(p.uncertainty * (Math.abs(value) || 1), 2), ` = ${value} ±`, `prior of ${p.name}`);
   });
   return h("details", {}, h("summary", {}, "How sure these values are"),
     h("p", { class: "hint" }, "These values are calibrated, and stay as near to what you gave as you are sure of it. Where you do not say, the standard deviation in grey is used."),
@@ -167,8 +172,8 @@ const parted = (header) => {
   return { bare, own };
 };
 
-const field = (name, says, value, changed, placeholder, label = name) =>
-  h("label", {}, h("span", {}, name, h("small", {}, says)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
+const field = (name, says, value, changed, placeholder, more = "", label = name) =>
+  h("label", {}, h("span", {}, symbols(capital(says)), h("small", {}, h("code", {}, name), more)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
 
 /** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
 function put(table, key, value) {

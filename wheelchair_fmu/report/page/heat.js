@@ -1,7 +1,7 @@
 // Tables of errors whose cells stay quiet where a model's error is the noise, and turn the colour of an error where it is not.
 
 import { h } from "page/dom";
-import { broken, canvas, long, svg, text } from "page/draw";
+import { broken, canvas, long, svg, text, whole } from "page/draw";
 import { rms, significant } from "page/numbers";
 
 export const QUIET = 1.1; // whitened RMS without colour
@@ -73,8 +73,9 @@ export class Heat {
 
 /** The same as a drawing. */
 export function heat(width, look, heads, rows) {
-  const called = (r) => (r.note ? `${r.name} (${r.note})` : r.name), left = Math.min(0.3 * width, 14 + Math.max(...rows.map((r) => long(called(r), look)))), wide = (width - left) / heads.length, drawn = [];
-  const size = wide < 64 ? 10 : 11, named = heads.map((t) => broken(t, wide - 4, look, size, 400, 7)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
+  const called = (r) => (r.note ? `${r.name} (${r.note})` : r.name), words = heads.flatMap((t) => t.split(/\s+/)), longest = Math.max(0, ...words.map((w) => long(w, look, 10))) + 4;
+  const left = Math.max(0.18 * width, Math.min(0.3 * width, 14 + Math.max(...rows.map((r) => long(called(r), look))), width - longest * heads.length)), wide = (width - left) / heads.length, drawn = [];
+  const size = whole(heads, wide - 4, look, [11, 10]), named = heads.map((t) => broken(t, wide - 4, look, size, 400, 7)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
   named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": size }))));
   let y = top;
   for (const row of rows) {

@@ -38,7 +38,7 @@ export function lines(width, look, time, [from, to], panels) {
       });
       drawn.push(course(xs, ys, look[colour], { "stroke-width": thick, "stroke-dasharray": dash?.join(" ") }));
     }
-    drawn.push(text(0, 0, panel.label, look.ink, "middle", { transform: `translate(11 ${top + panel.height / 2}) rotate(-90)` }));
+    drawn.push(text(0, 0, panel.label, look.ink, "middle", { transform: `translate(12 ${top + panel.height / 2}) rotate(-90)` }));
     top += panel.height + 20;
   }
   for (const t of marks) drawn.push(text(across(t), top + 4, tick(t), look.faint, "middle", { "font-size": 11 }));

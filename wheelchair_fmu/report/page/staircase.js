@@ -1,6 +1,6 @@
 // The error falling, step by step, on a logarithmic axis from the noise.
 
-import { broken, canvas, line, long, svg, text, tick } from "page/draw";
+import { broken, canvas, line, long, round, svg, text, tick, whole } from "page/draw";
 import { rms } from "page/numbers";
 
 const MARKS = [0.8, 1, 1.2, 1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
@@ -15,7 +15,8 @@ export function staircase(width, look, steps, now) {
   const shown = MARKS.filter((v) => v > least && v < most), spaced = shown.filter((v) => v === 1 || shown.length < 8 || /^[125]0*$/.test(String(v)));
   const drawn = spaced.map((v) => [line(left, down(v), width - right, down(v), v === 1 ? look.ink : look.line, v === 1 ? { "stroke-dasharray": "5 4" } : {}), text(left - 7, down(v) + 4, tick(v), look.faint, "end")]);
   drawn.push(text(left + 4, down(1) - 5, "noise alone", look.faint, "start", { "font-size": 11 })); // falling, the steps leave this corner free
-  const names = every.map((s) => broken(s.name, wide - 8, look, 12, 400, 7));
+  const told = []; // in front of all lines
+  const size = whole(every.map((s) => s.name), wide - 5, look, [12, 11, 10]), names = every.map((s) => broken(s.name, wide - 5, look, size, 400, 7));
   every.forEach((s, i) => {
     const x = left + wide * i, middle = x + wide / 2, next = every[i + 1], gap = Math.min(22, wide / 4);
     for (const [key, filled] of [["fit", false], ["heldout", true]]) {
@@ -25,14 +26,21 @@ export function staircase(width, look, steps, now) {
       if (next && Number.isFinite(next[key]) && !next.now) drawn.push(line(middle + side, down(v), left + wide * (i + 1.5) + side, down(next[key]), look.model, { "stroke-width": 1.5, "stroke-dasharray": filled ? null : "3 3", opacity: 0.75 }));
       drawn.push(svg("circle", { cx: middle + side, cy: down(v), r: 5.5, fill: filled ? colour : look.paper, stroke: colour, "stroke-width": 2 }));
       const weight = { "font-weight": filled ? 600 : 400 };
-      if (wide < NARROW) drawn.push(text(middle + side, down(v) + ((s.heldout >= s.fit) === filled ? -11 : 20), rms(v), look.ink, "middle", weight));
-      else drawn.push(text(middle + side + (filled ? 8 : -7), down(v) + (filled ? -7 : 17), rms(v), look.ink, filled ? "start" : "end", weight));
+      if (wide < NARROW) told.push(backed(middle + side, down(v) + ((s.heldout >= s.fit) === filled ? -11 : 20), rms(v), look, "middle", weight));
+      else told.push(backed(middle + side + (filled ? 8 : -7), down(v) + (filled ? -7 : 17), rms(v), look, filled ? "start" : "end", weight));
     }
-    names[i].forEach((t, k) => drawn.push(text(middle, top + high + under + 14 * k, t, look.ink, "middle")));
+    names[i].forEach((t, k) => drawn.push(text(middle, top + high + under + 14 * k, t, look.ink, "middle", { "font-size": size })));
   });
+  drawn.push(told);
   const second = left + 40 + long("runs held out", look);
   drawn.push(svg("circle", { cx: left + 6, cy: 10, r: 5, fill: look.model, stroke: look.model }), text(left + 16, 14, "runs held out", look.ink),
     svg("circle", { cx: second, cy: 10, r: 4.5, fill: look.paper, stroke: look.model, "stroke-width": 2 }), text(second + 10, 14, "fitted runs", look.ink));
-  drawn.push(text(0, 0, "error, noise = 1", look.ink, "middle", { transform: `translate(11 ${top + high / 2}) rotate(-90)` }));
+  drawn.push(text(0, 0, "error, noise = 1", look.ink, "middle", { transform: `translate(12 ${top + high / 2}) rotate(-90)` }));
   return canvas(width, top + high + under + 6 + 14 * Math.max(...names.map((n) => n.length)), drawn);
+}
+
+/** A number on a ground of its own, so that no line runs through it. */
+function backed(x, y, words, look, anchor, weight) {
+  const wide = long(words, look, 12, weight["font-weight"]) + 2, from = { start: x - 1, middle: x - wide / 2, end: x - wide + 1 }[anchor];
+  return [svg("rect", { x: round(from), y: round(y - 10), width: round(wide), height: 12, fill: look.paper, opacity: 0.8 }), text(x, y, words, look.ink, anchor, weight)];
 }

@@ -93,7 +93,7 @@ export class Story {
     const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), first = known.find((r) => effects.includes(r.effect)) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
-    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => this.app.put({ ...(this.isIn() ? begins.values : this.with) }) }, "put it in");
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
@@ -118,11 +118,16 @@ export class Story {
     }
   }
 
-  drawPut(rested) {
-    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, told = ladder.find((s) => s.step === begins), start = this.app.forces ? this.app.began : told;
+  /** The button as it is now, though the numbers may still come. */
+  pressed() {
     const several = this.campaign.diagnosis.effects.length > 1 && !this.campaign.diagnosis.ties.length, it = several ? "them" : "it";
     this.toggle.textContent = this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
+  }
+
+  drawPut(rested) {
+    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, start = ladder.find((s) => s.step === begins);
+    this.pressed();
     this.before.textContent = rms(start?.[key]);
     this.after.textContent = rms(this.app.now?.[key]);
     this.change.hidden = same(this.app.values, models.find((m) => m.step === begins).values);

@@ -7,11 +7,17 @@ import { capital, listed } from "page/words";
 
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
+const LATEST = 3; // pieces of earlier work that are in sight
 const PLACE = /^(?:run )?(?<where>.+?): (?<what>.+)$/; // of a fault's sentence
 const FIRST = { diagnose: "of ten short runs it takes about a minute", add: "it takes some seconds", try: "it takes some seconds" };
 const DONE = { import: "the files were read together", calibrate: "calibrated", diagnose: "diagnosed", add: "added and refitted", try: "tried" };
 
-const PLACES = { a: "how far the casters' pivots are ahead of the centre of mass", b: "how far the rear axle is behind it", t_f: "how far the casters' pivots are apart" };
+/** What no file tells of a chair, where campaign.toml has it as it was given. */
+const SIZES = {
+  mass: (c) => c.chair?.m, person: () => null, radius: (c) => c.wheel?.R, track: (c) => c.chair?.t_r, cm_ahead: (c) => c.chair?.b, caster_track: (c) => c.chair?.t_f,
+  wheelbase: (c) => (Number.isFinite(c.chair?.a) && Number.isFinite(c.chair?.b) ? Number((c.chair.a + c.chair.b).toFixed(6)) : undefined),
+};
+const PLACES = { m: "the mass of chair and rider", t_r: "how far the rear wheels are apart", a: "how far the casters' pivots are ahead of the centre of mass", b: "how far the rear axle is behind it", t_f: "how far the casters' pivots are apart" };
 
 class Refused extends Error {}
 
@@ -82,7 +88,8 @@ class Workbench {
     this.showEffects();
     this.showJob(state.job);
     this.showOutcome();
-    byId("earlier").replaceChildren(...(state.earlier.length ? ["Earlier work: ", ...state.earlier.map((s) => h("a", { class: "button", href: `/s/${s.id}` }, `${s.name}, ${when(s.at)}`))] : []));
+    const earlier = state.earlier.map((s) => h("a", { class: "button", href: `/s/${s.id}` }, `${s.name}, ${when(s.at)}`)), older = earlier.splice(LATEST);
+    byId("earlier").replaceChildren(...(earlier.length ? ["Earlier work: ", ...earlier] : []), older.length ? h("details", {}, h("summary", {}, `${older.length} older`), h("span", { class: "tools wide-tools" }, older)) : "");
   }
 
   showFaults() {
@@ -92,6 +99,10 @@ class Workbench {
     byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
       remarks.length ? h("details", {}, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}`), causes(remarks)) : "");
     byId("lab").hidden = !files.length || (!errors.length && raw);
+    byId("lab").firstElementChild.textContent = raw ? "What is in these files?" : "Read the files again, with other sizes";
+    if (this.asked !== (this.asked = errors.length > 0)) byId("lab").open = this.asked; // else as the reader left it
+    for (const [name, of] of Object.entries(SIZES)) sizeField(name).value ||= of(campaign ?? {}) ?? "";
+    sizeField("person").placeholder = campaign?.rider?.m ?? ""; // it may be assumed: who does not give it has it assumed again
     byId("import").setAttribute("aria-pressed", errors.length > 0);
     byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
     byId("preview-link").hidden = !files.length;
@@ -247,7 +258,7 @@ class Workbench {
   }
 
   listen() {
-    const drop = byId("drop"), sizes = () => Object.fromEntries(["mass", "radius", "track"].map((n) => [n, byId("lab").querySelector(`[name=${n}]`).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
+    const drop = byId("drop"), sizes = () => Object.fromEntries(Object.keys(SIZES).map((n) => [n, sizeField(n).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
     byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {})));
     byId("import").addEventListener("click", () => this.job("import", sizes()));
     for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled, for a minute or less …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
@@ -300,6 +311,7 @@ class Workbench {
   }
 }
 
+const sizeField = (name) => byId("lab").querySelector(`[name=${name}]`);
 const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
 const whole = (seconds) => (seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 

@@ -119,7 +119,7 @@ def verdict(case: Case) -> str:
             for odds in case.told["odds"]
         ]
     elif sure and case.told["verdict"] != "outside":
-        told += [_probable(rows[e]) for e in sure]
+        told += [_probable(rows[e], case.told["verdict"] == "small") for e in sure]
     told += _rivals(case)
     if case.told["odds"] or (sure and case.told["verdict"] != "outside"):
         told.append(_probability(bool(sure)))
@@ -137,12 +137,13 @@ def _probability(averaged: bool) -> str:
     )
 
 
-def _probable(row: Mapping[str, Any]) -> str:
+def _probable(row: Mapping[str, Any], small: bool) -> str:
     own = row["parameters"].values()
     sizes = [amount(p["smallest_interesting"], None, p["unit"]) for p in own if p["smallest_interesting"]]
     delta = f", δ = {sizes[0]}" if len(set(sizes)) == 1 else ""
+    there = "is no slight one, as every chair has," if small else "is there"
     return (
-        f"The probability that {code(row['effect'])} is there is {chance(row['probability_there'])}, and that it is larger "
+        f"The probability that {code(row['effect'])} {there} is {chance(row['probability_there'])}, and that it is larger "
         f"than its smallest interesting size{delta}, {chance(row['probability'])}."
     )
 
