@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import platform
@@ -92,6 +93,17 @@ def main(groups: Sequence[str] = ()) -> int:
     return 0
 
 
+def _asked(words: Sequence[str]) -> list[str]:
+    """The groups named on the command line."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.bench", description=main.__doc__)
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}, or {' and '.join(LARGE)}")
+    groups: list[str] = parser.parse_args(words).groups
+    unknown = [name for name in groups if name not in (*GROUPS, *LARGE)]
+    if unknown:
+        parser.error(f"no group {', '.join(unknown)}; there are {', '.join((*GROUPS, *LARGE))}")
+    return groups
+
+
 def _of_release(before: Released | None, group: str, console: Console) -> dict[str, float]:
     """Medians by what was measured."""
     try:
@@ -102,4 +114,4 @@ def _of_release(before: Released | None, group: str, console: Console) -> dict[s
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(_asked(sys.argv[1:])))
