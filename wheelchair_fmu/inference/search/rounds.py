@@ -83,7 +83,8 @@ class Round:
         than that all have at most a little of everything. What worsens held-out runs is never said to help."""
         able = [c for c in self.every if c.possible and not c.worsens]
         large = sum(self.beliefs[c.effect].there for c in able) > 0.5
-        return able[0] if able and large and self.present[able[0].effect] > self.policy.sure else None
+        sure = bool(able) and min(self.present[able[0].effect], _present_in_blocks(self, able[0])) > self.policy.sure
+        return able[0] if large and sure else None
 
     @property
     def slight(self) -> list[Candidate]:
@@ -118,12 +119,17 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
     return {s.effect: _belief(s, w) for s, w in zip(supports, map(float, shares), strict=True)}
 
 
-def _present(r: Round, c: Candidate) -> float:
+def _present(r: Round, c: Candidate, resampled: np.ndarray | float = 0.0) -> float:
     """The probability that a candidate is there at any size, beside nothing; by its standard errors where these say less than
-    the fall of −2 log likelihood does, and by held-out runs resampled by blocks of time."""
+    the fall of −2 log likelihood does. `resampled` is by how much the log likelihood of the model without it moves."""
     large, slight = c.support.large - c.excess, c.support.slight - (1 - c.support.left) * c.excess
+    return float(np.mean(special.expit(np.logaddexp(large, slight) + r.log_prior - resampled)))
+
+
+def _present_in_blocks(r: Round, c: Candidate) -> float:
+    """The same as held-out runs have it, resampled by blocks of time: what a moment of them alone shows is no effect."""
     without, _ = _of_blocks(c, c.heldout, [r.heldout, c.heldout])
-    return float(np.mean(special.expit(np.logaddexp(large, slight) + r.log_prior - without)))
+    return _present(r, c, without)
 
 
 def _belief(s: Support, there: float) -> Belief:
