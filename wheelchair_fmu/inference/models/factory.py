@@ -145,8 +145,8 @@ class ModelFactory:
         return {member for e in (*effects, *self.variant.effects) for member in self.members(e)}
 
     def members(self, effect: str) -> tuple[str, ...]:
-        """The effects of a group, which its name has, or the one effect that this is."""
-        return tuple(effect.split(TOGETHER))
+        """See `members_of`."""
+        return members_of(effect)
 
     def parameters(self, effect: str) -> tuple[str, ...]:
         """Full names of the parameters of an effect, or of a group of them, that say how large it is."""
@@ -209,6 +209,11 @@ class ModelFactory:
     def led(self) -> ModelFactory:
         """The same of where the chair rolls, with every run led along the forces that nobody recorded."""
         return replace(self, campaign=moving(self.campaign), leads=True)
+
+
+def members_of(effect: str) -> tuple[str, ...]:
+    """The effects of a group, which its name has, or the one effect that this is."""
+    return tuple(effect.split(TOGETHER))
 
 
 def groups_of(catalogue: Mapping[str, Effect]) -> dict[str, tuple[str, ...]]:

@@ -11,7 +11,7 @@ import numpy as np
 from ..estimation.fit import Fit
 from ..estimation.marginal import Support, squared, support_of
 from ..evidence.evidence import Evidence
-from ..models.factory import TOGETHER
+from ..models.factory import members_of
 from ..policy import DEFAULT, SearchPolicy
 
 
@@ -41,7 +41,7 @@ class Candidate:
     @property
     def members(self) -> tuple[str, ...]:
         """The effects that it is of."""
-        return tuple(self.effect.split(TOGETHER))
+        return members_of(self.effect)
 
     @property
     def scale(self) -> float:

@@ -51,8 +51,8 @@ def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
     """Rounds that judge each effect of a group that a round found, beside the rest of the group, the most needed last. What the
     others make needless is left out, so that a group of which one does all comes to that one."""
     w, known = models.factory, now.effects
-    whole = models.fitted((*known, *w.members(group.effect)), group.fit.values)
-    order = sorted(w.members(group.effect), key=lambda e: models.weight(whole, e))
+    whole = models.fitted((*known, *group.members), group.fit.values)
+    order = sorted(group.members, key=lambda e: models.weight(whole, e))
     every, found = pruned(models, (*known, *order), whole, known)
     near = (c for c in now.candidates if c.lawful and c.drop >= HALFWAY * group.drop)
     contested = bool({c.effect for c in near}.difference(every))

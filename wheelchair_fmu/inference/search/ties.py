@@ -106,14 +106,10 @@ def _behind(one: Candidate, other: Candidate) -> float:
 def _unchecked(one: Candidate, other: Candidate) -> bool:
     """Were runs held out, on which two models differ by less than chance moves their odds? This asks the models alone: which of
     them came out ahead is chance's doing then."""
-    if one.heldout is None or other.heldout is None or not one.heldout.runs:
-        return False
-    runs = zip(one.heldout.runs, other.heldout.runs, strict=True)
-    return float(sum(np.nansum((a.r - b.r) ** 2) for a, b in runs)) <= CHANCE * other.scale
+    runs = [*zip(one.heldout.runs, other.heldout.runs, strict=True)] if one.heldout and other.heldout else []
+    return bool(runs) and sum(float(np.nansum((a.r - b.r) ** 2)) for a, b in runs) <= CHANCE * other.scale
 
 
 def _ahead_on_heldout(one: Candidate, other: Candidate) -> float:
     """By how much one predicts the held-out runs better than the other, in −2 log likelihood; 0 where none were held out."""
-    if one.heldout is None or other.heldout is None or not one.heldout.runs:
-        return 0.0
-    return float(difference_blocks(other.heldout, one.heldout).sum())
+    return float(difference_blocks(other.heldout, one.heldout).sum()) if one.heldout and other.heldout else 0.0
