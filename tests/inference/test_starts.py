@@ -72,3 +72,13 @@ def test_where_the_model_cannot_run_nothing_is_promised(shop, calibrated):
     known = linearised(shop, calibrated, CALIBRATED)
     to = outlook(likelihood, known, (*CALIBRATED, sigma), [*(calibrated.values[n] for n in CALIBRATED), -0.05])
     assert to.misfit == float("inf")
+
+
+def test_a_step_ends_where_a_fit_may(shop, calibrated):
+    """Slopes at twice the mass ask for values that no chair has."""
+    likelihood = shop.likelihood()
+    known = linearised(shop, calibrated, CALIBRATED)
+    far = [*({**calibrated.values, "chair.m": 2 * calibrated.values["chair.m"]}[n] for n in CALIBRATED)]
+    to, problem = outlook(likelihood, known, CALIBRATED, far), Problem(likelihood, CALIBRATED)
+    assert (problem.lower <= to.reached).all() and (to.reached <= problem.upper).all()
+    assert np.isin(to.reached, [problem.lower, problem.upper]).any()  # where slopes alone would not stop

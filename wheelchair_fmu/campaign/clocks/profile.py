@@ -30,26 +30,38 @@ def _profile_of(e: Equation) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     a = [np.where(own_there, v, 0.0) for v in (np.ones(len(e.time)), e.target, *e.own)]
     b = [np.where(there, v, 0.0) for v in (np.ones(len(there)), *(s.value for s in e.seen))]
 
-    def along(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return scipy.signal.fftconvolve(x, y[::-1])
+    shifts = len(a[0]) + len(b[0]) - 1
+    padded = scipy.fft.next_fast_len(shifts, real=True)
 
-    lags = e.time[0] - e.seen[0].start + step * (np.arange(len(a[0]) + len(b[0]) - 1) - (len(b[0]) - 1))
+    def of_a(*signals: np.ndarray) -> np.ndarray:
+        return scipy.fft.rfft(signals, padded)
+
+    def of_b(*signals: np.ndarray) -> np.ndarray:
+        return scipy.fft.rfft([y[::-1] for y in signals], padded)
+
+    def along(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """At every shift the sum of products of two signals, from their transforms."""
+        return scipy.fft.irfft(x * y, padded)[:shifts]
+
+    lags = e.time[0] - e.seen[0].start + step * (np.arange(shifts) - (len(b[0]) - 1))
     nj, nk = len(a) - 2, len(b) - 1
-    count = np.round(along(a[0], b[0]))
+    (one_a, target, *own), (one_b, *seen) = of_a(*a), of_b(*b)
+    count = np.round(along(one_a, one_b))
     enough = count >= max(OVERLAP, SHARE * step * min(own_there.sum(), there.sum())) / step
-    normal = np.zeros((len(lags), nj + nk, nj + nk))
-    right = np.zeros((len(lags), nj + nk))
+    normal = np.zeros((shifts, nj + nk, nj + nk))
+    right = np.zeros((shifts, nj + nk))
     for i in range(nj):
-        right[:, i] = along(a[2 + i] * a[1], b[0])
+        told, *squares = of_a(*(a[2 + i] * x for x in a[1:]))
+        right[:, i] = along(told, one_b)
         for j in range(i, nj):
-            normal[:, i, j] = normal[:, j, i] = along(a[2 + i] * a[2 + j], b[0])
+            normal[:, i, j] = normal[:, j, i] = along(squares[j], one_b)
         for k in range(nk):
-            normal[:, i, nj + k] = normal[:, nj + k, i] = along(a[2 + i], b[1 + k])
+            normal[:, i, nj + k] = normal[:, nj + k, i] = along(own[i], seen[k])
     for k in range(nk):
-        right[:, nj + k] = along(a[1], b[1 + k])
-        for m in range(k, nk):
-            normal[:, nj + k, nj + m] = normal[:, nj + m, nj + k] = along(a[0], b[1 + k] * b[1 + m])
-    power = along(a[1] ** 2, b[0])
+        right[:, nj + k] = along(target, seen[k])
+        for m, square in zip(range(k, nk), of_b(*(b[1 + k] * y for y in b[1 + k :])), strict=True):
+            normal[:, nj + k, nj + m] = normal[:, nj + m, nj + k] = along(one_a, square)
+    power = along(of_a(a[1] ** 2)[0], one_b)
     without, with_b = (_left(normal[enough, :m, :m], right[enough, :m], power[enough]) for m in (nj, nj + nk))
     floor = 1e-9 * max(power.max(), 1e-300)
     gain = np.full(len(lags), np.nan)

@@ -12,7 +12,7 @@ from ...errors import SimulationError
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
-from .fit import prior_of
+from .fit import Problem
 from .inverse import inverse
 
 GLANCED = 2  # runs on which all are tried, and of them
@@ -21,7 +21,7 @@ LOOKED_AT = 2  # times as many as are wanted on every run
 
 @dataclass(frozen=True)
 class Outlook:
-    """Where one linear step from `theta` leads, and the squares there, with the prior's."""
+    """Where one linear step from `theta` leads, within bounds, and the squares that slopes promise, with the prior's."""
 
     misfit: float
     theta: tuple[float, ...]
@@ -36,12 +36,13 @@ def outlook(likelihood: Likelihood, known: Evidence, names: Sequence[str], theta
         r = likelihood.resimulated(known, dict(zip(names, at, strict=True))).r
     except SimulationError:
         return Outlook(float("inf"), at, at)
-    prior = prior_of(likelihood, names)
-    rows = prior.rows(np.array(at))
+    problem = Problem(likelihood, names)
+    rows, slopes = problem.prior.rows(np.array(at)), problem.prior.slopes
     Z, k = known.S, len(known.by)  # without the effect's own slope, which is not what it is at zero
-    g = Z.T @ r + (prior.slopes @ rows)[:k]
-    step = inverse(Z.T @ Z + prior.slopes[:k, :k] ** 2) @ g
-    return Outlook(float(r @ r + rows @ rows - g @ step), at, (*(np.array(at[:k]) + step), *at[k:]))
+    g = Z.T @ r + (slopes @ rows)[:k]
+    step = inverse(Z.T @ Z + slopes[:k, :k] ** 2) @ g
+    reached = np.clip(np.array(at[:k]) + step, problem.lower[:k], problem.upper[:k])
+    return Outlook(float(r @ r + rows @ rows - g @ step), at, (*map(float, reached), *at[k:]))
 
 
 def most_promising(

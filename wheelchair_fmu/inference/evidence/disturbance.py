@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from scipy.optimize import minimize
@@ -70,23 +71,23 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
     as they are.
     """
 
-    def misfit(strength: Strength) -> float:
-        ratios = np.array([getattr(strength, name) for name in SIZES]) / USUAL
-        return _misfit(evidence, strength.put_into(NoiseModel({})), t_r) + 2 * float(np.sum(ratios))
+    def misfits(strengths: Sequence[Strength]) -> np.ndarray:
+        ratios = np.array([[getattr(s, name) for name in SIZES] for s in strengths]) / USUAL
+        return _misfits(evidence, [s.put_into(NoiseModel({})) for s in strengths], t_r) + 2 * np.sum(ratios, axis=1)
 
     none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
-    without = misfit(none)
-    least, begun = min(((misfit(at), at) for at in _starts(none, about)), key=lambda tried: tried[0])
-    if least > without:
+    starts = [*_starts(none, about)]
+    without, *tried = misfits([none, *starts])
+    if min(tried) > without:
         return none
-    found = _likeliest(misfit, begun, (*SIZES, "lasting"))
+    found, least = _likeliest(misfits, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
     if found.moment > 2 * LEAST * USUAL[1]:
-        found = _likeliest(misfit, replace(found, floor=found.moment / max(b, NEAR)), ("force", "body"))
+        found, least = _likeliest(misfits, replace(found, floor=found.moment / max(b, NEAR)), ("force", "body"))
     felt = {
         name: size if (size := getattr(found, name)) > 2 * LEAST * usual else 0.0
         for name, usual in zip(SIZES, USUAL, strict=True)
     }
-    return replace(found, **felt, fall=without - misfit(found))
+    return replace(found, **felt, fall=float(without - least))
 
 
 def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
@@ -101,21 +102,26 @@ def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
         yield replace(none, **dict(zip(SIZES, map(float, sizes), strict=True)))
 
 
-def _likeliest(misfit: Callable[[Strength], float], begun: Strength, by: Sequence[str]) -> Strength:
-    """The strength with the least misfit, as those of its figures change that are named."""
+def _likeliest(
+    misfits: Callable[[Sequence[Strength]], np.ndarray], begun: Strength, by: Sequence[str]
+) -> tuple[Strength, float]:
+    """The strength with the least misfit, as those of its figures change that are named, and that misfit."""
     limits = {**{name: (LEAST * usual, MOST * usual) for name, usual in zip(SIZES, USUAL, strict=True)}, "lasting": LASTING}
 
     def at(logs: np.ndarray) -> Strength:
         return replace(begun, **dict(zip(by, map(float, np.exp(logs)), strict=True)))
 
-    found = minimize(
-        lambda logs: misfit(at(logs)),
-        [np.log(getattr(begun, name)) for name in by],
-        method="L-BFGS-B",
-        bounds=[tuple(np.log(limits[name])) for name in by],
-        options={"ftol": PRECISE, "eps": NEARBY},
-    )
-    return at(found.x)
+    bounds = np.log([limits[name] for name in by])
+
+    def with_slopes(logs: np.ndarray) -> tuple[float, np.ndarray]:
+        """The misfit, and its slopes, away from bounds, all of which are found side by side."""
+        beside = np.where(logs + NEARBY < bounds[:, 1], NEARBY, -NEARBY)
+        here, *there = misfits([at(logs), *(at(one) for one in logs + np.diag(beside))])
+        return float(here), (np.array(there) - here) / beside
+
+    begun_at = [np.log(getattr(begun, name)) for name in by]
+    found = minimize(with_slopes, begun_at, jac=True, method="L-BFGS-B", bounds=bounds, options={"ftol": PRECISE})
+    return at(found.x), float(found.fun)
 
 
 def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strength, Evidence]:
@@ -153,12 +159,14 @@ def disturbed(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> tuple[Whit
     return filter_, e.offset[: filter_.size[0]]
 
 
-def _misfit(evidence: Evidence, noise_model: NoiseModel, t_r: float) -> float:
-    """−2 log likelihood with forces as strong as `noise_model` has them, but for a constant."""
+def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:
+    """−2 log likelihood with forces as strong as each of `noise_models` has them (k,), but for a constant."""
 
-    def one(e: RunEvidence) -> float:
+    def one(asked: tuple[NoiseModel, RunEvidence]) -> float:
+        noise_model, e = asked
         filter_ = e.filter.whitener
         forces = disturbance(noise_model, len(filter_.noise.pushes), t_r, swinging=noise_model.swinging(e.run))
         return filter_.misfit(forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 
-    return float(sum(parallel_map(one, evidence.runs)))
+    told = parallel_map(one, product(noise_models, evidence.runs))
+    return np.sum(np.reshape(told, (len(noise_models), -1)), axis=1)

@@ -15,10 +15,11 @@ import numpy as np
 
 from ...errors import SimulationError
 from ..estimation.fit import Fit
-from ..estimation.starts import most_promising
+from ..estimation.starts import Outlook, most_promising
 from ..models.factory import TOGETHER, ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models
+from ..parallel import parallel_map
 from .candidate import Candidate
 from .judge import judge
 from .pruning import pruned
@@ -99,12 +100,18 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
     likelihood, names = models.likelihood(every), models.names(every)
     starts = ({**base.fit.values, **sizes} for sizes in tries(models.factory, group))
     thetas = [[start[n] for n in names] for start in starts]
-    begun = []
-    for start in most_promising(likelihood, known, names, thetas, BEGUN, known.r):
+
+    def one_step(start: Outlook) -> Fit | None:
         try:
-            begun.append(models.refit(every, dict(zip(names, start.theta, strict=True)), most=1))
+            return models.refit(every, dict(zip(names, start.theta, strict=True)), most=1)
         except SimulationError:
-            continue
-    begun.sort(key=lambda fit: fit.misfit)
-    ended = [models.refit(every, fit.values, fit.evidence) for fit in begun[:ENDED]]
-    return min(ended, key=lambda fit: fit.misfit, default=None)
+            return None
+
+    promising = most_promising(likelihood, known, names, thetas, BEGUN, known.r)
+    begun = sorted((fit for fit in parallel_map(one_step, promising) if fit), key=_misfit)
+    ended = parallel_map(lambda fit: models.refit(every, fit.values, fit.evidence), begun[:ENDED])
+    return min(ended, key=_misfit, default=None)
+
+
+def _misfit(fit: Fit) -> float:
+    return fit.misfit
