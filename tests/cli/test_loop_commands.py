@@ -58,6 +58,21 @@ def test_compare_with_what_was_hidden_comes_near_the_floor():
     assert told["rms"]["holdout"] < 1.05
 
 
+def test_compare_says_which_calibrated_value_nobody_should_believe():
+    """A centre of mass that is given 8 cm off comes back by the 4 cm that no tape errs by, and that is said."""
+    asked = ("compare", SAMPLE, "--calibrate", "chair.m, chair.a, tyre.C_lambda", "--set", "chair.a=0.33")
+    told = json.loads(run(*asked, "--json").stdout)
+    assert set(told["calibration"]) == set(told["calibrated"]) == {"chair.m", "chair.a", "tyre.C_lambda"}
+    a = told["calibration"]["chair.a"]
+    assert (a["prior"], a["prior_sd"], a["at_bound"], a["beyond"]) == (0.33, pytest.approx(0.01), True, True)
+    assert a["value"] == told["values"]["chair.a"] == pytest.approx(0.29)
+    (note,) = (n for n in told["notes"] if n.startswith("chair.a"))
+    assert "comes out at 0.29 m, 4.0 standard deviations from the 0.33 ± 0.01 m given, where the search stops" in note
+    assert f"note: {note}" in " ".join(run(*asked).stdout.split())
+    plain = json.loads(run("compare", SAMPLE, "--json").stdout)
+    assert plain["calibration"] == {} and plain["notes"] == []
+
+
 def test_add_writes_a_variant_that_everything_reads(tmp_path):
     better = tmp_path / "better.toml"
     done = run("add", "rolling_resistance_asymmetry", SAMPLE, "-o", str(better), "--json")

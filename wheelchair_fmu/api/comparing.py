@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain, islice
 from os import cpu_count
 from typing import TypeVar
 
 from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
+from ..inference.estimation.calibration import Calibrated, calibration
 from ..inference.estimation.fit import fit, start_value
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.residual.compare import Comparison, RunErrors, errors_of, together
@@ -26,22 +27,34 @@ AT_ONCE = cpu_count() or 1  # pieces whose filters are made together, while thos
 Item = TypeVar("Item")
 
 
+@dataclass(frozen=True)
+class Compared:
+    """Errors, the chair's values by FMI name (SI), and what became of those that were fitted."""
+
+    errors: Comparison
+    values: Mapping[str, float]
+    calibration: tuple[Calibrated, ...] = ()
+
+
 def compared(
     measured: Campaign, chair: Variant, calibrate: Sequence[str], say: Callable[[str], None], *, brief: bool = False
-) -> tuple[Comparison, dict[str, float]]:
-    """Errors of the chair, and its values with those of `calibrate` fitted; `brief` without what was simulated.
+) -> Compared:
+    """Errors of the chair with the values of `calibrate` fitted; `brief` without what was simulated.
 
     Raises UsageError for a name that cannot be calibrated.
     """
     chair = chair.with_effects(measured.effects)  # for the FMU to have
-    values = {**chair.values, **_calibrated(measured, chair, calibrate)}
-    return Comparison(tuple(r.summary() if brief else r for r in _through_fmu(measured, chair, values, say))), values
+    fitted, told = _calibrated(measured, chair, calibrate)
+    values = {**chair.values, **fitted}
+    runs = tuple(r.summary() if brief else r for r in _through_fmu(measured, chair, values, say))
+    return Compared(Comparison(runs), values, tuple(told))
 
 
-def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> dict[str, float]:
-    """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large."""
+def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> tuple[Mapping[str, float], Sequence[Calibrated]]:
+    """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large, and what there
+    is to say of each parameter."""
     if not names and not measured.nuisance:
-        return {}
+        return {}, ()
     likelihood = Likelihood(windows(measured), chair)
     records = {p.name: p for p in likelihood.variant.parameters()}
     for name in names:
@@ -50,11 +63,10 @@ def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> dic
         if name not in likelihood.sensitivities.columns:
             raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(likelihood.sensitivities.columns)}")
     wanted = [*names, *likelihood.offsets]  # sensors' offsets, where the campaign names them, are nobody's error
-    return (
-        dict(fit(likelihood, wanted, {n: start_value(likelihood, likelihood.records[n]) for n in wanted}).values)
-        if wanted
-        else {}
-    )
+    if not wanted:
+        return {}, ()
+    found = fit(likelihood, wanted, {n: start_value(likelihood, likelihood.records[n]) for n in wanted})
+    return found.values, calibration(likelihood, found)
 
 
 def _through_fmu(

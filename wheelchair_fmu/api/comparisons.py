@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from ..inference.residual import compare as errors
+from ..inference.estimation.calibration import doubts
 from ..inference.subject import applied
 from ..report.figures import overlay_figure, where_figure
 from .campaigns import UNIT_OF, Campaign
-from .comparing import compared
-from .frames import framed, save
+from .comparing import Compared, compared
+from .frames import calibration_frame, framed, save
 from .variants import Values, Variant, plain
 
 if TYPE_CHECKING:
@@ -30,8 +30,9 @@ class Comparison:
     Comparison(fit=12.427, holdout=13.406)
     """
 
-    def __init__(self, campaign: Campaign, found: errors.Comparison, values: dict[str, float]) -> None:
-        self._campaign, self._found, self._values = campaign, found, values
+    def __init__(self, campaign: Campaign, found: Compared) -> None:
+        self._campaign, self._compared = campaign, found
+        self._found, self._values = found.errors, found.values
 
     @property
     def values(self) -> dict[str, float]:
@@ -41,6 +42,24 @@ class Comparison:
         0.015
         """
         return dict(self._values)
+
+    @property
+    def calibration(self) -> pd.DataFrame:
+        """What became of the values that were fitted, as `Diagnosis.calibration` has it.
+
+        >>> campaign.compare(calibrate=["chair.m"]).calibration.index.tolist()
+        ['chair.m']
+        """
+        return calibration_frame(self._compared.calibration)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for each fitted value that ends at a bound, or far from what was given.
+
+        >>> compared.notes
+        ()
+        """
+        return tuple(doubts(self._compared.calibration))
 
     @property
     def rms(self) -> pd.DataFrame:
@@ -143,5 +162,4 @@ def compare(
 ) -> Comparison:
     """See `Campaign.compare`."""
     chair, measured, _ = applied(values or {}, plain(variant), campaign._record)
-    found, fitted = compared(measured, chair, tuple(calibrate), lambda words: None)
-    return Comparison(Campaign(measured), found, fitted)
+    return Comparison(Campaign(measured), compared(measured, chair, tuple(calibrate), lambda words: None))

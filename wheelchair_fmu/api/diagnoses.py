@@ -25,6 +25,7 @@ from ..report.words import particulars, sentence
 from ..writing import written
 from .campaigns import Campaign
 from .diagnosing import page_of, searched, supplement_of
+from .frames import calibration_frame
 from .variants import Values, Variant, of_record, plain
 
 if TYPE_CHECKING:
@@ -164,8 +165,7 @@ class Diagnosis:
         >>> print(f"{m.value:.0f} {m.unit}, given as {m.prior:.0f} ± {m.prior_sd:.0f}")
         80 kg, given as 80 ± 2
         """
-        rows = {c.record.name: {**c.as_json(), "unit": c.record.unit.name} for c in self._found.calibration}
-        return pd.DataFrame.from_dict(rows, "index").rename_axis("parameter")
+        return calibration_frame(self._found.calibration)
 
     @property
     def staircase(self) -> pd.DataFrame:

@@ -1,8 +1,8 @@
-"""Tables of series that know their units, and files of them."""
+"""Tables of series that know their units, files of them, and tables of fitted values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import unknown
+from ..inference.estimation.calibration import Calibrated
 from ..writing import written
 
 UNITS = "units"  # the key of `DataFrame.attrs` under which a frame has its units by column, and that of its index
@@ -21,6 +22,12 @@ def framed(time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[s
     frame = pd.DataFrame(dict(columns), index=pd.Index(time, name="time"))
     frame.attrs[UNITS] = {"time": "s", **{name: units[name] for name in columns}}
     return frame
+
+
+def calibration_frame(values: Sequence[Calibrated]) -> pd.DataFrame:
+    """A row for each value that was given and fitted, by its FMI name."""
+    rows = {c.record.name: {**c.as_json(), "unit": c.record.unit.name} for c in values}
+    return pd.DataFrame.from_dict(rows, "index").rename_axis("parameter")
 
 
 def save(frame: pd.DataFrame, path: str | Path) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,10 +12,10 @@ from rich import box
 from rich.table import Table
 
 from ..api import campaigns, comparisons
-from ..api.comparing import PIECE, compared
+from ..api.comparing import PIECE, Compared, compared
 from ..campaign import Campaign, pieces
+from ..inference.estimation.calibration import doubts
 from ..inference.estimation.statistics import finite
-from ..inference.residual.compare import Comparison
 from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
 from ..writing import written
@@ -44,15 +45,15 @@ def compare(
     chair, measured, _ = subject(campaign, variant, effects, settings)
     names = [n.strip() for n in calibrate.split(",") if n.strip()]
     with working("simulating") as say:
-        comparison, values = compared(measured, chair, names, say, brief=not output)
+        found = compared(measured, chair, names, say, brief=not output)
     for note in _notes(measured):
         console(stderr=True).print(note)
     if as_json:
-        print_json(_content(measured, comparison, values, calibrate))
+        print_json(_content(measured, found, names))
     else:
-        _show(measured, comparison, values, calibrate)
+        _show(measured, found, names)
     if output:
-        for file in _files(comparisons.Comparison(campaigns.Campaign(measured), comparison, values), output, table):
+        for file in _files(comparisons.Comparison(campaigns.Campaign(measured), found), output, table):
             announce(file)
 
 
@@ -64,22 +65,27 @@ def _notes(measured: Campaign) -> list[str]:
     return [*said, "each run's start is estimated about what the file says (speed ± 0.02 m/s)"]
 
 
-def _content(measured: Campaign, c: Comparison, values: dict[str, float], calibrate: str) -> dict[str, Any]:
+def _content(measured: Campaign, found: Compared, names: Sequence[str]) -> dict[str, Any]:
+    c = found.errors
     return {
         "campaign": measured.name,
         "rms": {"fit": finite(c.rms("fit")), "holdout": finite(c.rms("holdout"))},
         "runs": [{"run": r.name, "role": r.role, "rms": r.rms} for r in c.runs],
         "physical": physical(c.physical("fit"), c.physical("holdout")),
         "excess": {n: [{"from": a, "to": b, "share": s} for a, b, s in c.excess_by(n)] for n in c.runs[0].regime},
-        "values": values,
-        "calibrated": [n for n in calibrate.split(",") if n],
+        "values": dict(found.values),
+        "calibrated": list(names),
+        "calibration": {v.record.name: v.as_json() for v in found.calibration},
+        "notes": doubts(found.calibration),
     }
 
 
-def _show(measured: Campaign, c: Comparison, values: dict[str, float], calibrate: str) -> None:
-    out = console()
-    for name in (n.strip() for n in calibrate.split(",") if n.strip()):
-        out.print(f"calibrated: {name} = {values[name]:.6g}")
+def _show(measured: Campaign, found: Compared, names: Sequence[str]) -> None:
+    out, c = console(), found.errors
+    for name in names:
+        out.print(f"calibrated: {name} = {found.values[name]:.6g}")
+    for note in doubts(found.calibration):
+        out.print(f"note: {note}")
     channels = list(dict.fromkeys(ch for r in c.runs for ch in r.channels))
     table = Table(box=box.SIMPLE, title=f"{measured.name}: whitened RMS error, 1.0 is the noise floor", title_justify="left")
     table.add_column("run", no_wrap=True)
