@@ -240,7 +240,7 @@ EFFECTS: dict[str, Effect] = {
         _two(("x", "y"), "instruments.offset_{}", "m", 0.03, "where it sits from the CM, forward and right", 1.0)
     ),
     "marker_offset": Effect(
-        _two(("x", "y"), "instruments.marker_{}", "m", 0.01, "where it sits from the CM, forward and right", -0.5),
+        _two(("x", "y"), "instruments.marker_{}", "m", 0.02, "where it sits from the CM, forward and right", -0.5),
         channels=("x", "y", "yaw"),
     ),
     "accelerometer_tilt": Effect(
