@@ -172,6 +172,11 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
         ('device = "imu"\n', "", 'recording 2 has no device; add device = "..."'),
         ('imu = "one_imu.csv"', 'imu = "imu.csv"', "run 1: no such file as 'imu.csv' of imu; did you mean 'one_imu.csv' or"),
         ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give a point"),
+        (
+            "at = [0.11, 0.04]",
+            "at = [110, 40]",
+            "recording 2 (imu): at = [110, 40] is more than 1.2 m from the centre of mass, off any chair; write it in m",
+        ),
         ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
         ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
         ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),

@@ -170,7 +170,12 @@ TOML_FAULTS = [
     (
         "a speed off the chair",
         lambda h, r: (h + "[sensor]\nu = { at = [-200, 0.0] }\n", r),
-        "line 7: [sensor] u.at = [-200, 0.0] is more than 2 m from the centre of mass, off any chair; write it in m",
+        "line 7: [sensor] u.at = [-200, 0.0] is more than 1.2 m from the centre of mass, off any chair; write it in m",
+    ),
+    (
+        "a marker behind and beside the chair",
+        lambda h, r: (h + "[sensor]\nx = { at = [-1.0, 0.9] }\n", r),
+        "line 7: [sensor] x.at = [-1.0, 0.9] is more than 1.2 m from the centre of mass, off any chair; write it in m",
     ),
     (
         "one marker in two places",

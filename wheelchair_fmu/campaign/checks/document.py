@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from math import degrees, pi
+from math import degrees, hypot, pi
 from typing import Any
 
 from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
@@ -14,7 +14,7 @@ from .. import body
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
 from ..derived import ENDS
-from ..devices import devices, parts, point_of
+from ..devices import devices, parts, point, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
 from ..formats import formats, known_options
@@ -26,7 +26,8 @@ CASTERS = ("start.caster_l", "start.caster_r")
 TURNS = (0.25, 0.5)  # what a quarter and half a turn would be written as; a caster turned by more is turned the other way
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
-FARTHEST = 2.0  # m from the centre of mass, of anything on a chair
+FARTHEST = 1.2  # m from the centre of mass, of anything on a chair: as long as a chair is in all
+OFF = f"is more than {FARTHEST:g} m from the centre of mass, off any chair"
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
@@ -179,9 +180,12 @@ def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
         elif point_of(entry) is None:
             cure = f"write sensor.{name}.at = [x, y], in m forward and to the right of the centre of mass"
             yield doc.fault(f"sensor.{name}", f"[sensor] {name} = {entry!r} is no point", cure)
-        elif max(map(abs, point_of(entry) or (0.0,))) > FARTHEST:
-            fact = f"[sensor] {name}.at = {entry['at']} is more than {FARTHEST:g} m from the centre of mass, off any chair"
-            yield doc.fault(f"sensor.{name}", fact, "write it in m")
+        elif hypot(*(point_of(entry) or ())) > FARTHEST:
+            yield doc.fault(f"sensor.{name}", f"[sensor] {name}.at = {entry['at']} {OFF}", "write it in m")
+    for place, table in enumerate(doc.recordings):
+        if hypot(*(point(table.get("at")) or ())) > FARTHEST:
+            fact = f"{_device_title(place, table)}: at = {table['at']} {OFF}"
+            yield doc.fault("recording.at", fact, "write it in m", place)
 
 
 def two_points(doc: Document, known: Known | None) -> Iterator[Fault]:
