@@ -24,6 +24,11 @@ Manoeuvres = str | Iterable[str | Run]
 
 INTERVAL = 0.01
 REFERENCE_PRESSURE = 4.0
+SOFT = 2.0  # bar, that runs at another pressure are told to be at
+EXPONENTS = {
+    "pressure_F": 1.0,
+    "pressure_M": -0.5,
+}  # of the pressure in C_lambda and C_m_lambda, as a rig has them of this chair's
 CHANNELS = ("wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y")
 ROOM_CHANNELS = (*CHANNELS, "x", "y", "yaw")
 UNITS = {
@@ -101,13 +106,13 @@ def truth(
     return hide(Truth(chair=replace(told, **off)), hidden)
 
 
-def settings(run: Run, told: Chair, true: Truth) -> dict[str, float]:
+def settings(run: Run, told: Chair) -> dict[str, float]:
     """What the campaign file says is different in this run."""
     out: dict[str, float] = {}
     if run.added_mass:
         out["chair.m"] = told.m + run.added_mass
     if run.other_pressure:
-        out["tyre.pressure"] = REFERENCE_PRESSURE + true.pressure_change
+        out["tyre.pressure"] = SOFT
     return out
 
 
@@ -119,7 +124,8 @@ def record(run: Run, true: Truth, *, seed: int = 0, turned: tuple[float, float] 
     F_rl, F_rr = run.draw(time, rng)
     left, right = turned
     start = Start(u=run.u0 + (0.01 * rng.standard_normal() if run.u0 else 0.0), swivel_l=left, swivel_r=right)
-    pressure = 1 + true.pressure_change / REFERENCE_PRESSURE if run.other_pressure else 1.0
+    told = SOFT if run.other_pressure else REFERENCE_PRESSURE
+    pressure = (told + true.pressure_change) / REFERENCE_PRESSURE
     chair = replace(true.chair, m=true.chair.m + run.added_mass, pressure=pressure)
     tools = true.instruments
     motion = simulate(chair, tools.felt(F_rl), tools.felt(F_rr), start, interval=INTERVAL)
@@ -194,6 +200,8 @@ def _toml(name: str, told: Chair, noise: Mapping[str, float], runs: Sequence[tup
     for section, keys in SECTIONS.items():
         comment = f"   # {COMMENTS[section]}" if section in COMMENTS else ""
         lines += ["", f"[{section}]{comment}", *(f"{key} = {float(getattr(told, key))!r}" for key in keys)]
+        if section == "tyre" and any(run.other_pressure for run, _ in runs):
+            lines += [f"{key} = {value!r}" for key, value in EXPONENTS.items()]
     lines += ["", "[noise]   # one standard deviation of each sensor, in the unit of its column"]
     lines += [f"{channel} = {sigma!r}" for channel, sigma in noise.items()]
     for run, changed in runs:
@@ -241,7 +249,7 @@ def make(
         )
         (folder / "runs" / f"{run.name}.csv").write_text(_csv(columns), encoding="utf-8")
     sigmas = {name: float(f"{noise_scale * NOISE[name]:.6g}") for name in names}
-    text = _toml(folder.name, told, sigmas, [(run, settings(run, told, true)) for run in runs])
+    text = _toml(folder.name, told, sigmas, [(run, settings(run, told)) for run in runs])
     (folder / "campaign.toml").write_text(text, encoding="utf-8")
     return folder
 

@@ -33,6 +33,7 @@ static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
 static const double ALONG_STIFFNESS = 2e4, ALONG_LENGTH = 0.1; /* N, m: of the bristles along a rear wheel that slips */
 static const double RIM_MASS = 1.457;   /* kg, spin inertia of a rear wheel, 0.14 kg m2, over its radius squared, 0.31 m */
+static const double SOFTENED = 0.32;    /* share of rolling resistance that goes as one over the pressure: a third more at half of it */
 static const double TORSO = 0.3;        /* m, from the hips up to where the upper body's share of the CM turns about them */
 static const double TIRING = 160;       /* N of push, beyond which nobody leans much farther */
 
@@ -157,7 +158,8 @@ static void rates(const double *p, const double *s, const double *F, const doubl
                 + turned(p[P_turn], TURN_LENGTH, r, sqrt(vx * vx + vy * vy))
                 + pivoted(p[P_pivot], PIVOT_LENGTH, r, sqrt(vx * vx + vy * vy));
             double rolling = tanh(rolled / CREEP);
-            double drag = (p[P_f_r] * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * rolled;
+            double soft = 1 - SOFTENED + SOFTENED / p[P_pressure];
+            double drag = (p[P_f_r] * soft * load - side * p[P_drag_difference] / 2) * rolling + p[P_drag_speed] * load / weight * rolled;
             if (i == 0) drag += p[P_sticky] * rolling * 0.5 * (1 + tanh(r / 0.02));
             double pull = F[i] - drag;
             if (p[P_slippery] != 0) {

@@ -78,7 +78,7 @@ class Instruments:
 
 @dataclass(frozen=True)
 class Truth:
-    """The chair as it is, its instruments, and how far the pressure is off in the runs at another pressure."""
+    """The chair as it is, its instruments, and how far the pressure is off what the gauge said."""
 
     chair: Chair = Chair()
     instruments: Instruments = Instruments()
@@ -156,7 +156,7 @@ EFFECTS: dict[str, Effect] = {
         _one("exponent", "chair.load_exponent", "1", 0.1, "cornering stiffness times (load / 400 N)^exponent"), sees="mass"
     ),
     "inflation_pressure": Effect(
-        _one("dp", "pressure_change", "bar", 0.3, "marked runs are at 4 bar + dp: stiffness as p, trail as p^-1.5"),
+        _one("dp", "pressure_change", "bar", 0.3, "all runs are at dp more than told, which is 4 bar, or 2 bar in marked runs"),
         sees="pressure",
     ),
     "relaxation_length": Effect(

@@ -159,7 +159,7 @@ def test_the_same_seed_gives_the_same_bytes(tmp_path):
 @pytest.mark.parametrize("channels", [CHANNELS, ROOM_CHANNELS, ("yaw_rate", "u")])
 def test_files(tmp_path, channels):
     manoeuvres = ["coast-down", "steady-right-heavy", "slalom-quick-pressure"]
-    hidden = {"inflation_pressure": {"dp": -2.0}}
+    hidden = {"inflation_pressure": {"dp": -0.5}}
     folder = make(tmp_path / "some", hidden, manoeuvres=manoeuvres, channels=channels, noise_scale=2.0, chair={"m": 85.0})
     campaign = tomllib.loads((folder / "campaign.toml").read_text(encoding="utf-8"))
     assert campaign["campaign"] == {"name": "some", "axes": "SAE-J670"}
