@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.independent.campaigns import make
 from benchmarks.shifts import NIGHT, Case, less, shifted, with_shift
 from tests.inference.conftest import among
-from wheelchair_fmu.campaign import covered
+from wheelchair_fmu.campaign import covered, read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.factory import ModelFactory
@@ -32,6 +33,11 @@ def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     side = "early" if seconds > 0 else "late"
     assert [n for n in begun.heard(found) if n.startswith(f"{name}: ") and f"too {side}" in n]
     assert [r.name for r in begun.models.campaign.runs] == [r.name for r in sample.runs]
+
+
+def test_hands_that_push_against_each_other_tell_no_clock_by_what_their_sum_does(tmp_path):
+    """In a spin the sum is noise: read 6.4 s earlier, and 22 times as large, it would do what long casters do to the chair."""
+    assert by_signals(read(make(tmp_path / "spins", {"caster_trail": {"c": 0.09}}, manoeuvres="slow", seed=61))) == {}
 
 
 def test_a_missing_effect_is_not_taken_for_a_shift(sample):

@@ -27,6 +27,7 @@ LEAST = 0.012  # s, below which nobody puts a file together anew
 EXPLAINED = 0.5  # share of a run's squared error that its shift may leave: else it is something else that is wrong
 PERIODIC = 0.1  # the same, where another shift does as well: that the recorded times are wrong must then be plain
 ALIKE = 4.0  # standard errors that the two equations may differ by in one run: a clock shifts both
+TIMES = 2.0  # as much, or as little, as pushes of one and the same chair may do in one run beside the others
 STILL = 1e-6  # SI; what changes less in all runs (rolling resistance of a chair that never stops) tells nothing
 REWEIGHTED = 8  # times
 ROUNDS = 2  # of coefficients at the shift that is common, which needs coefficients
@@ -131,15 +132,22 @@ def _lags(runs: Mapping[str, Equations], pool: Sequence[str]) -> dict[str, tuple
         lags = {}
         for name, own in runs.items():
             others = [of for n, of in grams.items() if n != name and n in pool]
-            known = [_known(e, _coefficients([of[v] for of in others if v in of])) for v, e in own.items()]
+            coefficients = [_coefficients([of[v] for of in others if v in of]) for v in own]
+            known = [_known(e, c) for e, c in zip(own.values(), coefficients, strict=True)]
             lag = find(known)
-            if lag is not None:
+            if lag is not None and (any(c is None for c in coefficients) or _push_alike(lag)):
                 lags[name] = lag, known
         telling = [lag for n, (lag, _) in lags.items() if lag.unique and n in pool]
         before, common = common, _common(telling)[0] if telling else 0.0
         if abs(common - before) < LEAST:
             break
     return lags
+
+
+def _push_alike(lag: Lag) -> bool:
+    """Do pushes that are read so much later do about what the other runs have them do? Where hands push against each other,
+    as in a spin, nearly nothing drives the chair on, and some shift makes that the cause of any motion, many times over."""
+    return all(1 / TIMES < gain < TIMES for gains in lag.gains for gain in gains)
 
 
 def _gram(e: Equation, shift: float) -> tuple[np.ndarray, int]:
