@@ -37,7 +37,8 @@ REACH = 4.0  # standard deviations of the prior; a value further off is no calib
 
 @dataclass(frozen=True)
 class Fit:
-    """Values by name (SI), their covariance (k, k) before any allowance for misfit, and the evidence at them."""
+    """Values by name (SI), their covariance (k, k) before any allowance for misfit, and the evidence at them; `lower` and
+    `upper` (k,) are how far the fit might go, where it was not free to go anywhere."""
 
     names: tuple[str, ...]
     values: Mapping[str, float]
@@ -45,6 +46,8 @@ class Fit:
     evidence: Evidence
     misfit: float  # −2 log likelihood and prior
     prior_slopes: np.ndarray
+    lower: np.ndarray | None = None
+    upper: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -233,7 +236,8 @@ def fit(
 
 def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
     covariance = inverse(problem.information(here)) if len(theta) else np.zeros((0, 0))
-    return Fit(problem.names, problem.values(theta), covariance, here, problem.misfit(here, theta), problem.prior.slopes)
+    values, misfit, prior = problem.values(theta), problem.misfit(here, theta), problem.prior.slopes
+    return Fit(problem.names, values, covariance, here, misfit, prior, problem.lower, problem.upper)
 
 
 def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int) -> Fit:

@@ -92,13 +92,18 @@ def support_of(
     fall: float,
     ahead: float,
     policy: SearchPolicy = DEFAULT,
+    bounded: float = 0.0,
 ) -> Support:
-    """Support of a refitted effect, in its own units, by the widest of its covariances (k, k). Where zero is likelier than its
-    standard errors have it, they are widened to say so."""
+    """Support of a refitted effect, in its own units, by the widest of its covariances (k, k).
+
+    Where zero is likelier than its standard errors have it, they are widened to say so. Where it is less likely, as other
+    values would have to leave their bounds for it, they are narrowed to say that, as far as what that costs, `bounded`,
+    explains the fall."""
     size, scale = estimate / delta, np.outer(delta, delta)
     covariance = max((c / scale for c in covariances), key=np.trace)
-    widen = max(1.0, squared(size, covariance) / max(fall, LEAST))
-    return support(effect, size, covariance * widen, lawful, fall, ahead, policy)
+    away = squared(size, covariance)
+    factor = away / float(np.clip(fall, LEAST, max(away, bounded, LEAST))) if away > 0 else 1.0
+    return support(effect, size, covariance * factor, lawful, fall, ahead, policy)
 
 
 def squared(estimate: np.ndarray, covariance: np.ndarray) -> float:

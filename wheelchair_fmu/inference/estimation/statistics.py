@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from ..chance import student
 from ..evidence.evidence import Evidence, block_length
@@ -14,6 +15,8 @@ from .inverse import inverse
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
+CLOSE = 1e-9  # standard errors: as good as at a bound
+TINY = 1e-300
 ALONE = 1e-6  # of what a run decides, left to the others: it decides alone
 
 
@@ -89,6 +92,23 @@ def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]
     """Values (k,) of some of a fit's parameters, and their `sandwich` (k, k)."""
     at = [found.names.index(n) for n in names]
     return np.array([found.values[n] for n in names]), sandwich(found)[np.ix_(at, at)]
+
+
+def bounded(found: Fit, names: Sequence[str], without: np.ndarray) -> float:
+    """By how much −2 log likelihood rises, as slopes and `sandwich` of a fit have it, where the parameters `names` are as in a
+    model `without` them, all others being as likely as they may within the fit's bounds. Without bounds that is the size in
+    standard errors, squared; a bound that is in the way makes it more. 0 of a fit without bounds."""
+    own = [found.names.index(n) for n in names]
+    others = [i for i in range(len(found.names)) if i not in own]
+    if found.lower is None or found.upper is None or not others:
+        return 0.0
+    theta, covariance = np.array([found.values[n] for n in found.names]), sandwich(found)
+    sd = np.sqrt(np.maximum(np.diag(covariance), TINY))
+    root = np.linalg.cholesky(inverse(covariance / np.outer(sd, sd))).T
+    moved = root[:, own] @ ((theta[own] - without) / sd[own])
+    ends = [((end - theta) / sd)[others] for end in (found.lower, found.upper)]
+    best = lsq_linear(root[:, others], moved, bounds=(np.minimum(ends[0], -CLOSE), np.maximum(ends[1], CLOSE)))
+    return 2 * float(best.cost)
 
 
 def seen_directions(size: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -35,6 +35,7 @@ class Candidate:
     heldout: Evidence | None
     lawful: bool  # of a sign that its parameters may have
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
+    bounded: float = 0.0  # −2 log likelihood that its lack costs by its own slopes, all other values being within their bounds
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
     policy: SearchPolicy = DEFAULT
 
@@ -58,7 +59,8 @@ class Candidate:
     def support(self) -> Support:
         """What bears it out, beside the model without it, and however many parameters it has."""
         covariances, ahead = (self.covariance, self.between), self.gain[0] / self.scale if self.gain else 0.0
-        return support_of(self.effect, self.size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy)
+        what = self.size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy, self.bounded
+        return support_of(self.effect, *what)
 
     @property
     def size(self) -> np.ndarray:
@@ -67,10 +69,10 @@ class Candidate:
 
     @property
     def excess(self) -> float:
-        """Log likelihood that is gained, and that the estimate by its standard errors would not: of a model that is not exact a
-        parameter may take up what it did not do."""
+        """Log likelihood that is gained, and neither by the estimate, as its standard errors have it, nor for other values'
+        bounds: of a model that is not exact a parameter may take up what it did not do."""
         away = squared(self.size / self.delta, self.covariance / np.outer(self.delta, self.delta))
-        return 0.5 * max(0.0, self.fall - away)
+        return 0.5 * max(0.0, self.fall - max(away, self.bounded))
 
     @property
     def se(self) -> np.ndarray:

@@ -13,7 +13,7 @@ from ..estimation.fit import Fit
 from ..estimation.inverse import inverse
 from ..estimation.marginal import support_of
 from ..estimation.score import RUNS
-from ..estimation.statistics import between_runs, correlation_time, estimates, held_out_gain, seen_directions
+from ..estimation.statistics import between_runs, bounded, correlation_time, estimates, held_out_gain, seen_directions
 from ..models.hypothesis import Model
 from ..models.models import Models
 from .candidate import Candidate
@@ -51,6 +51,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         lawful=not bool(np.all((estimate <= near) & one_sided)),
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         policy=models.policy,
+        bounded=bounded(fit, names, without),
     )
 
 
