@@ -19,7 +19,7 @@ FREE = np.full(2, np.inf)
 
 def lack(found, upper=FREE) -> float:
     """What a model without the effect costs."""
-    return bounded(replace(found, lower=-FREE, upper=upper), ["effect"], np.zeros(1))
+    return bounded(replace(found, lower=-np.inf * np.ones(len(upper)), upper=upper), ["effect"], np.zeros(1))
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +44,22 @@ def test_a_value_that_may_go_so_far_leaves_the_rest_to_the_effect(fitted, reach)
     cost = H[0, 0] * size**2 - 2 * H[0, 1] * size * reach + H[1, 1] * reach**2
     assert lack(fitted, upper) == pytest.approx(cost, rel=1e-5)
     assert cost > 3 * lack(fitted)
+
+
+def test_a_value_that_nothing_tells_changes_nothing(fitted):
+    """As of what no run acts on: its information is zero, and so is its covariance by a pseudo-inverse."""
+    runs = tuple(replace(e, S=np.concatenate([e.S, np.zeros_like(e.S[..., :1])], axis=-1)) for e in fitted.evidence.runs)
+    names = (*fitted.names, "nothing")
+    covariance = np.pad(fitted.covariance, (0, 1))
+    more = replace(
+        fitted,
+        names=names,
+        values={**fitted.values, "nothing": 0.0},
+        covariance=covariance,
+        prior_slopes=np.pad(fitted.prior_slopes, (0, 1)),
+        evidence=replace(fitted.evidence, runs=runs, by=names),
+    )
+    assert lack(more, np.full(3, np.inf)) == pytest.approx(lack(fitted), rel=1e-6)
 
 
 def drawn(rng):

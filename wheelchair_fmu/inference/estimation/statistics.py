@@ -17,6 +17,7 @@ from .score import SEEN, Score, robust_variance
 RESAMPLES = 400
 CLOSE = 1e-9  # standard errors: as good as at a bound
 TINY = 1e-300
+SINGULAR = 1e-12  # of the widest direction's variance: what is so narrow beside it was not seen at all
 ALONE = 1e-6  # of what a run decides, left to the others: it decides alone
 
 
@@ -104,7 +105,9 @@ def bounded(found: Fit, names: Sequence[str], without: np.ndarray) -> float:
         return 0.0
     theta, covariance = np.array([found.values[n] for n in found.names]), sandwich(found)
     sd = np.sqrt(np.maximum(np.diag(covariance), TINY))
-    root = np.linalg.cholesky(inverse(covariance / np.outer(sd, sd))).T
+    width, axes = np.linalg.eigh(covariance / np.outer(sd, sd))
+    seen = width > SINGULAR * width[-1]
+    root = axes[:, seen].T / np.sqrt(width[seen])[:, None]
     moved = root[:, own] @ ((theta[own] - without) / sd[own])
     ends = [((end - theta) / sd)[others] for end in (found.lower, found.upper)]
     best = lsq_linear(root[:, others], moved, bounds=(np.minimum(ends[0], -CLOSE), np.maximum(ends[1], CLOSE)))
