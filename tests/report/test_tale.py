@@ -77,7 +77,9 @@ def test_a_tie_beside_what_is_sure():
     story = tale(told("tie", [sure, DRAG, LEAN], [[DRAG, LEAN]], ladder=ladder))
     assert story.cards[0]["lead"] == "One effect, and one of two causes"
     assert story.cards[1]["lines"][0].startswith("With one rear wheel") and "comes to 0.80" in story.cards[1]["lines"][0]
-    assert "With one rear wheel that rolls harder" in story.screens[2]["lines"][0]
+    assert story.screens[2]["lines"][0].startswith(
+        "With rear wheels that do not point straight ahead in the model, and one rear"
+    )
     assert not any(TITLES[sure] in line.lower() for line in story.screens[3]["lines"])
     assert [b["error"] for b in story.screens[3]["bars"]] == [0.92, 0.8]
 
@@ -140,6 +142,51 @@ def test_two_effects_are_a_list_and_a_tie_shows_both_sizes():
         "Rear wheels that lean",
     ]
     assert "Which: not yet" in tie[1]["lead"]
+
+
+def test_small_effects_that_these_runs_cannot_tell_apart_are_one():
+    two = tale(told("small", [DRAG, LEAN], ladder=[*SAMPLE["ladder"][:2], LED])).cards
+    assert two[0]["lead"] == "One of two causes" and len(two[0]["lines"]) == 2
+    assert "That one of them is there at all is more likely than 95 %" in two[1]["lines"][0]
+    one = tale(CASES["small, left out"]).cards[1]["lines"]
+    assert one[0] == ("That it is there at all is more likely than 95 %, by the fitted runs and those kept back together.")
+
+
+def test_an_effect_that_was_tried_beside_others_is_no_rival_of_theirs():
+    """Its error on runs held out is theirs as well, and no work of its own."""
+    beside = next(r["effect"] for r in SAMPLE["ranking"] if r["effect"] not in (DRAG, LEAN) and r["values"])
+    top = SAMPLE["ladder"][-1]["heldout"]
+    ranking = [{**r, "heldout_before": top, "heldout_after": top} if r["effect"] == beside else r for r in SAMPLE["ranking"]]
+    ranking.sort(key=lambda r: r["effect"] not in (DRAG, beside))
+    screens = tale(told("missing", [DRAG], ranking=ranking)).screens
+    answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == beside)
+    assert answer == f"No: beside what was found it changes nothing, and the error stays at {top:.2f}."
+    titles = [b["title"] for b in screens[3]["bars"]]
+    assert TITLES[beside] not in titles and TITLES[LEAN] in titles
+
+
+def test_rivals_stand_back_each_for_a_reason_of_its_own():
+    """One explains the fitted runs better, and those kept back not so well; another has more sizes to choose."""
+    lean = next(r for r in SAMPLE["ranking"] if r["effect"] == LEAN)
+    more = {**lean, "lr": 5 * lean["lr"], "parameters": {"sum": lean["parameters"]["sum"]}}
+    ranking = [more if r is lean else r for r in SAMPLE["ranking"]]
+    lines = tale(told("missing", [DRAG], ranking=ranking)).cards[1]["lines"]
+    assert "Rear wheels that lean would do as well, though the runs that were kept back speak less for it." in lines
+    assert any(line.endswith("would do nearly as well, with two sizes to choose where this has one.") for line in lines)
+
+
+@pytest.mark.parametrize(("verdict", "wanted"), [("adequate", max), ("cannot_see", min)])
+def test_where_nothing_was_found_one_is_tried_that_says_why(verdict, wanted):
+    """What these runs would have shown most plainly, or what they hide."""
+    put = tale(told(verdict)).screens[2]
+    known = [r for r in SAMPLE["ranking"] if (r["power"] >= 0.8) == (verdict == "adequate")]
+    plain = {
+        r["effect"]: max((v["smallest_interesting"] / v["se"] for v in r["parameters"].values() if v["se"]), default=0) ** 2
+        / max(1 - r["hidden_in_fit"], 1e-6)
+        for r in known
+    }
+    assert plain[put["effect"]] == wanted(plain.values())
+    assert ("rises" in put["lines"][0]) == (verdict == "adequate")
 
 
 def test_a_tie_says_what_tells_the_two_apart():

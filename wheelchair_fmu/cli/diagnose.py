@@ -18,7 +18,7 @@ from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms
 from ..report.saving import save
-from ..report.words import helpers, outside, perhaps, tied, to_measure, verdict_words
+from ..report.words import helpers, listed, outside, tied, to_measure, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -34,7 +34,6 @@ SENTENCES = {
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
     "cannot_see": "Nothing was found, but these runs could not have shown most effects of interesting size.",
 }
-PERHAPS = "Perhaps there, and too small to matter: {effects}. The model is adequate without."  # noise may give as much
 
 
 def register(app: typer.Typer) -> None:
@@ -121,8 +120,8 @@ def _aim(d: Diagnosis, separates: Sequence[str]) -> str:
 def _verdict(d: Diagnosis, content: Mapping[str, Any], ids: Mapping[str, str]) -> str:
     if d.verdict == "tie":
         return tied(d.effects, d.ties, ids)
-    said = PERHAPS if perhaps(content) else SENTENCES.get(d.verdict, "")
-    return outside(content) if d.verdict == "outside" else said.format(effects=", ".join(d.effects))
+    effects = listed(d.effects, "or") if d.verdict == "small" else ", ".join(d.effects)  # of several small ones it is one
+    return outside(content) if d.verdict == "outside" else SENTENCES.get(d.verdict, "").format(effects=effects)
 
 
 def _show_bootstrap(b: Bootstrap) -> None:

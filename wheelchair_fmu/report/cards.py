@@ -12,11 +12,13 @@ from .told import (
     exceeds,
     fall_words,
     forces_words,
+    it,
     number,
     odds_words,
     rival_words,
     size_lines,
     sized,
+    there_words,
     together_words,
 )
 from .words import listed, probability_words, spoken, strained
@@ -58,6 +60,8 @@ def _what(t: Told) -> tuple[str, list[str]]:
         if sure:
             lead = f"{number(len(sure))} {'effect' if len(sure) == 1 else 'effects'}, and {lead[0].lower()}{lead[1:]}"
         return lead, [*(sized(t, e) for e in sure), *(line for group in groups for line in group)]
+    if t.slight and len(t.found) > 1:
+        return f"One of {number(len(t.found)).lower()} causes", [sized(t, e) for e in t.found]
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
             return capital(t.title(t.found[0])), size_lines(t, t.found[0])
@@ -99,22 +103,19 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         if len(left) == len(t.tied) > 1 and len(errors) == 1:
             each = "either" if len(left) == 2 else "any of them"
             together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
-        else:
+        elif left:
             together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
-        return "That one of them is there: yes. Which: not yet", [*together, *odds_words(t), *forces]
+        else:
+            together = [fall]
+        among = f"the other {number(len(t.tied)).lower()}" if set(t.found) - set(t.tied) else "them"
+        return f"That one of {among} is there: yes. Which: not yet", [*together, *odds_words(t), *forces]
     if t.verdict in ("missing", "small") and t.found:
-        large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if len(t.found) > 1 else "it is"
+        large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if it(t) == "them" else "it is"
         sure, size = (1 - max(large), "too small") if t.verdict == "small" else (min(large), "large enough")
-        return f"{capital(probability_words(sure))} that {what} {size} to matter", [fall, *rivals, *forces]
+        return f"{capital(probability_words(sure))} that {what} {size} to matter", [*there_words(t), fall, *rivals, *forces]
     if t.verdict == "outside":
-        p = t.diagnosis["leftover"].get("p") if t.diagnosis.get("leftover") else None
-        chance = [] if p is None or not t.proposal else [f"Noise alone would give as much with a chance of {_chance(p)}."]
-        return "Sure that something is there, less so what", [fall, *chance, *rivals, *forces]
+        return "Sure that something is there, less so what", [fall, *rivals, *forces]
     seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
     share = f"{len(seen)} of {len(t.rows)}"
     lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
     return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}", *forces]
-
-
-def _chance(p: float) -> str:
-    return "less than one in a million" if p < 1e-6 else f"{p:.2g}"

@@ -5,8 +5,10 @@ Sentences are complete and plain; code names stand in commands alone.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
+from ..inference.policy import DEFAULT
 from .told import (
     Told,
     actions,
@@ -15,15 +17,17 @@ from .told import (
     it,
     multiple_words,
     near_rivals,
+    number,
     rival_words,
     sized,
     together_words,
     why_not,
 )
-from .words import STILL, listed, perhaps, strained
+from .words import STILL, listed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
 TRIED = 6  # effects in the picture of the rivals
+TINY = 1e-6  # of a signature that calibrated values imitate wholly
 
 
 def screens(t: Told) -> list[dict[str, Any]]:
@@ -50,7 +54,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             ],
         }
     how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"
-    lines = [f"The calibrated model misses what the sensors read on {t.runs} by {how} what their noise alone would do."]
+    lines = [f"On {t.runs}, the calibrated model misses the sensors by {how} what their noise alone would."]
     if calm:
         return {
             "title": "Here the model errs most, and it is next to nothing",
@@ -63,8 +67,7 @@ def _guess(t: Told) -> dict[str, Any]:
     if t.verdict in ("adequate", "cannot_see"):
         lines = ["Suppose one of these were missing. Which would these runs show?"]
     elif t.slight:
-        there = "may be there, and it" if perhaps(t.diagnosis) else "is there that"
-        lines = [f"Something {there} is too small to matter. Which of these would you say it is?"]
+        lines = ["Something is there that is too small to matter. Which of these would you say it is?"]
     elif t.verdict == "outside" and not t.found:
         lines = ["Which of these explains it? Try each."]
     else:
@@ -86,10 +89,10 @@ def _answer(t: Told, effect: str) -> str:
         return f"Yes, at {multiple_words(t, effect)} the size that would matter."
     if t.verdict in ("adequate", "cannot_see"):
         if row["power"] >= 0.8:
-            return "These runs would have shown it at the smallest size that matters, and it is not there or smaller."
+            return "These runs would have shown it at the smallest size that matters: it is not there, or smaller than that."
         return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
     comes = t.error(effect)
-    error = "" if comes is None else f" The error comes to {comes:.2f}{_once(t, effect)}."
+    error = "" if comes is None else f" The error comes to {comes:.2f}{_with(t, effect)}."
     if effect in t.found:
         tied = t.verdict == "tie" and effect in t.tied
         if t.verdict == "outside":
@@ -101,29 +104,35 @@ def _answer(t: Told, effect: str) -> str:
         return "No: with forces that nobody recorded among the noise, the runs speak less for it."
     if comes is None:
         return "No: it would hardly change what is seen in these runs."
+    if not t.alone(effect):
+        return _beside(t, row, comes)
+    if not t.falls:
+        return "No: over all moments the runs speak less for it."
     if row["heldout_before"] is not None and row["heldout_before"] - comes < STILL:
-        return f"No: the error on {t.runs} stays at {comes:.2f}{_once(t, effect)}."
+        return f"No: the error on {t.runs} stays at {comes:.2f}."
     if comes < t.fall[1] + STILL:
         return f"Close, but over all moments these runs are explained less well by it.{error}"
     return f"It helps, but not enough.{error}"
 
 
-def _once(t: Told, effect: str) -> str:
-    """Of an error with an effect in, what else is in."""
+def _with(t: Told, effect: str) -> str:
+    """Of an error with an effect in, what else was put in at once."""
     partners = [e for e in t.partners(effect) if e != effect]
-    if partners:
-        return f" together with {listed([t.title(e) for e in partners], 'and')}"
-    later = t.found and t.rows[t.found[0]]["heldout_before"] != t.rows[effect]["heldout_before"] and effect != t.found[0]
-    return f" together with {t.title(t.found[0])}" if later else ""
+    return f" together with {listed([t.title(e) for e in partners], 'and')}" if partners else ""
+
+
+def _beside(t: Told, row: Mapping[str, Any], comes: float) -> str:
+    """What an effect does that was put in beside others."""
+    others = "what was found" if t.found else "the likeliest other effect"
+    if row["heldout_before"] - comes < STILL:
+        return f"No: beside {others} it changes nothing, and the error stays at {comes:.2f}."
+    return f"Beside {others} it helps, but not enough: the error comes to {comes:.2f}."
 
 
 def _put(t: Told, before: float, after: float) -> dict[str, Any]:
     whose = t.runs
     if t.verdict in ("adequate", "cannot_see"):
-        return {
-            "title": "Put one in, and see that nothing is gained",
-            "lines": [f"The error on {whose} stays about where it is."],
-        }
+        return _tried(t)
     if t.verdict == "outside":
         verb = "falls" if t.falls else "goes"
         return {
@@ -133,7 +142,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
     if t.verdict == "tie":
         known = [e for e in t.tied if t.error(e) is not None]
         each = (
-            ("either" if len(t.tied) == 2 else "any of them")
+            ("either" if len(t.tied) == 2 else "any" if set(t.found) - set(t.tied) else "any of them")
             if known in ([], t.tied)
             else listed([t.title(e) for e in known], "or")
         )
@@ -145,9 +154,12 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
                     f"There the error is {after:.2f} times the noise with {each}.",
                 ],
             }
+        sure = [t.title(e) for e in t.found if e not in t.tied]
+        rest = f"{each} of the other {number(len(t.tied)).lower()}" if known in ([], t.tied) else each
+        beside = f"With {listed(sure, 'and')} in the model, and {rest}" if sure else ""
         return {
-            "title": "Put one in and watch the error fall",
-            "lines": [f"With {each}, the error on {whose} falls to {_comes(t)}."],
+            "title": "Put them in and watch the error fall" if sure else "Put one in and watch the error fall",
+            "lines": [f"{beside or f'With {each}'}, the error on {whose} falls to {_comes(t)}."],
         }
     if t.slight:
         return {"title": f"Put {it(t)} in: hardly anything changes", "lines": [fall_words(t)]}
@@ -156,6 +168,29 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
         "title": f"Put {it(t)} in {watch}",
         "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
     }
+
+
+def _tried(t: Told) -> dict[str, Any]:
+    """Where nothing was found, an effect to put in at the smallest size that would matter: one that these runs would plainly
+    have shown, or one that they could hardly show."""
+    adequate = t.verdict == "adequate"
+    known = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and (r["power"] >= DEFAULT.power) == adequate]
+    if not known:
+        return {"title": "Put one in", "lines": ["Any effect can be tried below, at any size."]}
+    row = (max if adequate else min)(known, key=_plain)
+    size, name = "at the smallest size that would matter", t.title(row["effect"])
+    if adequate:
+        title, what = "Put one in, and the error rises", "the error rises. These runs would have shown it"
+    else:
+        title, what = "Put one in: these runs hardly tell", "the error hardly changes. These runs could not have shown it"
+    return {"title": title, "lines": [f"Put in {name}, {size}, and {what}."], "effect": row["effect"]}
+
+
+def _plain(row: Mapping[str, Any]) -> float:
+    """How plainly runs show an effect of the smallest size that would matter, where nothing else is fitted beside it: squared,
+    in standard errors."""
+    sizes = [(v["smallest_interesting"] or 0.0) / v["se"] for v in row["parameters"].values() if v["se"]]
+    return max(sizes, default=0.0) ** 2 / max(1 - row["hidden_in_fit"], TINY)
 
 
 def _comes(t: Told) -> str:
@@ -194,9 +229,16 @@ def _rivals(t: Told) -> dict[str, Any]:
     else:
         title, lines = (
             "Why nothing else",
-            ["Every effect of the catalogue was held against what the model leaves over. Not one of them shows in it."],
+            ["Every effect of the catalogue was held against what the model leaves over.", _nothing(t)],
         )
     return {"title": title, "lines": lines, "bars": bars(t)}
+
+
+def _nothing(t: Told) -> str:
+    """What was found of effects of which none was."""
+    if t.verdict == "adequate":
+        return "Not one is there at a size that would matter, as far as these runs could show it."
+    return "Not one shows in it, but most of them could hide."
 
 
 def _bent(t: Told) -> list[str]:
@@ -210,13 +252,15 @@ def _bent(t: Told) -> list[str]:
 
 def _unmoved(t: Told) -> list[str]:
     """Where errors over all channels tell little, what the choice rests on."""
-    return [] if t.falls else ["Over all channels the errors are alike; moment by moment the runs tell them apart."]
+    alike = t.falls or t.slight or near_rivals(t)
+    return [] if alike else ["Over all channels the errors are alike; moment by moment the runs tell them apart."]
 
 
 def bars(t: Told) -> list[dict[str, Any]]:
     """The error on runs held out with each effect that was refitted, and without any: [{"title", "error", "found"}]. Effects
-    that were put in together are one."""
-    tried = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.error(r["effect"]) is not None]
+    that were put in together are one; what was put in beside others is none of these, as its error is theirs as well."""
+    known = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.error(r["effect"]) is not None]
+    tried = [e for e in known if e in t.found or t.alone(e)]
     groups = list(dict.fromkeys(tuple(t.partners(e)) for e in tried))[:TRIED]
     each = [
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups

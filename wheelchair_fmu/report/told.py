@@ -8,12 +8,14 @@ from math import erf, sqrt
 from typing import Any
 
 from ..inference.decision.verdict import FORCES
+from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect
 from .words import AGAIN, STILL, listed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
+ALIKE = 0.005  # whitened RMS error by which that of one model differs, told twice
 SURE = 1.96  # standard errors from nought, within which a size may as well be none
 
 
@@ -85,9 +87,15 @@ class Told:
         """The error on runs held out with an effect in; of all that was found, that of the last step, as everywhere. None where
         it is not known, or was found along other unrecorded forces than those of the last step."""
         last = self.diagnosis["ladder"][-1]["step"]
-        if set(self.found) == set(self.partners(effect)) or (self.key == "heldout" and last == f"+{effect}"):
+        whole = set(self.found) == set(self.partners(effect)) or (self.key == "heldout" and last == f"+{effect}")
+        if effect in self.found and whole and not self.slight:
             return self.fall[1]
         return None if self.without_forces is not None else self.rows[effect]["heldout_after"]
+
+    def alone(self, effect: str) -> bool:
+        """Was an effect put into the model that the search began with, and not beside others?"""
+        before = self.rows[effect]["heldout_before"]
+        return before is None or abs(before - self.fall[0]) < ALIKE
 
     @property
     def tied(self) -> list[str]:
@@ -142,8 +150,12 @@ def fall_words(t: Told) -> str:
     before, after = t.fall
     if abs(before - after) < STILL:
         unmoved = "" if t.verdict in ("adequate", "cannot_see") else ", before and after"  # nothing was put in
-        shows = ", as before: what was found shows at few moments, and there it is gone"
-        where = f", with {it(t)} as without" if t.slight else shows if t.found else unmoved
+        where = f", with {it(t)} as without" if t.slight else unmoved
+        if t.found and not t.slight:
+            told = [f"{error:.2f}" for error in t.fall]
+            moves = f"is {told[1]}" if told[0] == told[1] else f"hardly changes, from {' to '.join(told)}"
+            shows = "what was found shows at few moments, and there it is gone"
+            return f"On {t.runs} the error {moves} times what noise alone gives: {shows}."
         return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
     return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
@@ -161,8 +173,17 @@ def forces_words(t: Told) -> list[str]:
 
 
 def it(t: Told) -> str:
-    """What was found, in a word."""
-    return "it" if len(t.found) == 1 else "them"
+    """What was found, in a word; of several that are small it is one."""
+    return "it" if len(t.found) == 1 or t.verdict == "small" else "them"
+
+
+def there_words(t: Told) -> list[str]:
+    """How sure it is that something small is there at all, which is another question than how large it is."""
+    if t.verdict != "small" or not t.found:
+        return []
+    by = "the fitted runs and those kept back together" if t.key == "heldout" else "the fitted runs"
+    which = "it is" if len(t.found) == 1 else "one of them is"
+    return [f"That {which} there at all is more likely than {DEFAULT.sure:.0%}, by {by}.".replace("%", " %")]
 
 
 def together_words(t: Told) -> list[str]:
@@ -199,20 +220,38 @@ def rival_words(t: Told) -> list[str]:
     """What else would explain the runs."""
     if not t.found:
         return []
-    near = near_rivals(t)
-    if near:
-        names = listed([t.title(r["effect"]) for r in near[:NAMED]], "and")
-        would = "would each do" if len(near) > 1 else "would do"
-        return [f"{capital(names)} {would} nearly as well, {why_not(t, near)}."]
-    return ["No other effect in the catalogue explains these runs as well."]
+    alike: dict[tuple[bool, bool], list[Mapping[str, Any]]] = {}
+    for rival in near_rivals(t)[:NAMED]:
+        alike.setdefault((_has_more(t, rival), _better(t, rival)), []).append(rival)
+    if not alike:
+        return ["No other effect in the catalogue explains these runs as well."]
+    return [_stands_back(t, rivals) for rivals in alike.values()]
+
+
+def _stands_back(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
+    names = listed([t.title(r["effect"]) for r in rivals], "and")
+    would, well = "would each do" if len(rivals) > 1 else "would do", "as" if _better(t, rivals[0]) else "nearly as"
+    return f"{capital(names)} {would} {well} well, {why_not(t, rivals)}."
+
+
+def _has_more(t: Told, rival: Mapping[str, Any]) -> bool:
+    """Has a rival more sizes to choose than what was found?"""
+    return len(rival["parameters"]) > max(len(t.rows[e]["parameters"]) for e in t.found)
+
+
+def _better(t: Told, rival: Mapping[str, Any]) -> bool:
+    """Does a rival explain the fitted runs better than what was found?"""
+    return bool(rival["lr"] > max(t.rows[e]["lr"] for e in t.found))
 
 
 def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
-    """Why near rivals stand back."""
-    own = max(len(t.rows[e]["parameters"]) for e in t.found)
-    if all(len(r["parameters"]) > own for r in rivals):
+    """Why near rivals stand back, which do so for one reason."""
+    if _has_more(t, rivals[0]):
+        own = max(len(t.rows[e]["parameters"]) for e in t.found)
         most = number(max(len(r["parameters"]) for r in rivals)).lower()
         return f"with {most} sizes to choose where this has {number(own).lower()}"
+    if _better(t, rivals[0]):
+        return "though the runs that were kept back speak less for " + ("them" if len(rivals) > 1 else "it")
     return f"though the runs speak a little less for {'them' if len(rivals) > 1 else 'it'}"
 
 
@@ -229,10 +268,17 @@ def _seen(size: Mapping[str, Any]) -> bool:
 
 
 def sized(t: Told, effect: str) -> str:
-    sizes = " and ".join(spoken(v["estimate"], v["se"], r.unit) for _, v, r in t.sizes(effect))
-    sure = any(_seen(v) for _, v, _ in t.sizes(effect))
+    every = t.sizes(effect)
+    seen = [size for size in every if _seen(size[1])] or every
+    sizes = " and ".join(f"{_which(name, every)}{spoken(v['estimate'], v['se'], r.unit)}" for name, v, r in seen)
+    sure = any(_seen(v) for _, v, _ in every)
     size = f"{multiple_words(t, effect)} the size that would matter" if sure else "a size that these runs leave open"
     return f"{capital(t.title(effect))}: {sizes}, {size}."
+
+
+def _which(name: str, sizes: Sequence[tuple[str, Mapping[str, Any], Quantity]]) -> str:
+    """Which of an effect's sizes one is, where it has several."""
+    return f"{name.rpartition('.')[2].replace('_', ' ')} " if len(sizes) > 1 else ""
 
 
 def _interest(t: Told, effect: str) -> str:

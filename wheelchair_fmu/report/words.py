@@ -12,7 +12,7 @@ from ..inference.search.ties import grouped
 from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
-SEEN = 0.05  # a probability below which the data show something like the effect
+SEEN = 0.05  # a p below which the data show something like an effect that was not chosen
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
 NOTHING = "Something is left that no effect in the catalogue explains."
 AGAIN = " measured again"  # the end of a next experiment that is no manoeuvre but values of the chair
@@ -25,27 +25,14 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
     names = [title_of(e, titles) for e in diagnosis["effects"]]
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
-    several = len(names) > 1
     return {
         "missing": f"Missing from the model: {_all_of(names)}.",
-        "small": f"The model is adequate: {listed(names, 'and')} {_there(diagnosis, several)} too small to matter.",
+        "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
-
-
-def _there(diagnosis: Mapping[str, Any], several: bool) -> str:
-    """Of what is small: is it there, or may that be noise?"""
-    verb = "are" if several else "is"
-    return f"may be there, and {verb}" if perhaps(diagnosis) else f"{verb} there, but"
-
-
-def perhaps(diagnosis: Mapping[str, Any]) -> bool:
-    """May noise alone give as much as an effect that is called small?"""
-    found = (r for r in diagnosis["ranking"] if r["effect"] in diagnosis["effects"])
-    return diagnosis["verdict"] == "small" and any(r["p"] >= SEEN for r in found)
 
 
 def _all_of(names: Sequence[str]) -> str:
