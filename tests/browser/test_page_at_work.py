@@ -352,8 +352,11 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader.close()
 
 
+LETTERS = Path(__file__).with_name("letters.js").read_text()
+
+
 def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
-    """A tie beside what is sure, forces that nobody recorded, and seven steps."""
+    """A tie beside what is sure, forces that nobody recorded, and seven steps; letters keep the size that one can read."""
     told = json.loads(DIAGNOSIS.read_text())
     first, second, third = (r["effect"] for r in told["ranking"][:3])
     (nominal, calibrated, last), led = told["ladder"], {**told["ladder"][1], "step": "unrecorded forces"}
@@ -373,6 +376,10 @@ def test_print_of_much_to_tell_is_two_pages_as_well(browser, tmp_path):
     printed = reader.page.pdf(prefer_css_page_size=True, print_background=True)
     assert pages_of(printed) == 2
     assert "missed by 0.90 °/s before" in reader.page.inner_text(".cards")  # what forces brought down is no effect's work
+    reader.page.set_viewport_size({"width": 703, "height": 1000})
+    reader.page.emulate_media(media="print")
+    smallest, words = reader.page.evaluate(LETTERS)
+    assert smallest >= 6.5, words
     reader.close()
 
 

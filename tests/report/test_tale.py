@@ -181,12 +181,18 @@ def test_where_nothing_was_found_one_is_tried_that_says_why(verdict, wanted):
     put = tale(told(verdict)).screens[2]
     known = [r for r in SAMPLE["ranking"] if (r["power"] >= 0.8) == (verdict == "adequate")]
     plain = {
-        r["effect"]: max((v["smallest_interesting"] / v["se"] for v in r["parameters"].values() if v["se"]), default=0) ** 2
-        / max(1 - r["hidden_in_fit"], 1e-6)
+        r["effect"]: max((v["smallest_interesting"] / v["se"] for v in r["parameters"].values() if v["se"]), default=0)
+        / (1 if verdict == "adequate" else max(1 - r["hidden_in_fit"], 1e-6) ** 0.5)
         for r in known
     }
     assert plain[put["effect"]] == wanted(plain.values())
-    assert ("rises" in put["lines"][0]) == (verdict == "adequate")
+    assert ("makes the error rise" in put["lines"][0]) == (verdict == "adequate")
+
+
+def test_where_nothing_was_found_one_guesses_what_these_runs_would_show():
+    choices = tale(CASES["cannot_see"]).screens[1]["choices"]
+    assert {c["right"] for c in choices} == {True, False}
+    assert all(("would have shown it" in c["answer"]) == c["right"] for c in choices)
 
 
 def test_a_tie_says_what_tells_the_two_apart():

@@ -93,7 +93,7 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """One of "missing", "tie" (one of these, and the campaign cannot tell which), "small" (there, but too small to matter),
-        "adequate" (nothing is missing), "cannot_see" (these runs could not show most effects) and "outside" (nothing in the
+        "adequate" (nothing is missing), "cannot_see" (these runs could not show many effects) and "outside" (nothing in the
         catalogue explains what is left).
 
         >>> found.verdict

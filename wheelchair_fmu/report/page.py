@@ -32,6 +32,7 @@ MODULES = (
     "mini",
     "motion",
     "numbers",
+    "paper",
     "pins",
     "pool",
     "publish",

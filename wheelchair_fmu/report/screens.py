@@ -12,6 +12,7 @@ from ..inference.policy import DEFAULT
 from .told import (
     Told,
     actions,
+    capital,
     fall_words,
     forces_words,
     it,
@@ -78,8 +79,12 @@ def _guess(t: Told) -> dict[str, Any]:
 def choices(t: Told) -> list[dict[str, Any]]:
     """Guesses, the right ones among them, in the order of their titles so that their place tells nothing."""
     others = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] not in t.found and r["effect"] in t.titles]
+    right = set(t.found)
     offered = [*t.found[: CHOICES + 1], *others[:CHOICES]]
-    guesses = ({"effect": e, "title": t.title(e), "right": e in t.found, "answer": _answer(t, e)} for e in offered)
+    if t.verdict in ("adequate", "cannot_see"):  # what these runs would show, and what not
+        right = {e for e in others if t.rows[e]["power"] >= DEFAULT.power}
+        offered = [*[e for e in others if e in right][:2], *[e for e in others if e not in right][:2]]
+    guesses = ({"effect": e, "title": t.title(e), "right": e in right, "answer": _answer(t, e)} for e in offered)
     return sorted(guesses, key=lambda guess: str(guess["title"]))
 
 
@@ -88,7 +93,7 @@ def _answer(t: Told, effect: str) -> str:
     if t.slight and effect in t.found:
         return f"Yes, at {multiple_words(t, effect)} the size that would matter."
     if t.verdict in ("adequate", "cannot_see"):
-        if row["power"] >= 0.8:
+        if row["power"] >= DEFAULT.power:
             return "These runs would have shown it at the smallest size that matters: it is not there, or smaller than that."
         return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
     comes = t.error(effect)
@@ -103,7 +108,7 @@ def _answer(t: Told, effect: str) -> str:
     if comes is None and t.without_forces is not None and row["values"]:
         return "No: with forces that nobody recorded among the noise, the runs speak less for it."
     if comes is None:
-        return "No: it would hardly change what is seen in these runs."
+        return "No: it promised too little to be put in."
     if not t.alone(effect):
         return _beside(t, row, comes)
     if not t.falls:
@@ -177,20 +182,23 @@ def _tried(t: Told) -> dict[str, Any]:
     known = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and (r["power"] >= DEFAULT.power) == adequate]
     if not known:
         return {"title": "Put one in", "lines": ["Any effect can be tried below, at any size."]}
-    row = (max if adequate else min)(known, key=_plain)
-    size, name = "at the smallest size that would matter", t.title(row["effect"])
+    row = max(known, key=_plain) if adequate else min(known, key=_plain_unfitted)
     if adequate:
-        title, what = "Put one in, and the error rises", "the error rises. These runs would have shown it"
+        title, what = "Put one in, and the error rises", "it makes the error rise. These runs would have shown it."
     else:
-        title, what = "Put one in: these runs hardly tell", "the error hardly changes. These runs could not have shown it"
-    return {"title": title, "lines": [f"Put in {name}, {size}, and {what}."], "effect": row["effect"]}
+        title, what = "Put one in: these runs hardly tell", "it hardly changes the error. These runs could not have shown it."
+    line = f"{capital(t.title(row['effect']))}: at the smallest size that would matter, {what}"
+    return {"title": title, "lines": [line], "effect": row["effect"]}
 
 
 def _plain(row: Mapping[str, Any]) -> float:
-    """How plainly runs show an effect of the smallest size that would matter, where nothing else is fitted beside it: squared,
-    in standard errors."""
-    sizes = [(v["smallest_interesting"] or 0.0) / v["se"] for v in row["parameters"].values() if v["se"]]
-    return max(sizes, default=0.0) ** 2 / max(1 - row["hidden_in_fit"], TINY)
+    """How plainly runs show an effect of the smallest size that would matter, in standard errors."""
+    return max(((v["smallest_interesting"] or 0.0) / v["se"] for v in row["parameters"].values() if v["se"]), default=0.0)
+
+
+def _plain_unfitted(row: Mapping[str, Any]) -> float:
+    """The same where calibrated values are not fitted again beside it, which would imitate a part of it."""
+    return _plain(row) / max(1 - row["hidden_in_fit"], TINY) ** 0.5
 
 
 def _comes(t: Told) -> str:
@@ -238,7 +246,7 @@ def _nothing(t: Told) -> str:
     """What was found of effects of which none was."""
     if t.verdict == "adequate":
         return "Not one is there at a size that would matter, as far as these runs could show it."
-    return "Not one shows in it, but most of them could hide."
+    return "Not one shows in it, but many of them could hide."
 
 
 def _bent(t: Told) -> list[str]:

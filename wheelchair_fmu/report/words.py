@@ -29,7 +29,7 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         "missing": f"Missing from the model: {_all_of(names)}.",
         "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
-        "cannot_see": "Nothing was found missing, but these runs could not have shown most effects of interesting size.",
+        "cannot_see": "Nothing was found missing, but these runs could not have shown many effects of interesting size.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]

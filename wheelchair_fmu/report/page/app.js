@@ -10,6 +10,7 @@ import { Figures } from "page/figures";
 import { lacking, reckoned, rolled } from "page/motion";
 import { mini } from "page/mini";
 import { rms, significant, unitText } from "page/numbers";
+import { papers } from "page/paper";
 import { Pins } from "page/pins";
 import { Pool } from "page/pool";
 import { refit } from "page/refit";
@@ -23,7 +24,6 @@ const WRITTEN = 250; // ms after which the address follows
 const AT_ONCE = 100; // ms within which what follows a movement is seen as part of it
 const SEEN = 0.2; // fall of a channel's mean square error, noise = 1, that one sees in its curve
 const FORCES = "unrecorded forces"; // the step of the search from which on they are among the noise
-const ON_PAPER = { overlay: 703, missing: 703, forest: 860, staircase: 520, physical: 560 }; // px; A4 has 703 of CSS between its margins
 const DEEP = 60; // changes that can be undone
 const NORMAL = 1.96; // standard deviations either side that hold 95 %
 
@@ -191,10 +191,10 @@ class App {
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
     if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
-    const words = `The ${most.channel} there is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
+    const words = `There the ${most.channel} is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
-    card.querySelector("p:not(.lead)")?.after(h("p", { class: "physical" }, words));
+    [...card.querySelectorAll("p:not(.lead)")].find((p) => /kept back|fitted to/.test(p.textContent))?.after(h("p", { class: "physical" }, words));
   }
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
@@ -470,21 +470,18 @@ addEventListener("resize", () => {
   if (innerWidth !== width) settling = setTimeout(() => app.resize((width = innerWidth)), REST);
 });
 addEventListener("hashchange", () => { if (address.isState(location.hash) && location.hash !== app.hash) location.reload(); });
-let theme, papers = [];
+let theme, printed = [];
 addEventListener("beforeprint", () => {
   theme = document.documentElement.dataset.theme;
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
-  for (const p of papers) p.remove();
-  papers = Object.entries(ON_PAPER).filter(([id]) => app.figures.all[id] && (id !== "overlay" || app.timeline?.result)).map(([id, width]) => {
-    const { says, drawing } = app.figures.all[id], paper = h("div", { class: "paper" }, says.draw(width, look()));
-    drawing.after(paper);
-    return paper;
-  });
+  for (const p of printed) p.remove();
+  const { overlay, ...others } = app.figures.all;
+  printed = papers(app.timeline?.result ? { overlay, ...others } : others, app.campaign.runs.length);
 });
 addEventListener("afterprint", () => {
-  for (const p of papers.splice(0)) p.remove();
+  for (const p of printed.splice(0)) p.remove();
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
   app.recolour();

@@ -1,11 +1,11 @@
 // The evidence table, ties and the next experiment, from the diagnosis.
 
 import { byId, csv, h, save, symbols } from "page/dom";
-import { inUnit, probability, rms, significant, withError } from "page/numbers";
+import { chance, inUnit, rms, significant, withError } from "page/numbers";
 import { capital, channelOf, listed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
-const SEEN = 0.05; // a probability below which the data show something like the effect
+const SEEN = 0.05; // a p below which the data show something like an effect that was not chosen
 const VERDICTS = {
   missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen",
 };
@@ -19,7 +19,7 @@ export function evidence(campaign) {
 }
 
 function table(ranking, records, campaign) {
-  const heads = [["Effect"], ["Estimate ± SE"], ["Matters from"], ["Chance of noise", 1], ["Would be seen", 1], ["Hidden in the fit", 1],
+  const heads = [["Effect"], ["Estimate ± SE"], ["Matters from"], ["Chance that it matters", 1], ["Would be seen", 1], ["Hidden in the fit", 1],
     ["Held out, before → after", 1], ["Alike"], ["Verdict"]];
   const body = h("tbody", {}, ranking.map((row, i) => line(campaign, row, records.get(row.effect), i >= FIRST)));
   const more = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, `show all ${ranking.length} effects`);
@@ -45,7 +45,7 @@ function line(campaign, row, record, later) {
     h("th", { scope: "row" }, capital(record.title), h("small", {}, h("code", {}, row.effect))),
     h("td", { "data-head": "Estimate ± SE" }, parameters.map(([p, v]) => own(withError(v.estimate, v.se, p), p))),
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
-    h("td", { class: "number", "data-head": "Chance of noise" }, probability(row.p)),
+    h("td", { class: "number", "data-head": "Chance that it matters" }, chance(row.probability)),
     h("td", { class: "number", "data-head": "Would be seen" }, `${Math.round(100 * row.power)} %`),
     h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
@@ -59,10 +59,10 @@ function together(groups, campaign) {
   const cell = (head, inner) => h("td", { "data-head": head }, inner);
   const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
     cell("Estimate ± SE", Object.entries(g.parameters).map(([n, v]) => h("div", {}, withError(v.estimate, v.se, sizes.get(n))))),
-    cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Chance of noise", probability(g.p)), cell("Verdict", became(g, campaign))));
+    cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Verdict", became(g, campaign))));
   return h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Effects that were fitted together" },
     h("table", { class: "evidence several" }, h("caption", {}, "Effects that were fitted together, as one acts through the other and each alone may show nothing"),
-      h("thead", {}, h("tr", {}, ["Effects", "Estimate ± SE", "Beside", "Chance of noise", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+      h("thead", {}, h("tr", {}, ["Effects", "Estimate ± SE", "Beside", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
 }
 
 /** What was kept of a group. */
@@ -73,7 +73,7 @@ function became(group, campaign) {
 }
 
 function columns(ranking) {
-  const out = { effect: [], parameter: [], estimate: [], se: [], unit: [], smallest_interesting: [], p: [], power: [],
+  const out = { effect: [], parameter: [], estimate: [], se: [], unit: [], smallest_interesting: [], probability: [], p: [], power: [],
     hidden_in_fit: [], heldout_before: [], heldout_after: [], rivals: [], verdict: [] };
   for (const row of ranking)
     for (const [parameter, v] of Object.entries(row.parameters)) {

@@ -3,7 +3,7 @@
 import { byId } from "page/dom";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
-import { forest, panels } from "page/forest";
+import { fitting, forest, panels } from "page/forest";
 import { Heat, QUIET, heat } from "page/heat";
 import { crossings, profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
@@ -13,6 +13,8 @@ import { staircase } from "page/staircase";
 import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
+const LOW = 230; // px: height of curves below which no error stands under them, as its label has no room
+const AXES = 92; // px: what curves have above, between and below them
 const LATE = 10; // samples from the end of a run
 const SLOW = 6; // figures' rows of physical errors at most, beside one another
 
@@ -86,7 +88,7 @@ export class Figures {
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
-      draw: (width, look) => forest(width, look, rows.slice(0, Math.max(FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
+      draw: (width, look, room) => forest(width, look, rows.slice(0, Math.max(room ? fitting(room) : FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
       caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
     };
@@ -123,7 +125,7 @@ export class Figures {
 
   sizeOf(name) {
     const effect = this.campaign.effects.find((e) => e.parameters.some((p) => p.name === name)), record = effect.parameters.find((p) => p.name === name);
-    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? `: ${shortOf(name)}` : "") };
+    return { record, name: capital(titleOf(this.campaign, effect.id)) + (effect.parameters.length > 1 ? ` (${shortOf(name)})` : "") };
   }
 
   profiled(curves) {
@@ -181,10 +183,10 @@ export class Figures {
   curves() {
     const { app, campaign } = this, record = () => campaign.channels.find((c) => c.name === app.shown.channel);
     return {
-      draw: (width, look) => {
-        const { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
+      draw: (width, look, room = 0.54 * width + AXES) => {
+        const high = Math.min(room - AXES, 0.54 * width), { timeline } = app, shown = timeline.lines.map(([name, values, colour, thick, dash]) => [name, values, colour, thick, dash]);
         const most = Math.max(4, ...Array.from(timeline.errors).filter(Number.isFinite).map(Math.abs));
-        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: 0.36 * width }, { label: "error ÷ noise", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: 0.18 * width }]);
+        return lines(width, look, timeline.time, [timeline.from, timeline.to], [{ label: labelled(record()), lines: shown, edges: timeline.edges, height: high > LOW ? (2 / 3) * high : high }, ...(high > LOW ? [{ label: "error ÷ noise", lines: [["error", timeline.errors, "error", 1]], band: 2, reach: [-most, most], height: high / 3 }] : [])]);
       },
       columns: () => {
         const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);

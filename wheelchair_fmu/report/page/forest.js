@@ -19,6 +19,9 @@ function places(width, look, rows) {
   return { narrow, left, right, all, end: y + 6 };
 }
 
+/** How many rows a plot of this height has. */
+export const fitting = (high) => Math.floor((high - 70) / (ROW + 3));
+
 /** `rows` are [{name, value, low, high, note, strong}], in units of `unit`, some with a second note `under` the first and `bounds`
  *  that a value could not leave; the band from −`band` to `band` is what the words `shaded` say. */
 export function forest(width, look, rows, unit, shaded, band = 1) {

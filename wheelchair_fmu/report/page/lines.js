@@ -26,7 +26,7 @@ export function lines(width, look, time, [from, to], panels) {
     const down = (v) => top + panel.height * (1 - (v - low) / (high - low));
     if (panel.band) drawn.push(svg("rect", { x: LEFT, width: width - LEFT - RIGHT, y: down(panel.band), height: down(-panel.band) - down(panel.band), fill: look.band }));
     if (panel.edges) drawn.push(svg("path", { d: area(xs, ...panel.edges.map((edge) => shown.map((i) => down(Math.min(Math.max(edge[i], low), high))))), fill: look.band }));
-    const values = panel.band && (panel.height * panel.band) / (high - low) > APART ? [-panel.band, 0, panel.band] : ticks(low, high, Math.max(3, panel.height / 40));
+    const values = panel.band && (panel.height * panel.band) / (high - low) > APART ? [-panel.band, 0, panel.band] : ticks(low, high, Math.max(4, panel.height / 40));
     for (const v of values) drawn.push(line(LEFT, down(v), width - RIGHT, down(v), look.line), text(LEFT - 6, down(v) + 4, tick(v), look.faint, "end", { "font-size": 11 }));
     for (const [, values, colour, thick, dash] of panel.lines) {
       const { at, lapse } = present(time, values), own = at.filter((i) => time[i] >= from && time[i] <= to), every = Math.max(1, Math.floor(own.length / MOST)), xs = [], ys = [];

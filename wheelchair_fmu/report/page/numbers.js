@@ -60,12 +60,12 @@ export function between(from, to, record) {
   return `${text(a)} to ${text(b)}${unit === "deg" ? "" : " "}${unitText(unit)}`.trim();
 }
 
-/** A probability. */
-export function probability(p) {
+/** A probability, none of which is said to be certain. */
+export function chance(p) {
   if (p === null || p === undefined) return "–";
-  if (p < 1e-6) return "< 10⁻⁶";
-  if (p < 1e-4) return p.toExponential(0).replace(/e-(\d)/, (_, power) => ` × 10⁻${"⁰¹²³⁴⁵⁶⁷⁸⁹"[power]}`);
-  return p < 0.001 ? significant(p, 1) : p.toFixed(p < 0.1 ? 3 : 2);
+  if (p > 0.999) return "> 99.9 %";
+  if (p < 0.001) return "< 0.1 %";
+  return `${(100 * p).toFixed(p > 0.99 || p < 0.01 ? 1 : 0)} %`;
 }
 
 /** Whitened RMS: two decimals are what its own noise allows. */

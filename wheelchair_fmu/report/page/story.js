@@ -1,7 +1,7 @@
 // The five screens, one at a time: each with something to see or to do.
 
 import { byId, h } from "page/dom";
-import { look } from "page/draw";
+import { extent, look } from "page/draw";
 import { same } from "page/controls";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
@@ -87,10 +87,10 @@ export class Story {
   }
 
   /** The button puts in the last step of the search; where nothing was added to the model, what was found and left out as it is
-   *  small, at its size, or the likeliest effect at the smallest that would matter. */
+   *  small, at its size, or the effect that the screen tells of at the smallest that would matter. */
   putting() {
     const { models, begins: step, ranking, effects } = this.campaign.diagnosis, begins = models.find((m) => m.step === step);
-    const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), first = known.find((r) => effects.includes(r.effect)) ?? known[0];
+    const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), told = this.told("put").effect, first = known.find((r) => effects.includes(r.effect)) ?? known.find((r) => r.effect === told) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
     this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
@@ -112,7 +112,7 @@ export class Story {
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
     if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
     if (kind === "rivals") {
-      const rows = this.told("rivals").bars, other = this.campaign.diagnosis.ties.length ? "joint" : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
+      const rows = this.told("rivals").bars, { all } = this.app.figures, other = this.campaign.diagnosis.ties.length ? (all.joint ? "joint" : "forest") : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
       if (drawn.length) stage.replaceChildren(...drawn);
       else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(this.room(stage, 640), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
     }
@@ -120,7 +120,7 @@ export class Story {
 
   /** The button as it is now, though the numbers may still come. */
   pressed() {
-    const several = this.campaign.diagnosis.effects.length > 1 && !this.campaign.diagnosis.ties.length, it = several ? "them" : "it";
+    const it = this.told("put").title.startsWith("Put them") ? "them" : "it";
     this.toggle.textContent = this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
   }
@@ -153,7 +153,10 @@ export class Story {
     const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? [name, scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
     const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = this.room(this.stages[this.screens[this.at].dataset.kind], 760);
     const shown = there ? after : before, slight = Math.sqrt(before.squares[channel] / before.counts[channel]) < SLIGHT;
-    const means = slight ? [{ label: "mean error", lines: [["error", smooth(run.time, shown.errors[channel]), "error", 1.5]], height: 70 }] : [];
-    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }, ...means]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.`)];
+    const mean = (result) => smooth(run.time, result.errors[channel]), was = there ? [["before", mean(before), "before", 1.2, [3, 3]]] : [];
+    const means = slight ? [{ label: "error ÷ noise", lines: [...was, ["error", mean(shown), "error", 1.5]], height: 90 }] : [], [low, high] = extent(...means.flatMap((m) => m.lines.map((l) => l[1]))), most = Math.max(-low, high);
+    for (const m of means) m.reach = [-most, most];
+    const below = slight ? ` Below it, the mean error over half a second${there ? ", before (dashed) and now" : ""}.` : "";
+    return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }, ...means]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.${below}`)];
   }
 }
