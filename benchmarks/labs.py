@@ -1,9 +1,10 @@
-"""Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...]`.
+"""Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...] [--drawn SEED ...]`.
 
-Each is imported as docs/lab.md does it, with the lines of its protocol that no file holds, and diagnosed. Printed is what is
-said, and how far off: clocks and baselines in standard errors; held-out errors beside those of simulations that know all but
-the floor, with the rider's body as it moved or by a law of it; forces that nobody recorded beside the floor's; the share of
-held-out samples in bands of 95 %; intervals that miss what was hidden. All figures of a lab are kept in `--out`.
+A number after `--drawn` is a lab that benchmarks/independent/labs.py draws. Each is imported as docs/lab.md does it, with the
+lines of its protocol that no file holds, and diagnosed. Printed is what is said, and how far off: clocks and baselines in
+standard errors; held-out errors beside those of simulations that know all but the floor, with the body as it moved or by
+a law of it; forces that nobody recorded beside the floor's; the share of held-out samples in bands of 95 %; intervals that miss
+what was hidden. All figures of a lab are kept in `--out`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ import argparse
 import json
 import tempfile
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +31,7 @@ from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.model.generic import library
 
 from .bands import inside
+from .independent.labs import write
 
 MEASUREMENTS = Path(__file__).resolve().parents[2] / "shared" / "measurements"
 OPTIONS = ("--mass", "--radius", "--track", "--wheelbase", "--cm-ahead", "--caster-track")
@@ -43,17 +46,39 @@ GRAVITY = 9.81
 BODIES = {"true_rider": "with the body's motion known", "law_only_rider": "by a law of it"}
 
 
-def imported(measurements: Path, lab: str, out: Path) -> Path:
+@dataclass(frozen=True)
+class Lab:
+    """A lab's raw files, what is hidden in them, and of its protocol the sizes of the chair and where its sensor sits."""
+
+    raw: Path
+    answer: Mapping[str, Any]
+    sizes: Sequence[float]
+    at: str = ""
+
+
+def recorded(measurements: Path, name: str) -> Lab:
+    """One of the lab folders among the measurements."""
+    answers = json.loads((measurements / "lab-answers.json").read_text(encoding="utf-8"))
+    return Lab(measurements / name, answers[name], GIVEN[name], AT.get(name, ""))
+
+
+def drawn(out: Path, seed: int) -> Lab:
+    """One whose raw files are written into a folder."""
+    answer = write(out, seed)
+    return Lab(out, answer, [answer["given"][option.removeprefix("--")] for option in OPTIONS])
+
+
+def imported(lab: Lab, out: Path) -> Path:
     """The campaign of a lab's raw files, with what stands in its protocol."""
-    sizes = [word for one in zip(OPTIONS, GIVEN[lab], strict=True) for word in one]
-    runs = json.loads((measurements / "lab-answers.json").read_text())[lab]["runs"]
-    kept = [word for run, told in runs.items() if told["role"] == "holdout" for word in ("--holdout", run)]
-    done = CliRunner().invoke(app, [str(word) for word in ("import", measurements / lab, "-o", out, *sizes, *kept)])
+    sizes = [word for one in zip(OPTIONS, lab.sizes, strict=True) for word in one]
+    runs = lab.answer["runs"].items()
+    kept = [word for run, told in runs if told["role"] == "holdout" for word in ("--holdout", run)]
+    done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *kept)])
     if done.exit_code:
-        raise RuntimeError(f"{lab}: wheelchair import ended with {done.exit_code}: {done.output}")
-    if lab in AT:
+        raise RuntimeError(f"{lab.raw.name}: wheelchair import ended with {done.exit_code}: {done.output}")
+    if lab.at:
         text = (out / "campaign.toml").read_text(encoding="utf-8")
-        (out / "campaign.toml").write_text(text.replace("# at = [0.0, 0.0]", f"at = {AT[lab]} #", 1), encoding="utf-8")
+        (out / "campaign.toml").write_text(text.replace("# at = [0.0, 0.0]", f"at = {lab.at} #", 1), encoding="utf-8")
     return out
 
 
@@ -92,9 +117,8 @@ def missed(parameters: list[Mapping[str, Any]], true: Mapping[str, float]) -> It
             yield f"{p['name']} {low:.4g} to {high:.4g}, hidden {true[p['name']]:.4g}"
 
 
-def row(measurements: Path, lab: str, folder: Path) -> dict[str, Any]:
+def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """What was said of a lab, and how far off it is."""
-    answer = json.loads((measurements / "lab-answers.json").read_text())[lab]
     d = diagnose(read(folder), generic=library())
     told, hidden = as_json(d), answer["hidden"]
     parameters = final(d, {p.name: p for e in library().values() for p in e.owned})["parameters"]
@@ -108,6 +132,7 @@ def row(measurements: Path, lab: str, folder: Path) -> dict[str, Any]:
         "verdict": told["verdict"],
         "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
         "hidden": answer["verdict"],
+        "unfair": unfair(told, answer["verdict"]),
         "heldout": {"calibrated": told["ladder"][1]["heldout"], "last": told["ladder"][-1]["heldout"]},
         "hub_speed": {run: _speed(last, run) for run in floors},
         "yaw_rate": {run: last["yaw_rate"]["runs"][run] for run in floors if "yaw_rate" in last},
@@ -125,6 +150,16 @@ def row(measurements: Path, lab: str, folder: Path) -> dict[str, Any]:
     }
 
 
+def unfair(told: Mapping[str, Any], hidden: Mapping[str, Any]) -> str:
+    """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing."""
+    named = {*told["effects"], *(e for tie in told["ties"] for e in tie)}
+    true = {*hidden["missing"], *hidden.get("also", ())}
+    false = named - true - {*hidden.get("small", ())}
+    if false:
+        return f"{', '.join(sorted(false))} named, which is not there"
+    return "" if not true or named & true else f"none of {', '.join(sorted(true))} named"
+
+
 def _speed(last: Mapping[str, Any], run: str) -> float:
     """RMS error of both wheels' speeds in m/s."""
     return float(np.sqrt(np.mean([last[f"wheel_speed_{side}"]["runs"][run] ** 2 for side in "lr"])))
@@ -135,6 +170,7 @@ def lines(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     hidden, held = found["hidden"], found["heldout"]
     yield "said", f"{found['verdict']}: {', '.join(found['named']) or 'nothing'}"
     yield "hidden", ", ".join([*hidden["missing"], *(f"({e})" for e in hidden.get("small", ()))])
+    yield "its names", found["unfair"] or "fair"
     yield "held out, whitened", f"{held['calibrated']:.2f} calibrated, {held['last']:.2f} in the end"
     for run, best in found["reachable"].items():
         yield f"{run} wheels", _beside(found["hub_speed"][run], "m/s", [best[body]["hub_speed_rms"] for body in BODIES])
@@ -162,19 +198,30 @@ def _beside(error: float, unit: str, floors: Iterable[float]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.labs", description=__doc__)
-    parser.add_argument("labs", nargs="*", default=[*GIVEN], help="of these, all by default")
+    parser.add_argument("labs", nargs="*", help="of these; all of the measurements, where none are named or drawn")
+    parser.add_argument(
+        "--drawn", type=int, nargs="+", default=[], metavar="SEED", help="labs that are drawn, one for each seed"
+    )
     parser.add_argument("--measurements", type=Path, default=MEASUREMENTS, help="the folder with the labs and their answers")
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
-    for lab in chosen.labs:
-        with tempfile.TemporaryDirectory() as place:
-            found = row(chosen.measurements, lab, imported(chosen.measurements, lab, Path(place) / lab))
-        (chosen.out / f"{lab}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-        table = Table(title=f"{lab}, {found['seconds']:.0f} s", show_header=False)
-        for line in lines(found):
-            table.add_row(*line)
-        Console(width=150).print(table)
+    for name in chosen.labs or ([] if chosen.drawn else GIVEN):
+        told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out)
+    for seed in chosen.drawn:
+        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out)
+
+
+def told(name: str, lab: Callable[[Path], Lab], out: Path) -> None:
+    """Import and diagnose one lab, keep its figures and print them; `lab` may write its raw files into a folder."""
+    with tempfile.TemporaryDirectory() as place:
+        one = lab(Path(place) / "raw")
+        found = row(one.answer, imported(one, Path(place) / name))
+    (out / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    table = Table(title=f"{name}, {found['seconds']:.0f} s", show_header=False)
+    for line in lines(found):
+        table.add_row(*line)
+    Console(width=150).print(table)
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ enum { X, Y, PSI, U, V, R, SWIVEL_R, SWIVEL_RATE_R, SWIVEL_L, SWIVEL_RATE_L, E_R
     RIM_R, RIM_L, ALONG_R, ALONG_L, STATES };
 
 #define WAVES 9
+#define GIVEN 3 /* inputs: pushes of the right and the left hand, and what the rider's body is about to do by itself */
 
 static const double CREEP = 0.002;      /* m/s, within which rolling resistance changes its sign */
 static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel bearing */
@@ -99,18 +100,19 @@ static void uneven(const double *p, double x, double y, double *slope_x, double 
     *slope_y = p[P_slope_y] + p[P_floor] * 2 / sqrt(WAVES) * sum_y;
 }
 
-/* An upper body that turns about the hips, by an angle from upright, towards one that the push asks for: a spring as of a
- * pendulum, and a damping that grows with the speed. It goes on swinging once the push is over. Returns the angle's second rate. */
-static double leaning(const double *p, double angle, double rate, double push) {
+/* An upper body that turns about the hips, by an angle from upright, towards one that the push asks for, and the rider besides, who
+ * means to have the CM forward by `urge`: a spring as of a pendulum, and a damping that grows with the speed. It goes on swinging
+ * once the push is over. Returns the angle's second rate. */
+static double leaning(const double *p, double angle, double rate, double push, double urge) {
     double omega = 2 * 3.14159265358979 * p[P_lean_frequency];
-    double wanted = p[P_lean] / TORSO * push / 80 / sqrt(1 + push * push / (TIRING * TIRING));
+    double wanted = (p[P_lean] * push / 80 / sqrt(1 + push * push / (TIRING * TIRING)) + urge) / TORSO;
     return -omega * omega * sin(angle - wanted) - (p[P_lean_damping] * omega + p[P_lean_drag] * fabs(rate)) * rate;
 }
 
-/* Rates of all states, and what the instruments need, for the pushes F (right, left) and their slopes dF. */
+/* Rates of all states, and what the instruments need, for the pushes and the urge F (right, left, urge) and their slopes dF. */
 static void rates(const double *p, const double *s, const double *F, const double *dF, double *d, double *out) {
     double u = s[U], v = s[V], r = s[R];
-    double angle_rate = p[P_lean] != 0 ? leaning(p, s[LEAN], s[LEAN_RATE], F[0] + F[1]) : 0;
+    double angle_rate = p[P_lean] != 0 ? leaning(p, s[LEAN], s[LEAN_RATE], F[0] + F[1], F[2]) : 0;
     double shift = s[TRUNK] + TORSO * sin(s[LEAN]);
     double target = p[P_trunk] * (F[0] + F[1]) / 80;
     double trunk_rate = p[P_trunk] != 0 ? (target - s[TRUNK]) / p[P_trunk_lag] : 0;
@@ -229,6 +231,7 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     out[O_yaw_acceleration] = r_dot;
     out[O_swivel_r] = s[SWIVEL_R];
     out[O_swivel_l] = s[SWIVEL_L];
+    out[O_body] = shift;
     out[O_energy] = 0.5 * p[P_m] * (u * u + v * v) + 0.5 * p[P_I_z] * r * r;
     for (int i = 0; i < 2; i++) {
         double q = r + s[SWIVEL_RATE_R + 2 * i];
@@ -242,21 +245,21 @@ static void rates(const double *p, const double *s, const double *F, const doubl
 /* Outputs at n samples, interval apart; the pushes are linear between samples. The accelerations of a sample are the mean of
  * those just before and just after it, as the pushes bend there. */
 EXPORT void simulate(const double *p, const double *start, int n, const double *push, double interval, int steps, double *out) {
-    double s[STATES], k1[STATES], k2[STATES], k3[STATES], k4[STATES], w[STATES], h = interval / steps, none[2] = {0, 0};
+    double s[STATES], k1[STATES], k2[STATES], k3[STATES], k4[STATES], w[STATES], h = interval / steps, none[GIVEN] = {0};
     memcpy(s, start, sizeof s);
     memset(k1, 0, sizeof k1);
     for (int k = 0; k < n; k++) {
-        const double *F = push + 2 * k, *next = k + 1 < n ? F + 2 : F, *last = k > 0 ? F - 2 : F;
-        double slope[2], centre[2];
-        for (int i = 0; i < 2; i++) {
+        const double *F = push + GIVEN * k, *next = k + 1 < n ? F + GIVEN : F, *last = k > 0 ? F - GIVEN : F;
+        double slope[GIVEN], centre[GIVEN];
+        for (int i = 0; i < GIVEN; i++) {
             slope[i] = (next[i] - F[i]) / interval;
             centre[i] = (next[i] - last[i]) / ((k > 0 && k + 1 < n ? 2 : 1) * interval);
         }
         rates(p, s, F, n > 1 ? centre : none, k1, out + k * OUTPUTS);
         if (k + 1 == n) break;
         for (int j = 0; j < steps; j++) {
-            double Fa[2], Fm[2], Fe[2];
-            for (int i = 0; i < 2; i++) {
+            double Fa[GIVEN], Fm[GIVEN], Fe[GIVEN];
+            for (int i = 0; i < GIVEN; i++) {
                 Fa[i] = F[i] + slope[i] * j * h;
                 Fm[i] = F[i] + slope[i] * (j + 0.5) * h;
                 Fe[i] = F[i] + slope[i] * (j + 1) * h;

@@ -35,6 +35,7 @@ OUTPUTS = (
     "yaw_acceleration",
     "swivel_r",
     "swivel_l",
+    "body",
     "energy",
 )
 STATES = 21
@@ -176,11 +177,16 @@ def simulate(
     F_rr: np.ndarray,
     start: Start = Start(),
     *,
+    urge: np.ndarray | None = None,
     interval: float = 0.01,
     steps: int = STEPS_PER_SAMPLE,
 ) -> dict[str, np.ndarray]:
-    """All outputs at the samples of the pushes, which are linear between samples."""
-    push = np.ascontiguousarray(np.column_stack([F_rr, F_rl]), dtype=np.float64)
+    """All outputs at the samples of the pushes, which are linear between samples.
+
+    Where the chair has a `lean`, `urge` is how far forward (m) the rider means to have the CM, whatever the hands push.
+    """
+    by_itself = np.zeros(len(F_rl)) if urge is None else urge
+    push = np.ascontiguousarray(np.column_stack([F_rr, F_rl, by_itself]), dtype=np.float64)
     out = np.empty((len(push), len(OUTPUTS)))
     parameters = np.array(astuple(chair), dtype=np.float64)
     _library().simulate(parameters, start.states(), len(push), push, interval, steps, out)

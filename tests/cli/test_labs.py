@@ -6,7 +6,8 @@ import json
 
 import pytest
 
-from benchmarks.labs import GIVEN, imported
+from benchmarks.independent.labs import NOISE
+from benchmarks.labs import GIVEN, drawn, imported, recorded
 from tests.browser.conftest import CHROMIUM, Reader, browser, driver, report_of  # noqa: F401 (two are fixtures)
 from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
@@ -17,6 +18,7 @@ from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 
+DRAWN = 2  # a seed
 WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
 
 
@@ -26,7 +28,7 @@ def found(request, tmp_path_factory):
     if request.param == "lab-02":
         pytest.importorskip("openpyxl", reason="reading a workbook needs openpyxl")
     measured(request.param)
-    out = imported(MEASUREMENTS, request.param, tmp_path_factory.mktemp("lab") / request.param)
+    out = imported(recorded(MEASUREMENTS, request.param), tmp_path_factory.mktemp("lab") / request.param)
     return request.param, diagnose(read(out)), out
 
 
@@ -123,3 +125,25 @@ def test_the_pages_errors_are_those_of_the_search_and_its_bands_hold(found, brow
     assert reader.page.evaluate(OFF, {"values": last, "run": held[0]}) < 0.01
     assert 0.90 <= reader.page.evaluate(INSIDE, {"last": last, "held": held}) <= 0.98
     reader.close()
+
+
+@pytest.fixture(scope="module")
+def seeded(tmp_path_factory):
+    """A lab that is drawn, and its campaign."""
+    place = tmp_path_factory.mktemp("drawn")
+    lab = drawn(place / "raw", DRAWN)
+    return lab, imported(lab, place / "chair")
+
+
+def test_a_push_has_the_noise_of_its_own_samples_whatever_other_clocks_there_are(seeded):
+    """It is read between them, at other devices' times, where straight lines between readings hide most of it."""
+    noise = read(seeded[1]).noise
+    for side in "lr":
+        assert noise[f"M_r{side}"] == pytest.approx(NOISE["M"], rel=0.05)
+        assert noise[f"wheel_speed_{side}"] == pytest.approx(NOISE["speed"], rel=0.05)
+
+
+def test_wheels_of_two_loggers_tell_which_way_a_yaw_rate_is_positive(seeded):
+    """Which asks for the clocks of all three, and an accelerometer whose column has a channel's own name says the frame's."""
+    text = (seeded[1] / "campaign.toml").read_text(encoding="utf-8")
+    assert 'axes = "SAE-J670"  # by its yaw rate' in text and "follows the wheels' difference" in text

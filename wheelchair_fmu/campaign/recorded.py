@@ -120,8 +120,9 @@ class Recorded(Readings):
 
     @property
     def logged(self) -> dict[str, np.ndarray]:
-        """What the files hold, without the constants."""
-        return {name: series for name, series in self.values.items() if name not in self.constants}
+        """What the files hold, without the constants, each at its own device's samples: a push that is read between them, at
+        another one's, has less noise."""
+        return {name: series for d in self.drafts for name, series in d.values.items() if name not in self.constants}
 
     def draft_of(self, name: str) -> Draft | None:
         """The file that a channel or an input is from; None for a constant."""

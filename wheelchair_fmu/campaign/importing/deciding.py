@@ -13,6 +13,7 @@ from .gathering import Column, Series, Source
 from .together import Together, Told, spread, together
 
 RADIUS = 0.3  # m, about: for setting wheels beside other devices where nobody gave it
+SIGNED = ("F_rl", "F_rr", "M_rl", "M_rr", "a_x")  # whose name says which way is positive, whatever the axes
 Pair = tuple[tuple[str, str], tuple[str, str]]
 
 
@@ -97,7 +98,7 @@ def _told(plans: Sequence[Plan], run: str, radius: float, axles: Mapping[str, ma
         for channel, series in wheels.rolling(plan, run, radius):
             told.setdefault((plan.name, channel), series)
         for choice in plan.choices:
-            if choice.channel in ("F_rl", "F_rr", "M_rl", "M_rr") and (found := plan.series(run, choice)) is not None:
+            if choice.channel in SIGNED and (found := plan.series(run, choice)) is not None:
                 told[plan.name, choice.channel] = found
         if plan.name in axles:
             told |= {(plan.name, q): s for q, s in markers.pose(plan.source, run, axles[plan.name]).items()}
