@@ -56,7 +56,7 @@ SETTLING = 1.5  # s of a run that its figures leave out
 
 @dataclass(frozen=True)
 class Rider:
-    """What the hands do: strokes of so many N each, the first three to get going, and what each hand does of it."""
+    """What the hands do in a chair of 80 kg: strokes of so many N each, the first three to get going, and each hand's share."""
 
     what: str
     first: float
@@ -69,13 +69,13 @@ class Rider:
 
 
 RUNS = (
-    Rider("straight, own pace", 55, 22),
-    Rider("a coast-down", 75, 60, until=6.0),
-    Rider("circle to the right", 40, 20, left=1.2, right=0.8),
-    Rider("circle to the left", 40, 20, left=0.8, right=1.2),
-    Rider("weaving", 50, 22, weave=0.35),
-    Rider("kept: a coast-down, slower", 48, 30, until=5.0),
-    Rider("kept: a wider circle to the left, then rolling out", 50, 22, left=0.88, right=1.12, until=14.0),
+    Rider("straight, own pace", 70, 28),
+    Rider("a coast-down", 85, 70, until=6.0),
+    Rider("circle to the right", 55, 28, left=1.45, right=0.55),
+    Rider("circle to the left", 55, 28, left=0.55, right=1.45),
+    Rider("weaving", 65, 28, weave=0.6),
+    Rider("kept: a coast-down, slower", 60, 40, until=5.0),
+    Rider("kept: a wider circle to the left, then rolling out", 65, 28, left=0.75, right=1.25, until=14.0),
 )
 
 
@@ -128,13 +128,13 @@ def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
     return Lab(truth, radius, spin, ripple, 0.35 if strong else 0.2, strong, told), tuple(effects), fair
 
 
-def pushes(run: Rider, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def pushes(run: Rider, mass: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Time, and what the left and the right hand push (n,), in N: nothing for two seconds, then strokes till `until`."""
     time = np.arange(round(run.seconds / FINE) + 1) * FINE
     left, right = np.zeros_like(time), np.zeros_like(time)
     at, stroke = rng.uniform(2.0, 2.4), 0
     while at < min(run.until, run.seconds - 1.0):
-        lasting, size = rng.uniform(0.38, 0.5), (run.first if stroke < 3 else run.later) * rng.uniform(0.85, 1.15)
+        lasting, size = rng.uniform(0.38, 0.5), mass / 80 * (run.first if stroke < 3 else run.later) * rng.uniform(0.85, 1.15)
         wave = np.where((time >= at) & (time < at + lasting), np.sin(np.pi * np.clip((time - at) / lasting, 0, 1)), 0.0)
         aside = run.weave * np.sin(2 * np.pi * stroke / 6)
         late = round(rng.normal(0, 0.01) / FINE)
@@ -198,7 +198,7 @@ def _hidden(drawn: Lab) -> dict[str, Any]:
 
 def _run(folder: Path, name: str, run: Rider, drawn: Lab, rng: np.random.Generator) -> tuple[dict[str, Any], dict[str, Any]]:
     """Files of one run; its answer, and what a simulation that knows all but the floor leaves of it, where it is kept."""
-    time, left, right = pushes(run, rng)
+    time, left, right = pushes(run, drawn.truth.chair.m, rng)
     moved = urge(time, left + right, drawn, rng)
     turned = rng.uniform(-0.5, 0.5, 2)
     place, heading = rng.uniform(0, 60, 2), rng.uniform(-np.pi, np.pi)
