@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from wheelchair_fmu.campaign import Campaign, Run
+from wheelchair_fmu.engine.tangent import EXTERNAL
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN
 from wheelchair_fmu.model.variant import Variant
@@ -52,16 +53,18 @@ def floor(rng: np.random.Generator, slope: float, length: float = 0.4) -> Callab
     return slopes
 
 
-def ridden(campaign: Campaign, rng: np.random.Generator, forces: Forces) -> Campaign:
-    """The campaign's runs, simulated with its own pushes and these forces, and read with its noise."""
-    likelihood, runs = Likelihood(campaign, Variant()), []
+def ridden(
+    campaign: Campaign, rng: np.random.Generator, forces: Forces, chair: Variant = Variant(), values: Mapping[str, float] = {}
+) -> Campaign:
+    """The campaign's runs, simulated with its own pushes and these forces on a chair of such values, read with its noise."""
+    likelihood, runs = Likelihood(campaign, chair), []
     names = likelihood.sensitivities.results
     for run in campaign.runs:
         start = likelihood.starts[run.name]
-        without = dict(zip(names, likelihood._simulated(run, {}, start)[0].T, strict=True))
+        without = dict(zip(names, likelihood._simulated(run, values, start)[0].T, strict=True))
         F, M = forces(run, without)
-        felt = {"push.F_rl": run.inputs["push.F_rl"] + F / 2 + M / T_R, "push.F_rr": run.inputs["push.F_rr"] + F / 2 - M / T_R}
-        channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), {}, start)
+        felt = dict(zip(EXTERNAL, (F, M), strict=True))
+        channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), values, start)
         read = {c: v + rng.normal(0, campaign.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
         record = {n: w + rng.normal(0, 0.4, len(w)) for n, w in run.inputs.items()}
         runs.append(replace(run, inputs=record, channels=read))

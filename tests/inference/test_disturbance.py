@@ -13,7 +13,7 @@ from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
 from wheelchair_fmu.inference.evidence.likelihood import ALONG, Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import FORCED, NoiseModel, disturbance, stroke
+from wheelchair_fmu.inference.evidence.noise_model import FORCED, HANDS, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, B, floor, ridden, swinging, wandering
@@ -84,7 +84,7 @@ def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
 )
 def test_bodies_and_floors_push_without_a_mean(noise, at, force):
     """Of p'' + (α + β) p' + α β p = white noise, p' has a standard deviation of √(α β) times that of p, and no mean."""
-    unknown, pair = disturbance(NoiseModel({}, **noise), 2, T_R), slice(at, at + 2)
+    unknown, pair = disturbance(NoiseModel({}, **noise), HANDS, T_R), slice(at, at + 2)
     weights = unknown.as_push[:, pair].sum(axis=0) * unknown.sd[pair]
     assert np.sqrt(weights @ unknown.common[pair, pair] @ weights) == pytest.approx(force)
     slow = weights * np.sqrt(2 / unknown.lasting[pair]) * unknown.lasting[pair]  # what one noise does to each at rest, added up
@@ -112,7 +112,7 @@ def test_a_body_swings_as_hard_as_hands_push(sample):
 def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
     """What forces do is known: twice the mass needs twice the force for it."""
     known = NoiseModel({}, force=2.0, moment=0.5, body=1.0, mass=80.0)
-    light, heavy = (disturbance(known, 2, T_R, mass).as_push for mass in (80.0, 160.0))
+    light, heavy = (disturbance(known, HANDS, T_R, mass).as_push for mass in (80.0, 160.0))
     np.testing.assert_allclose(heavy[:, ALONG], 2 * light[:, ALONG])
     np.testing.assert_allclose(heavy[:, 1], light[:, 1])
 
@@ -151,6 +151,26 @@ def test_values_among_unrecorded_forces_are_found_without_bias(sample):
         off.append([(found.values[n] - true[n]) / errors[n] for n in names])
         assert errors["chair.m"] < 0.5 and errors["chair.I_z"] < 0.06
     assert np.abs(off).max() < 4 and np.abs(np.mean(off, axis=0)).max() < 3 / np.sqrt(len(off))
+
+
+def test_a_body_that_answers_pushes_has_its_size_whatever_else_it_does(sample):
+    """A part of its motion is its own. It answers hands, and not the forces that nobody recorded: were these pushes, they would
+    swing it in every slope, and its size would come out too small."""
+    swing, own, off = "effect.trunk_motion.swing", 2.5, []
+    chair = Variant(effects=("trunk_motion",))
+    for seed in range(20, 24):
+        rng = np.random.default_rng(seed)
+
+        def body(run, without, rng=rng):
+            return -np.gradient(swinging(rng, run.time, own), run.time), 0 * run.time
+
+        campaign = ridden(sample, rng, body, chair, {swing: 0.008})
+        noise = NoiseModel(campaign.noise, body=own, mass=80.0)
+        likelihood = Likelihood(campaign, chair, noise).led(moving(campaign))
+        found = fit(likelihood, ("chair.m", swing), {"chair.m": 80.0, swing: 0.0})
+        off.append((found.values[swing] - 0.008) / standard_errors(found)[swing])
+        assert found.values[swing] == pytest.approx(0.008, rel=0.15)
+    assert abs(np.mean(off)) < 3 / np.sqrt(len(off)) and np.abs(off).max() < 4
 
 
 @pytest.mark.parametrize("f_r", [0.03, 0.05])

@@ -9,7 +9,7 @@ from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.residual.strokes import begun, phase
-from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Order, Unexplained, unexplained
+from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Missing, Order, Unexplained, _lone, unexplained
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, B, ridden, wandering
@@ -68,6 +68,18 @@ def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
     found = left_of(ridden(sample, np.random.default_rng(2), hand))
     assert {o.by for o in found.orders} == {"run"}
     assert all("run slalom-slow from 2." in o.words or "run slalom-slow from 3." in o.words for o in found.orders)
+
+
+def test_a_force_that_is_known_for_moments_only_is_not_said_to_be_in_one_run():
+    """Where readings hardly tell it, it is not asked for; all of the little that is known lies in some part of some run."""
+    time, rng = np.arange(0.0, 12.0, 0.02), np.random.default_rng(3)
+    found = [Missing(name, time, {"force": wandering(rng, time, 2.0)}, {}) for name in "abcd"]
+    whole = [m.values["force"] for m in found]
+    hit = [v + 20.0 * ((time > 5) & (time < 6)) * (i == 1) for i, v in enumerate(whole)]
+    glimpsed = [np.where((time > 5) & (time < 7) & (i == 1), v, np.nan) for i, v in enumerate(whole)]
+    assert _lone("force", found, whole) is None and _lone("force", found, glimpsed) is None
+    told = _lone("force", found, hit)
+    assert told is not None and "run b from 4." in told.words
 
 
 @pytest.mark.parametrize("seed", [3, 4])

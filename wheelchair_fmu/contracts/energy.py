@@ -39,7 +39,7 @@ KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in ea
     "spinning on the spot": (0.0, 0.2, 3.0),
     "sliding": (0.5, 1.0, 1.0),
 }
-WORK = ("push.", "rider.")  # inputs by which a person does work
+WORK = ("push.", "rider.", "external.")  # inputs by which a person does work
 RESISTANCES = ("resistance.f_r", "resistance.f_f")
 HIDING = (*RESISTANCES, "tyre.C_lambda", "caster.C_lambda")  # what takes power, where a chair has it
 

@@ -142,13 +142,12 @@ class Recording:
 @dataclass(frozen=True)
 class Values:
     """Parameters (np,) of a model, offsets of readings (nz,), and what is not a parameter: s by which the record of pushes is
-    early, times the forces along the heading that act on this chair, its track in m and its mass in kg."""
+    early, times the forces along the heading that act on this chair, and its mass in kg."""
 
     parameters: np.ndarray
     offsets: np.ndarray
     delay: float
     along: float
-    track: float
     mass: float
 
 
@@ -233,7 +232,7 @@ class _Place:
         real = {
             "p": values.parameters,
             "offsets": values.offsets,
-            "numbers": [of.tolerance, values.delay, values.along, values.track, values.mass],
+            "numbers": [of.tolerance, values.delay, values.along, values.mass],
         }
         self.given = {name: np.ascontiguousarray(a, np.intc) for name, a in whole.items()}
         self.given |= {name: np.ascontiguousarray(a, float) for name, a in real.items()} | run.arrays

@@ -41,7 +41,8 @@ from .kernel import _algebraic_change
 NAMES = ("motion", "ramp", "slopes", "prepare", "bend", "slopes_all", "prepare_all", "bend_all", "readout", "masses", "begin")
 SENSORS = "sensor."
 PUSHES = 4  # the first inputs, F_rl, F_rr, M_rl, M_rr, carry noise,
-BODY = "rider.momentum"  # and the next one does where it moves
+BODY = "rider.momentum"  # and the next one does where it moves,
+EXTERNAL = ("external.force", "external.moment")  # and the next two, as what acts and was not recorded
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def sensed(model: Model) -> tuple[int, ...]:
 
 def noisy(moving: Container[str]) -> int:
     """How many of the first inputs carry noise, if these inputs move besides the pushes."""
-    return PUSHES + (BODY in moving)
+    return PUSHES + 1 + len(EXTERNAL) if EXTERNAL[0] in moving else PUSHES + (BODY in moving)
 
 
 def tangent(model: Model, names: Sequence[str], pushes: int = PUSHES) -> Tangent:

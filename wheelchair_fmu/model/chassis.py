@@ -222,6 +222,27 @@ INPUTS = (
         seldom=True,
     ),
     Input(
+        "external.force",
+        N,
+        "force from outside at the CM along the chair's heading, as of an attendant, a rope or wind; no hand of the rider's",
+        lower=-PUSH_LIMIT,
+        upper=PUSH_LIMIT,
+        nominal=50.0,
+        symbol="F_ext",
+        seldom=True,
+    ),
+    Input(
+        "external.moment",
+        N_M,
+        "moment from outside about the vertical axis, positive clockwise from above",
+        mirror="-",
+        lower=-PUSH_LIMIT,
+        upper=PUSH_LIMIT,
+        nominal=15.0,
+        symbol="M_ext",
+        seldom=True,
+    ),
+    Input(
         "rider.s",
         M,
         "how far the mass rider.m has moved forward against the frame; it shifts the CM, and rider.momentum says how fast",
@@ -395,11 +416,11 @@ def loads(m, g_z, x_f, x_r):
     define("F_y", N, "sum of all forces along y_m, gravity included", "-"),
     define("M_z", N_M, "sum of all moments about the vertical axis through the CM", "-"),
 )
-def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y):
-    """Right-hand sides of (20), (21), (22)."""
-    F_x = cs.sum1(F_xr) + cs.sum1(F_xf) + m * g_x  # (20)
+def forces(F_xr, F_yr, M_t, F_xf, F_yf, M_f, x_f, y_f, x_r, y_r, m, g_x, g_y, F_ext, M_ext):
+    """Right-hand sides of (20), (21), (22), with what acts from outside."""
+    F_x = cs.sum1(F_xr) + cs.sum1(F_xf) + m * g_x + F_ext  # (20)
     F_y = cs.sum1(F_yr) + cs.sum1(F_yf) + m * g_y  # (21)
-    M_z = moment(x_r, y_r, F_xr, F_yr) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f)  # (22)
+    M_z = moment(x_r, y_r, F_xr, F_yr) + moment(x_f, y_f, F_xf, F_yf) + cs.sum1(M_t + M_f) + M_ext  # (22)
     return F_x, F_y, M_z
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..campaign import CHANNELS, Campaign, Run, moving
 from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.innovations import steps
-from ..engine.tangent import differentiable, sensed
+from ..engine.tangent import EXTERNAL, differentiable, sensed
 from ..engine.wasm import evaluation, modules
 from ..inference.decision.verdict import FORCES as UNRECORDED
 from ..inference.estimation.statistics import finite
@@ -49,7 +49,8 @@ def content(
     factory = ModelFactory(campaign, variant, fixed)
     models = Models(factory, Setting(colour))
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
-    compiled = modules([(v.choice, v.active()) for v in variants], STARTS, driven(campaign))
+    inputs = driven(campaign).union(EXTERNAL if leads else ())
+    compiled = modules([(v.choice, v.active()) for v in variants], STARTS, inputs)
     measured = {name for r in campaign.runs for name in r.channels}
     return {
         "name": campaign.name,
@@ -65,7 +66,7 @@ def content(
         "leads": leads,
         "known": {**factory.variant.values, **campaign.known},
         "models": [_model(v, wasm, leads) for v, wasm in zip(variants, compiled, strict=True)],
-        "evaluation": b64encode(evaluation(driven(campaign))).decode(),
+        "evaluation": b64encode(evaluation(inputs)).decode(),
         "effects": [_effect(e) for e in factory.catalogue.values()],
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "constants": [_parameter(p) for e in factory.catalogue.values() for p in e.owned if p.name in _fitted(diagnosis)],
@@ -95,13 +96,13 @@ def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _forces(colour: NoiseModel) -> dict[str, Any] | None:
-    """Forces that nobody recorded, on both wheels: a `Disturbance` of a chair with a track of 1 m and the mass they were found
-    for."""
+    """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for."""
     if not colour.disturbed:
         return None
-    found = disturbance(colour, 2, 1.0, colour.mass)
+    found = disturbance(colour, EXTERNAL, mass=colour.mass)
     assert found.common is not None
-    return {"lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": found.as_push.tolist()}
+    as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
+    return {"lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": as_push}
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
@@ -154,7 +155,7 @@ def _model(variant: Variant, wasm: bytes, leads: bool) -> dict[str, Any]:
 
 
 def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[str, Any]:
-    channels, pushes = [c.name for c in CHANNELS if c.name in run.channels], pushes_of(run)
+    channels, pushes = [c.name for c in CHANNELS if c.name in run.channels], pushes_of(run, leads)
     noise = noise_of(colour, run, channels, pushes)
     present = np.stack([np.isfinite(run.channels[c]) for c in channels], axis=1)
     assert noise.push_step is not None
@@ -176,9 +177,15 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
             "step": noise.push_step.tolist(),
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
-        "forces": disturbance(colour, 2, 1.0, colour.mass, colour.swinging(run)).sd.tolist() if colour.disturbed else [],
+        "forces": _sizes(colour, run) if colour.disturbed else [],
         "constants": [_constant(c) for c in locals_of(run)],
     }
+
+
+def _sizes(colour: NoiseModel, run: Run) -> list[float]:
+    """Standard deviations of the forces in one run."""
+    sizes: list[float] = disturbance(colour, EXTERNAL, mass=colour.mass, swinging=colour.swinging(run)).sd.tolist()
+    return sizes
 
 
 def _constant(local: Local) -> dict[str, Any]:

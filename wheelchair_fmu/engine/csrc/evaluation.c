@@ -13,7 +13,7 @@
 #define ARRIVED 0.03  /* and of a step that leads nowhere else */
 #define MOMENTS 8     /* up to which readings are asked where errors of the pushes led, */
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
-#define TURNING 1     /* of the forces that nobody recorded, the moment; it acts the more, the narrower the track is, */
+#define TURNING 1     /* of the forces that nobody recorded, the moment, */
 #define SWINGS 2      /* and the first of the two by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
@@ -154,12 +154,12 @@ static void felt(const wc_recording *s, const wc_values *v, const double *sizes,
     }
 }
 
-/* As what change of the recorded pushes a unit of each force acts on a chair of this track and mass. */
+/* As what change of the inputs that carry noise a unit of each force acts on a chair of this mass. */
 static void as_push(const wc_recording *s, const wc_values *v, double *to) {
     for (int q = 0; q < s->noise.nq; q++) {
         for (int d = 0; d < s->noise.nd; d++) {
             double unit = s->noise.as_push[q * s->noise.nd + d];
-            to[q * s->noise.nd + d] = d == TURNING ? unit / v->numbers[WC_TRACK] : unit * v->numbers[WC_ALONG];
+            to[q * s->noise.nd + d] = d == TURNING ? unit : unit * v->numbers[WC_ALONG];
         }
     }
 }
@@ -395,7 +395,9 @@ static int on_a_path(const wc_recording *s, const wc_evaluation *e) {
 static double without_swing(const wc_recording *s, const wc_values *v, const double *by, const double *path) {
     double momentum = 0;
     int nd = s->noise.nd;
-    for (int d = SWINGS; d < nd; d++) momentum += (by[d] + by[nd + d]) * s->noise.lasting[d] * path[d];
+    for (int d = SWINGS; d < nd; d++) {
+        for (int q = 0; q < s->noise.nq; q++) momentum += by[q * nd + d] * s->noise.lasting[d] * path[d];
+    }
     return momentum / v->numbers[WC_MASS];
 }
 

@@ -26,7 +26,7 @@ typedef struct {
     const int *drifts;           /* nz: 1 where noise adds up without end */
     const double *usual;         /* 1: s between samples */
     int speeds[2];               /* places of u and v among the states */
-    wc_noise noise;              /* whose as_push is for a chair of 1 m track and of the mass that forces were found for */
+    wc_noise noise;              /* whose as_push is for a chair of the mass that forces were found for */
 
     int active, forced;          /* derivatives by parameters: how many, do any of them enter the equations, */
     const int *columns;          /* and which these are; those that start the run are the last */
@@ -57,7 +57,6 @@ enum {
     WC_TOLERANCE, /* of the simulation */
     WC_DELAY,     /* s by which the record of pushes is early */
     WC_ALONG,     /* times the forces along the heading that act on a chair of this mass */
-    WC_TRACK,     /* m */
     WC_MASS,      /* kg */
     WC_NUMBERS
 };

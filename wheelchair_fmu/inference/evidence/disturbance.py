@@ -16,11 +16,11 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...campaign import moving
-from ...engine.innovations import Whitener
+from ...engine.innovations import Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
 from .likelihood import Likelihood
-from .noise_model import FORGOTTEN, NoiseModel, disturbance, stroke
+from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke
 
 SIZES = ("force", "moment", "body")
 USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by e over this
@@ -153,10 +153,15 @@ def _alike(one: Strength, other: Strength) -> bool:
 def disturbed(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> tuple[Whitener, np.ndarray]:
     """The filter of a run with forces as strong as `noise_model` has them, and where (nx,) it expects the true start, less the
     simulated one."""
-    filter_ = e.filter.whitener
-    pushes, swinging = len(filter_.noise.pushes), noise_model.swinging(e.run)
-    filter_ = filter_.disturbed(disturbance(noise_model, pushes, t_r, swinging=swinging))
+    filter_ = e.filter.whitener.disturbed(_forces(e, noise_model, t_r))
     return filter_, e.offset[: filter_.size[0]]
+
+
+def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
+    """Forces as changes of the inputs that the filter of a run has noise for."""
+    alone = pushes_of(e.run)
+    inputs = alone if len(alone) == e.filter.whitener.recorded else pushes_of(e.run, led=True)
+    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run))
 
 
 def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:
@@ -165,8 +170,7 @@ def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float)
     def one(asked: tuple[NoiseModel, RunEvidence]) -> float:
         noise_model, e = asked
         filter_ = e.filter.whitener
-        forces = disturbance(noise_model, len(filter_.noise.pushes), t_r, swinging=noise_model.swinging(e.run))
-        return filter_.misfit(forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
+        return filter_.misfit(_forces(e, noise_model, t_r), e.measured - e.foretold, e.offset[: filter_.size[0]])
 
     told = parallel_map(one, product(noise_models, evidence.runs))
     return np.sum(np.reshape(told, (len(noise_models), -1)), axis=1)

@@ -15,8 +15,9 @@ import numpy as np
 from ...campaign import BY_NAME, CHANNELS, Campaign, Run
 from ...campaign.channels import BODY_NAMES
 from ...engine.evaluation import Constant, Evaluation, Evaluator, Recording, Values
-from ...engine.innovations import Disturbance, Whitener
+from ...engine.innovations import Disturbance
 from ...engine.sensitivities import Sensitivities
+from ...engine.tangent import EXTERNAL
 from ...errors import SimulationError
 from ...model.variant import Variant
 from ...quantities import Parameter
@@ -60,7 +61,7 @@ class Likelihood:
         self.campaign, self.variant = campaign, variant.with_effects(campaign.effects)
         self.start_names = starts_of(p.name for p in self.variant.parameters())
         wanted = None if columns is None else (*columns, *self.start_names)
-        self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign))
+        self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign).union(EXTERNAL))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.leads = leads
         self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
@@ -69,7 +70,6 @@ class Likelihood:
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
-        self._tread = [p.name for p in self.variant.parameters()].index("chair.t_r")
         self._recordings: dict[tuple[str, bool], tuple[Run, NoiseModel, Recording]] = {}
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
@@ -123,10 +123,9 @@ class Likelihood:
     def _driven_again(self, e: RunEvidence, values: Mapping[str, float], path: np.ndarray) -> RunEvidence:
         """A run at other `values` along a `path`, by the filter that it has."""
         assert isinstance(e.whitener, Marginal)
-        filter_, given = e.whitener.whitener, self._given(e.run, values, e.start)[0]
         results, driven = self._simulated(e.run, values, e.start, path)
-        as_push = self._unknown(filter_.recorded, given, values).as_push
-        return replace(e, results=results, driven=driven, path=path, added=filter_.response(path @ as_push.T))
+        pushed = path @ self._unknown(e.run, values).as_push.T
+        return replace(e, results=results, driven=driven, path=path, added=e.whitener.whitener.response(pushed))
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
@@ -168,7 +167,7 @@ class Likelihood:
         pushes larger than their record by `pushed` (n, nq)."""
         given, w = self._given(run, values, start)
         if path is not None:
-            w = self._driven(run, given, w, path, values)
+            w = self._driven(run, w, path, values)
         if pushed is not None:
             w = self._pushed(run, w, pushed)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
@@ -224,7 +223,7 @@ class Likelihood:
         delay = sum(given.get(d, 0.0) for d in self._delays)
         along = chair[MASS] / self.noise_model.mass if self.noise_model.mass else 1.0
         p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
-        at = Values(p, np.array(offsets), delay, along, p[self._tread], chair[MASS])
+        at = Values(p, np.array(offsets), delay, along, chair[MASS])
         columns = [n for n in by if n not in self._delays and n not in self.offsets]
         return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed, follows)
 
@@ -239,7 +238,7 @@ class Likelihood:
         return known[2]
 
     def _recorded(self, run: Run) -> Recording:
-        channels, pushes = self._channels(run), pushes_of(run)
+        channels, pushes = self._channels(run), self._pushes(run)
         prior, sd = self._prior(run), start_sd(run, self.start_names)
         constants = [constant(c, channels, self._inputs, len(run.time)) for c in locals_of(run)]
         return Recording(
@@ -251,7 +250,7 @@ class Likelihood:
             np.array([BY_NAME[c].drifts for c in channels]),
             [self._inputs.index(n) for n in pushes],
             noise_of(self.noise_model, run, channels, pushes),
-            self._of_any_chair(run, len(pushes)) if self.noise_model.disturbed else None,
+            self._of_any_chair(run) if self.noise_model.disturbed else None,
             self.leads,
             self.start_names,
             np.array([prior[n] for n in self.start_names]),
@@ -260,9 +259,13 @@ class Likelihood:
             constants,
         )
 
-    def _of_any_chair(self, run: Run, pushes: int) -> Disturbance:
-        """The forces on a chair with a track of 1 m and the mass that they were found for."""
-        return disturbance(self.noise_model, pushes, 1.0, self.noise_model.mass, self.noise_model.swinging(run))
+    def _pushes(self, run: Run) -> tuple[str, ...]:
+        return pushes_of(run, self.leads)
+
+    def _of_any_chair(self, run: Run) -> Disturbance:
+        """The forces on a chair of the mass that they were found for."""
+        mass, swinging = self.noise_model.mass, self.noise_model.swinging(run)
+        return disturbance(self.noise_model, self._pushes(run), mass=mass, swinging=swinging)
 
     def _told(
         self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]
@@ -273,7 +276,7 @@ class Likelihood:
         signals = np.zeros((*found.r.shape, 1 + len(by)))
         self._fill_columns(signals[:, :, 1:], run, found, self.inputs(self.on_time(run, values, start)), by)
         if led:
-            signals[:, :, 1:] += self._as_before(found.whitener, self._vector(run, values, start), values, found.path, by)
+            signals[:, :, 1:] += self._as_before(run, found, values, by)
         sd = np.array([c.sd for c in constants])
         whitener = Marginal(found.whitener, found.by_start[:, :, m:] * sd)
         off = np.concatenate((found.offset, -np.array([start.get(c.name, 0.0) for c in constants]) / sd))
@@ -294,20 +297,17 @@ class Likelihood:
             *((found.added, found.driven, found.pushed) if led or found.pushed is not None else ()),
         )
 
-    def _unknown(self, pushes: int, given: np.ndarray, values: Mapping[str, float]) -> Disturbance:
-        return disturbance(self.noise_model, pushes, given[self._tread], self.chair(values)[MASS])
+    def _unknown(self, run: Run, values: Mapping[str, float]) -> Disturbance:
+        return disturbance(self.noise_model, self._pushes(run), mass=self.chair(values)[MASS])
 
-    def _driven(self, run: Run, given: np.ndarray, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
-        """Inputs (n, nw) with forces that nobody recorded, as pushes."""
-        pushes, out = pushes_of(run), w.copy()
-        as_push = self._unknown(len(pushes), given, values).as_push
-        out[:, [self._inputs.index(n) for n in pushes]] += path @ as_push.T
-        return out
+    def _driven(self, run: Run, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
+        """Inputs (n, nw) with forces that nobody recorded."""
+        return self._pushed(run, w, path @ self._unknown(run, values).as_push.T)
 
     def _pushed(self, run: Run, w: np.ndarray, pushed: np.ndarray) -> np.ndarray:
         """Inputs (n, nw) with pushes larger than their record by `pushed`."""
         out = w.copy()
-        out[:, [self._inputs.index(n) for n in pushes_of(run)]] += pushed
+        out[:, [self._inputs.index(n) for n in self._pushes(run)]] += pushed
         return out
 
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
@@ -317,16 +317,14 @@ class Likelihood:
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
-    def _as_before(
-        self, filter_: Whitener, given: np.ndarray, values: Mapping[str, float], path: np.ndarray, by: tuple[str, ...]
-    ) -> np.ndarray:
+    def _as_before(self, run: Run, found: Evaluation, values: Mapping[str, float], by: tuple[str, ...]) -> np.ndarray:
         """What has to be added to slopes (n, nz, k) along a path, as its forces do the same to a heavier chair: they grow with
         its mass. The path is made of the very errors that slopes are held against, and with its forces in the slope by its
         mass a chair would be found too light."""
-        out = np.zeros((*filter_.present.shape, len(by)))
+        out = np.zeros((*found.r.shape, len(by)))
         if MASS in by:
-            pushed = path[:, ALONG] @ self._unknown(filter_.recorded, given, values).as_push[:, ALONG].T
-            out[:, :, by.index(MASS)] = filter_.response(pushed) / self.chair(values)[MASS]
+            pushed = found.path[:, ALONG] @ self._unknown(run, values).as_push[:, ALONG].T
+            out[:, :, by.index(MASS)] = found.whitener.response(pushed) / self.chair(values)[MASS]
         return out
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:
@@ -379,7 +377,7 @@ class Likelihood:
             if by[j] in self.offsets:
                 out[:, :, j] = [c == self.offsets[by[j]] for c in self._channels(run)]
             elif by[j] in self._delays:  # every push changes by −F' per second of it
-                pushes = pushes_of(run)
+                pushes = self._pushes(run)
                 pushed = w[:, [self._inputs.index(n) for n in pushes]]
                 by_hands = np.where([n in BODY for n in pushes], 0.0, rate_of(run.time, pushed))
                 out[:, :, j] = found.whitener.response(-by_hands)

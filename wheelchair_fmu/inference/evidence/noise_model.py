@@ -12,6 +12,7 @@ from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
 from ...campaign.series import estimate
 from ...engine.innovations import Disturbance, Noise
+from ...engine.tangent import EXTERNAL
 
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 HANDS = tuple(BY_NAME[n].fmu for n in FORCES)
@@ -98,14 +99,18 @@ def noise_of(
     step = np.array([run.input_steps.get(n, usual) for n in pushes])
     swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
     sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
-    push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in (BY_FMU_NAME[n].name for n in pushes)]).T
+    known = [BY_FMU_NAME[n].name if n in BY_FMU_NAME else n for n in pushes]  # what acts from outside is nobody's record
+    push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in known]).T
     reading_sd, reading_ar = np.array([(noise_model.of(c, run), ar.get(c, 0.0)) for c in channels]).T
     return Noise(push_sd, push_ar, reading_sd, reading_ar, start, step)
 
 
-def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 1.0, swinging: float = 1.0) -> Disturbance:
+def disturbance(
+    noise_model: NoiseModel, inputs: Sequence[str], t_r: float = 1.0, mass: float = 1.0, swinging: float = 1.0
+) -> Disturbance:
     """A force along the heading, a moment, the two processes by which a rider's body pushes, and the two of a floor, as changes
-    of the recorded pushes, of which the first two are on the left and on the right wheel, `t_r` apart.
+    of these inputs: of those from outside where they are among them, which no rider's body answers, or else of both hands', on
+    wheels `t_r` apart.
 
     What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
     they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride. `swinging` is
@@ -118,9 +123,13 @@ def disturbance(noise_model: NoiseModel, pushes: int, t_r: float, mass: float = 
     """
     swings = _swing(noise_model.body * swinging, SWUNG), _rate(noise_model.floor, noise_model.lasting)
     lasting = np.array([FORGOTTEN, noise_model.lasting, *swings[0].lasting, *swings[1].lasting])
-    as_push, common = np.zeros((pushes, FORCED)), np.eye(FORCED)
+    as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
     along = mass / noise_model.mass if noise_model.mass else 1.0
-    as_push[:2] = [[along / 2, side / t_r, *(-along / 2, along / 2) * 2] for side in (1, -1)]
+    shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
+    if not shares.keys() <= set(inputs):
+        shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
+    for name, (ahead, turning) in shares.items():
+        as_push[inputs.index(name)] = [along * ahead, turning, *(-along * ahead, along * ahead) * 2]
     for at, swing in zip((2, 4), swings, strict=True):
         common[at, at + 1] = common[at + 1, at] = swing.together
     sd = np.array([noise_model.force, noise_model.moment, *swings[0].sd, *swings[1].sd])
@@ -155,9 +164,9 @@ def stroke(*runs: Run) -> float:
     return float(np.sqrt(np.average([np.mean(F**2) for F in both], weights=last))) if sum(last) else 0.0
 
 
-def pushes_of(run: Run) -> tuple[str, ...]:
+def pushes_of(run: Run, led: bool = False) -> tuple[str, ...]:
     """FMU names of the inputs that a filter has noise for: forces, and torques and the momentum of the rider's body where they
-    were recorded."""
+    were recorded; where a run is `led`, those from outside too."""
     names = FORCES if not any(BY_NAME[n].fmu in run.inputs for n in TORQUES) else (*FORCES, *TORQUES)
     names = (*names, MOMENTUM) if BY_NAME[MOMENTUM].fmu in run.inputs else names
-    return tuple(BY_NAME[n].fmu for n in names)
+    return (*(BY_NAME[n].fmu for n in names), *(EXTERNAL if led else ()))

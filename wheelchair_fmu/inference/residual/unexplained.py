@@ -197,9 +197,10 @@ def _left(by: Sequence[np.ndarray], values: Sequence[np.ndarray], basis: Basis) 
 
 
 def _lone(of: str, found: Sequence[Missing], values: Sequence[np.ndarray]) -> Order | None:
-    """A short part of one run in which most of it is."""
+    """A short part of one run in which most of it is, where that is a short part of all the time for which it is known."""
     squares = [np.nan_to_num(v) ** 2 * np.gradient(m.time) for m, v in zip(found, values, strict=True)]
-    whole, seconds = float(sum(s.sum() for s in squares)), float(sum(np.ptp(m.time) for m in found))
+    whole = float(sum(s.sum() for s in squares))
+    seconds = float(sum(np.gradient(m.time)[np.isfinite(v)].sum() for m, v in zip(found, values, strict=True)))
     best = None
     for m, s in zip(found, squares, strict=True):
         total = np.concatenate(([0.0], np.cumsum(s)))

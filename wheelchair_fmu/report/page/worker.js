@@ -124,8 +124,8 @@ class Kernel {
     const { wasm } = this, names = Object.keys(run.channels), nz = names.length, n = run.time.length, inputs = this.inputs.map(([name]) => name);
     const flags = (all, some) => all.map((name) => +some.includes(name)), among = (all) => (name) => all.indexOf(name);
     const series = names.map((c) => run.channels[c]), time = this.put(run.time), { pushes, constants } = run, nq = pushes.names.length;
-    const forces = campaign.forces ?? { lasting: [], together: [], as_push: [] }, nd = forces.lasting.length;
-    const asPush = pushes.names.flatMap((_, q) => forces.as_push[q] ?? forces.lasting.map(() => 0));
+    const forces = campaign.forces ?? { lasting: [], together: [], as_push: {} }, nd = forces.lasting.length;
+    const asPush = pushes.names.flatMap((name) => forces.as_push[name] ?? forces.lasting.map(() => 0));
     const recorded = Float64Array.from({ length: n * nz }, (_, at) => series[at % nz][Math.floor(at / nz)]);
     const doubles = (list) => this.put(Float64Array.from(list)), ints = (list) => this.words(list);
     const of = (part) => constants.flatMap(part), shape = of((c) => [...(c.shape ?? new Float64Array(n))]);
@@ -185,7 +185,7 @@ function kernelFor(values) {
 function given(kernel, { run, names }, values, name = "values") {
   const chair = { ...campaign.known, ...values }, all = { ...chair, ...run.set }, mass = chair["chair.m"] ?? kernel.start("chair.m");
   const delay = kernel.delays.reduce((sum, d) => sum + (all[d] ?? 0), 0), along = campaign.noise.mass ? mass / campaign.noise.mass : 1;
-  const numbers = [campaign.tolerance, delay, along, all["chair.t_r"] ?? kernel.start("chair.t_r"), mass];
+  const numbers = [campaign.tolerance, delay, along, mass];
   const [p, offsets, others] = [kernel.vector(all), names.map((c) => values[`offset.${c}`] ?? 0), numbers].map((a, i) => kernel.put(a, `${name} ${i}`));
   return kernel.words([p, offsets, others], name);
 }
