@@ -31,7 +31,7 @@ from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.model.generic import library
 
 from .bands import inside
-from .independent.labs import write
+from .independent.labs import SLIGHT, TURNS_HARD, write
 
 MEASUREMENTS = Path(__file__).resolve().parents[2] / "shared" / "measurements"
 OPTIONS = ("--mass", "--radius", "--track", "--wheelbase", "--cm-ahead", "--caster-track")
@@ -132,7 +132,7 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "verdict": told["verdict"],
         "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
         "hidden": answer["verdict"],
-        "unfair": unfair(told, answer["verdict"]),
+        "unfair": unfair(told, answer),
         "heldout": {"calibrated": told["ladder"][1]["heldout"], "last": told["ladder"][-1]["heldout"]},
         "hub_speed": {run: _speed(last, run) for run in floors},
         "yaw_rate": {run: last["yaw_rate"]["runs"][run] for run in floors if "yaw_rate" in last},
@@ -150,11 +150,16 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     }
 
 
-def unfair(told: Mapping[str, Any], hidden: Mapping[str, Any]) -> str:
-    """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing."""
+def unfair(told: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
+    """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing.
+
+    Casters trail and stick in every lab, and a patch that is turned has several laws.
+    """
+    hidden = answer["verdict"]
     named = {*told["effects"], *(e for tie in told["ties"] for e in tie)}
     true = {*hidden["missing"], *hidden.get("also", ())}
-    false = named - true - {*hidden.get("small", ())}
+    true |= {*TURNS_HARD} if answer["hidden"]["turn_slip"]["M_p"] else set()
+    false = named - true - {*hidden.get("small", ()), *SLIGHT}
     if false:
         return f"{', '.join(sorted(false))} named, which is not there"
     return "" if not true or named & true else f"none of {', '.join(sorted(true))} named"
