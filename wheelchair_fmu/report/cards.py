@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
 from .told import (
     Told,
@@ -115,7 +116,19 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         return f"{capital(probability_words(sure))} that {what} {size} to matter", [*there_words(t), fall, *rivals, *forces]
     if t.verdict == "outside":
         return "Sure that something is there, less so what", [fall, *rivals, *forces]
-    seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
-    share = f"{len(seen)} of {len(t.rows)}"
-    lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
-    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}", *forces]
+    lead, explained = _would_be_seen(t)
+    return lead, [explained, fall, *forces]
+
+
+def _would_be_seen(t: Told) -> tuple[str, str]:
+    """What the verdict rests on where nothing was found, and how it is counted. A diagnosis of an older version does not say
+    it: then effects are counted that these runs would show."""
+    share, adequate = t.diagnosis.get("seen"), t.verdict == "adequate"
+    counted = f"at the smallest size that would matter, in at least {DEFAULT.power:.0%} of such campaigns".replace("%", " %")
+    if share is None:
+        many = f"{sum(r['power'] >= DEFAULT.power for r in t.rows.values())} of {len(t.rows)} effects"
+        return f"{many} would have been seen" if adequate else f"Only {many} could have been seen", f"Each {counted}."
+    causes = f"{share:.0%} of all causes".replace("%", " %")
+    lead = f"{causes} would have been seen" if adequate else f"Only {causes} could have been seen"
+    apart = "effects of one cause count as one, and what mass or sizes given a little wrong would do as well counts as seen"
+    return lead, f"Each {counted}; {apart}."
