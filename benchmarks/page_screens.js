@@ -7,7 +7,7 @@
     const words = texts.currentNode.textContent.trim(), e = texts.currentNode.parentElement;
     if (!words || e.closest("script, style, .menu, code") || !shown(e)) continue;
     if (/undefined|NaN|Infinity|\[object|(?<![\w-])null\b|(?<![\w-])-\d/.test(words)) wrong.add(`number: ${words.slice(0, 90)}`);
-    if (/\b[a-z]+_[a-z_]+\b|effect\.|chair\.|tyre\./.test(words) && !e.closest(".figures, .numbers, details table")) wrong.add(`code name: ${words.slice(0, 90)}`);
+    if (/\b[a-z]+_[a-z_]+\b|\b(effect|chair|tyre|resistance)\.\w/.test(words) && !e.closest(".figures, .numbers, details table")) wrong.add(`code name: ${words.slice(0, 90)}`);
     if (/\b(p-value|whitened|likelihood|posterior|covariance|cosine|ln L)\b/i.test(words) && !e.closest("#method, details table")) wrong.add(`jargon: ${words.slice(0, 90)}`);
     const size = parseFloat(getComputedStyle(e).fontSize);
     if (size < 10 && !e.closest("svg")) wrong.add(`${size} px: ${words.slice(0, 60)}`);

@@ -348,6 +348,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     assert "[object" not in reader.page.text_content("main")
     for width in (1280, 390):
         reader.page.set_viewport_size({"width": width, "height": 900})
+        reader.page.wait_for_function(f"() => document.querySelector('#staircase svg').viewBox.baseVal.width < {width}")
         for i in range(5):
             reader.page.click(f".tab >> nth={i}")
             assert reader.page.locator(".screen:visible h3").inner_text()

@@ -126,9 +126,11 @@ def test_the_sizes_and_the_fall_come_next():
         told("missing", ["drag"], notes=["chair.a beside toe_in is odd"]), known, {"toe_in": "wheels that toe in"}
     )
     assert plain[-1] == "Note: the way to the casters beside wheels that toe in is odd."
-    noise = particulars(told("missing", notes=["x: its noise is about 1 m", "wheel_speed_l is odd, and x.y: no"]), {})
+    noise = particulars(
+        told("missing", notes=["x: its noise is about 1 m/s2, or 3 ± 1 kg.m2", "wheel_speed_l is odd, and x.y: no"]), {}
+    )
     assert noise[-2:] == [
-        "Note: the position along x: its noise is about 1 m.",
+        "Note: the position along x: its noise is about 1 m/s², or 3 ± 1 kg m².",
         "Note: the left wheel's speed is odd, and x.y: no.",
     ]
     assert lines == [

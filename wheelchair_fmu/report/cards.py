@@ -20,6 +20,7 @@ from .told import (
     size_lines,
     sized,
     there_words,
+    times_words,
     together_words,
 )
 from .words import listed, probability_words, spoken, strained
@@ -86,7 +87,14 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     if found:
         record = t.records[f"effect.{found['term']}.q"]
         size = spoken(found["estimate"], found["se"], record.unit)
-        return "A force or torque that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
+        times = (
+            f", {times_words(abs(found['estimate']) / delta)} the size that would matter"
+            if (delta := record.smallest_interesting)
+            else ""
+        )
+        return "A force or torque that no effect in the catalogue describes", [
+            f"What helps most is {record.meaning}: {size}{times}."
+        ]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"

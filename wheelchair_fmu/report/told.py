@@ -290,7 +290,10 @@ def _interest(t: Told, effect: str) -> str:
 
 def multiple_words(t: Told, effect: str) -> str:
     """The size found as a multiple of the smallest that would interest anyone."""
-    multiple = t.multiple(effect)
+    return times_words(t.multiple(effect))
+
+
+def times_words(multiple: float) -> str:
     if multiple < 0.95:
         return f"{multiple:.2g} times"
     return f"{multiple:.1f} times".replace(".0 ", " ") if multiple < 9.95 else f"{multiple:.0f} times"

@@ -26,6 +26,7 @@ CHANNELS = {
     "y": "the position along y",
     "yaw": "the heading",
 }
+UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
@@ -91,7 +92,8 @@ def channel_words(channel: str) -> str:
 
 
 def named(text: str, titles: Mapping[str, str], records: Mapping[str, Quantity]) -> str:
-    """Text of the search with what code names mean in their place."""
+    """Text of the search with what code names mean in their place, and units as they are printed."""
+    text = UNIT.sub(lambda found: found.group().replace(".", " ").replace("2", "²"), text)
 
     def plain(found: re.Match[str]) -> str:
         name = found.group()

@@ -89,14 +89,14 @@ const alike = (cosine) => (cosine >= 0.995 && cosine < 1 ? cosine.toFixed(4) : c
 function ties(section, campaign) {
   const { diagnosis } = campaign, named = (id) => titleOf(campaign, id);
   for (const group of diagnosis.ties) section.append(h("p", {}, `This campaign cannot tell these apart: ${listed(group.map(named))}.`));
-  section.querySelector("h2").textContent = diagnosis.ties.length ? "What cannot be told apart, and what to measure next" : `Rivals, and what ${diagnosis.next_experiment ? "to measure next" : "is left"}`;
+  section.querySelector("h2").textContent = diagnosis.ties.length ? "What cannot be told apart, and what to measure next" : diagnosis.verdict === "outside" ? `What ${diagnosis.next_experiment ? "to measure next, and what is" : "is"} left` : `Rivals, and what ${diagnosis.next_experiment ? "to measure next" : "is left"}`;
   const told = campaign.story.screens.find((s) => s.kind === "rivals").lines;
   if (!diagnosis.ties.length) section.append(...(diagnosis.verdict === "outside" ? [] : diagnosis.effects.length ? told.map((line) => h("p", {}, symbols(line))) : [h("p", {}, "No effect was found, so none is tied.")]));
   const [next, why] = campaign.story.following ?? [];
   if (next) section.append(h("p", { class: "next" }, h("b", {}, symbols(next)), " ", why));
   const left = diagnosis.leftover;
   if (left?.where) {
-    const { run, channel, rms: size } = left.where, where = `${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;
+    const { run, channel, rms: size } = left.where, where = `the ${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;
     section.append(h("p", {}, left.proposal ? `Without what helps most, the model errs most in ${where}.` :
       `A search for anything else that is left, among generic forces and errors, found nothing that stands. The largest error is in ${where}.`));
   }

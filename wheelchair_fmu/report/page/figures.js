@@ -89,7 +89,7 @@ export class Figures {
     return {
       draw: (width, look, room) => forest(width, look, rows.slice(0, Math.max(room ? fitting(room) : FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN || Math.abs(r.value) < 0.005 ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} sizes are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN || Math.abs(r.value) < 0.005 ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : `None of them ${diagnosis.verdict === "outside" ? "suffices" : "is needed"}.`}${rows.length > FIRST ? ` The likeliest of ${rows.length} sizes are drawn.` : ""}`,
     };
   }
 

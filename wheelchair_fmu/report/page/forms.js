@@ -57,7 +57,7 @@ export function columns(bench) {
     const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
     const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => (!devices || "used" in row.dataset) === there));
     return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, used.length ? table(heads, used) : null,
-      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}columns${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
+      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}column${rest.length > 1 ? "s" : ""}${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
   }));
 }
 
