@@ -6,6 +6,7 @@ from typing import Any
 
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..quantities import Parameter
 from .told import (
     Told,
     actions,
@@ -87,11 +88,8 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     if found:
         record = t.records[f"effect.{found['term']}.q"]
         size = spoken(found["estimate"], found["se"], record.unit)
-        times = (
-            f", {times_words(abs(found['estimate']) / delta)} the size that would matter"
-            if (delta := record.smallest_interesting)
-            else ""
-        )
+        delta = record.smallest_interesting if isinstance(record, Parameter) else None
+        times = f", {times_words(abs(found['estimate']) / delta)} the size that would matter" if delta else ""
         return "A force or torque that no effect in the catalogue describes", [
             f"What helps most is {record.meaning}: {size}{times}."
         ]
