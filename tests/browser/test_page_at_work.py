@@ -32,6 +32,11 @@ def test_five_screens_go_from_the_error_to_what_to_do(reader):
     assert "Yes" in page.inner_text(".answer")
     page.wait_for_selector(".screen:visible .curve svg")  # and by its curve
     assert "with this guess" in page.text_content(".screen:visible .curve svg")
+    inks = "[...new Set([...document.querySelectorAll('.screen:not([hidden]) .curve text')].map((t) => t.getAttribute('fill')))]"
+    light = page.evaluate(inks)
+    page.click("#theme")  # and the curve follows the theme
+    page.wait_for_function(f"(light) => !{inks}.some((ink) => light.includes(ink))", arg=light)
+    page.click("#theme")
     page.click(".choice >> text=a slope across the chair")
     assert "Yes" not in page.inner_text(".answer")
     page.click(".tab >> nth=2")

@@ -74,7 +74,17 @@ export class Story {
   async reveal() {
     const { choice, app } = this, { run } = app.shown, values = this.campaign.diagnosis.ranking.find((r) => r.effect === choice?.effect)?.values;
     const after = values ? await app.pool.later({ run, values, aside: true }).catch(() => null) : null;
-    if (choice === this.choice && run === app.shown.run) this.guessed.replaceChildren(...(after ? this.curves(app.before(), after, "with this guess") : []));
+    if (choice !== this.choice || run !== app.shown.run) return;
+    this.revealed = { choice, run, after };
+    this.drawGuess();
+  }
+
+  /** The curve of a guess, again where the run, the width or the theme is another one. */
+  drawGuess() {
+    const { choice, app, revealed } = this;
+    if (!choice) return;
+    if (revealed?.choice !== choice || revealed.run !== app.shown.run) this.reveal();
+    else this.guessed.replaceChildren(...(revealed.after ? this.curves(app.before(), revealed.after, "with this guess") : []));
   }
 
   /** What stands beside the last screen: the missing force, where it is drawn; commands can be copied. */
@@ -110,6 +120,7 @@ export class Story {
     const kind = this.screens[this.at].dataset.kind, stage = this.stages[kind];
     if (kind === "put") return this.drawPut(rested);
     if (!rested) return;
+    if (kind === "guess") this.drawGuess();
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
     if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
     if (kind === "rivals") {
