@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmarks.page_screens import FAULTS
 from tests.browser.conftest import CHROMIUM, DIAGNOSIS, LOOKS, SAMPLE, Reader, pages_of, report_of
 from wheelchair_fmu.report.page import page as page_of
 from wheelchair_fmu.report.page import unpacked
@@ -31,6 +32,11 @@ def test_five_screens_go_from_the_error_to_what_to_do(reader):
     assert "Yes" in page.inner_text(".answer")
     page.wait_for_selector(".screen:visible .curve svg")  # and by its curve
     assert "with this guess" in page.text_content(".screen:visible .curve svg")
+    inks = "[...new Set([...document.querySelectorAll('.screen:not([hidden]) .curve text')].map((t) => t.getAttribute('fill')))]"
+    light = page.evaluate(inks)
+    page.click("#theme")  # and the curve follows the theme
+    page.wait_for_function(f"(light) => !{inks}.some((ink) => light.includes(ink))", arg=light)
+    page.click("#theme")
     page.click(".choice >> text=a slope across the chair")
     assert "Yes" not in page.inner_text(".answer")
     page.click(".tab >> nth=2")
@@ -345,11 +351,45 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     assert reader.page.locator("#ties #joint svg").count() == (verdict == "tie")
     assert reader.page.locator(".several tbody tr").count() == (verdict == "missing")
     assert "[object" not in reader.page.text_content("main")
-    for i in range(5):
-        reader.page.click(f".tab >> nth={i}")
-        assert reader.page.locator(".screen:visible h3").inner_text()
+    for width in (1280, 390):
+        reader.page.set_viewport_size({"width": width, "height": 900})
+        reader.page.wait_for_function(f"() => document.querySelector('#staircase svg').viewBox.baseVal.width < {width}")
+        for i in range(5):
+            reader.page.click(f".tab >> nth={i}")
+            assert reader.page.locator(".screen:visible h3").inner_text()
+            assert reader.page.evaluate(FAULTS) == [], (width, i)
     assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
     reader.close()
+
+
+def test_where_nothing_is_missing_the_largest_error_is_shown_until_one_is_put_in(browser: Any, tmp_path: Path) -> None:
+    """Then the page turns to where it parts the model from the readings, as over all of them the error hardly rises."""
+    told = json.loads(DIAGNOSIS.read_text()) | {"verdict": "adequate", "effects": [], "ties": []}
+    told["ladder"], told["models"] = told["ladder"][:2], told["models"][:2]
+    (tmp_path / "told.json").write_text(json.dumps(told))
+    reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
+    reader.page.wait_for_timeout(1000)
+    errors = """(results) => Math.max(...report.campaign.runs.flatMap((run, i) => run.role !== "holdout" ? [] :
+        Object.keys(run.channels).map((c) => results[i].squares[c] / results[i].counts[c])))"""
+    shown = "(r => r.squares[report.shown.channel] / r.counts[report.shown.channel])(report.opened[report.shown.run])"
+    assert reader.page.evaluate(shown) == reader.page.evaluate(f"({errors})(report.opened)")
+    reader.page.click(".tab >> nth=2")
+    reader.page.click(".screen:visible .big")
+    reader.settle()
+    rise = "(i, channel) => report.results[i].squares[channel] - report.opened[i].squares[channel]"
+    most = reader.page.evaluate(f"""() => Math.max(...report.campaign.runs.flatMap((run, i) => run.role !== "holdout" ? [] :
+        Object.keys(run.channels).map((c) => ({rise})(i, c) / report.opened[i].counts[c])))""")
+    here = f"({rise})(report.shown.run, report.shown.channel) / report.opened[report.shown.run].counts[report.shown.channel]"
+    assert reader.page.evaluate(here) == most > 0
+    reader.close()
+
+
+def test_a_curve_of_a_size_ends_where_it_is_beyond_what_is_drawn(open_report):
+    """Further off, a search may have found another model."""
+    rising = open_report.page.evaluate(
+        "import('page/landscape').then((m) => m.rising([2, 20, 12, 4, 0, 1, 9, 13, 6, null], 9))"
+    )
+    assert rising == [None, None, 12, 4, 0, 1, 9, None, None, None]
 
 
 LETTERS = Path(__file__).with_name("letters.js").read_text()

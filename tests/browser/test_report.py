@@ -274,7 +274,7 @@ def test_the_keyboard_reaches_everything(reader):
 def test_a_value_out_of_bounds_is_not_taken(reader):
     page = reader.page
     page.evaluate("for (const d of document.querySelectorAll('#controls details')) d.open = true")
-    number = page.locator('[aria-label^="tyre.C_lambda ["]')
+    number = page.locator('[data-name="tyre.C_lambda"]')
     before = page.evaluate("report.values")
     number.fill("")
     number.press_sequentially("-3")

@@ -67,7 +67,7 @@ def test_coloured_noise_that_is_larger_than_stated_is_seen(seed):
 def test_a_wrong_size_is_said():
     noise_model, notes = coloured(0.006, 0.0, 0.6)
     assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)
-    assert notes == ["yaw_rate: its noise is about 0.006 (SI), not the 0.6 stated; the data's own is used"]
+    assert notes == ["yaw_rate: its noise is about 0.006 rad/s, not the 0.6 stated; the data's own is used"]
 
 
 def test_what_is_as_smooth_as_motion_tells_no_noise():

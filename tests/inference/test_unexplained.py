@@ -133,3 +133,11 @@ def test_the_largest_force_that_is_looked_at_may_be_larger():
         "As calibrated, the model needs at least 500 N, at least 100 N m and a swing of the rider's body of at least 500 N s "
         "that nobody recorded; in the end, 150 N and 0.52 N m."
     ]
+
+
+def test_a_force_that_is_none_is_said_once():
+    none, along = Strength(0.0, 0.0, 0.0, 0.0), Strength(0.4, 0.0, 0.0, 9.0)
+    assert Unexplained(none, none, ()).words == ["The model needs no force and no moment that nobody recorded."]
+    assert Unexplained(along, none, ()).words == [
+        "As calibrated, the model needs 0.4 N that nobody recorded; in the end, no force and no moment."
+    ]

@@ -126,6 +126,13 @@ def test_the_sizes_and_the_fall_come_next():
         told("missing", ["drag"], notes=["chair.a beside toe_in is odd"]), known, {"toe_in": "wheels that toe in"}
     )
     assert plain[-1] == "Note: the way to the casters beside wheels that toe in is odd."
+    noise = particulars(
+        told("missing", notes=["x: its noise is about 1 m/s2, or 3 ± 1 kg.m2", "wheel_speed_l is odd, and x.y: no"]), {}
+    )
+    assert noise[-2:] == [
+        "Note: the position along x: its noise is about 1 m/s², or 3 ± 1 kg m².",
+        "Note: the left wheel's speed is odd, and x.y: no.",
+    ]
     assert lines == [
         "Drag: size of the drag = 1.234 ± 0.021 N s/m.",
         "The error on runs held out falls from 1.90 to 1.02, where 1.0 is noise alone.",
@@ -192,3 +199,4 @@ def test_a_page_says_what_it_was_made_by():
 def test_commands_and_symbols_are_printed_as_such():
     assert marked("Put it in: wheelchair add drag toe_in.") == "Put it in: <code>wheelchair add drag toe_<wbr>in</code>"
     assert marked("Stiffness C_λ of one_tyre & more") == "Stiffness C<sub>λ</sub> of one_tyre &amp; more"
+    assert marked("1 ± 2 m, 95 % of") == "1\u00a0±\u00a02 m, 95\u00a0% of"  # no line ends between them

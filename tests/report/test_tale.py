@@ -59,7 +59,7 @@ def test_what_forces_brought_down_is_not_told_as_the_work_of_an_effect():
     """From 1.68 to 0.92 the error came by forces among the noise, and no further by an effect too small to matter."""
     story = tale(CASES["small, left out"])
     said = " ".join(texts([*story.cards, *story.screens]))
-    assert "falls" not in said and "is 0.92 times what noise alone gives, with it as without" in said
+    assert "falls" not in said and "is 0.92 times what noise alone gives, and hardly changes with it" in said
     assert "Without them the calibrated model misses the sensors by 1.68 times" in story.cards[1]["lines"][-1]
     assert story.screens[2]["title"] == "Put it in: hardly anything changes"
     assert "falls from 0.92 to 0.80" in tale(CASES["with forces"]).cards[1]["lines"][0]
@@ -128,7 +128,7 @@ def test_an_adequate_model_explains_what_it_leaves_only_where_that_is_noise():
     ends = SAMPLE["ladder"][:2]
     what, sure, _ = tale(told("adequate", ladder=ends)).cards
     assert what["lines"] == ["What the model leaves, 1.68 times the noise of the sensors, no effect in the catalogue explains."]
-    assert sure["lines"][0].endswith("the error is 1.68 times what noise alone gives.")
+    assert sure["lines"][1].endswith("the error is 1.68 times what noise alone gives.")
     what, _, _ = tale(told("adequate", ladder=LEVEL)).cards
     assert what["lines"] == ["The model explains these runs to within the noise of the sensors."]
 
@@ -171,7 +171,7 @@ def test_rivals_stand_back_each_for_a_reason_of_its_own():
     more = {**lean, "lr": 5 * lean["lr"], "parameters": {"sum": lean["parameters"]["sum"]}}
     ranking = [more if r is lean else r for r in SAMPLE["ranking"]]
     lines = tale(told("missing", [DRAG], ranking=ranking)).cards[1]["lines"]
-    assert "Rear wheels that lean would do as well, though the runs that were kept back speak less for it." in lines
+    assert "Rear wheels that lean would do as well, though the runs that were kept back speak less for that." in lines
     assert any(line.endswith("would do nearly as well, with two sizes to choose where this has one.") for line in lines)
 
 
@@ -186,7 +186,17 @@ def test_where_nothing_was_found_one_is_tried_that_says_why(verdict, wanted):
         for r in known
     }
     assert plain[put["effect"]] == wanted(plain.values())
-    assert ("makes the error rise" in put["lines"][0]) == (verdict == "adequate")
+    assert ("these runs would have shown that" in put["lines"][0]) == (verdict == "adequate")
+    assert not [line for line in (put["title"], *put["lines"]) if "rises" in line]  # to two digits it may not
+
+
+@pytest.mark.parametrize(("verdict", "only"), [("adequate", ""), ("cannot_see", "Only ")])
+def test_how_sure_it_is_that_nothing_is_missing_is_told_by_what_decides_it(verdict, only):
+    """The verdict counts causes; an older diagnosis does not say how many, and then effects are counted."""
+    sure = tale(told(verdict, seen=0.824)).cards[1]
+    assert sure["lead"].startswith(f"{only}82 % of all causes") and "effects of one cause count as one" in sure["lines"][0]
+    known = sum(r["power"] >= 0.8 for r in SAMPLE["ranking"])
+    assert tale(told(verdict)).cards[1]["lead"].startswith(f"{only}{known} of {len(SAMPLE['ranking'])} effects")
 
 
 def test_where_nothing_was_found_one_guesses_what_these_runs_would_show():
@@ -229,6 +239,8 @@ def test_what_is_left_is_told_in_units_of_sensors_where_it_is_known():
     assert tale(told("missing", [DRAG], physical=physical)).physical == [
         "The yaw rate is predicted to within 0.35 °/s, 4 % of how much it varies."
     ]
+    merely = {"yaw_rate": {**physical["yaw_rate"], "share_of_sd": 1.02}}
+    assert tale(told("missing", [DRAG], physical=merely)).physical[0].endswith("0.35 °/s, as much as it varies at all.")
     assert SAMPLE["physical"]["yaw_rate"]["unit"] == "deg/s"  # a diagnosis has it in the unit in which it is told
     assert not tale(told("missing", [DRAG], physical={})).physical
 
@@ -269,6 +281,7 @@ def test_where_no_error_falls_nobody_is_told_to_watch_one():
 
 def test_outside_names_the_term_that_helps_and_shows_its_error():
     screens = {s["kind"]: s for s in tale(CASES["outside"]).screens}
+    assert tale(CASES["outside"]).cards[0]["lines"][0].endswith("2.50 ± 0.14 N m, 12 times the size that would matter.")
     assert "a torque on each caster" in screens["put"]["lines"][0]
     assert "a torque on each caster" in screens["rivals"]["bars"][-1]["title"]
     assert screens["rivals"]["bars"][-1]["error"] == SAMPLE["ladder"][-1]["heldout"]
@@ -318,3 +331,13 @@ def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
     assert line.endswith("a size that these runs leave open.")
+
+
+def test_of_a_size_below_zero_it_is_said_what_it_is_of():
+    """The wheel that drags is the other one."""
+    row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
+    size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1}
+    ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
+    line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
+    assert "−1.60 ± 0.10 N (rolling resistance of the left wheel less the right wheel's), 4 times" in line
+    assert "(" not in tale(CASES["tie"]).cards[0]["lines"][0]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..quantities import Parameter
 from .told import (
     Told,
     actions,
@@ -19,6 +21,7 @@ from .told import (
     size_lines,
     sized,
     there_words,
+    times_words,
     together_words,
 )
 from .words import listed, probability_words, spoken, strained
@@ -85,7 +88,11 @@ def _outside(t: Told) -> tuple[str, list[str]]:
     if found:
         record = t.records[f"effect.{found['term']}.q"]
         size = spoken(found["estimate"], found["se"], record.unit)
-        return "A force or torque that no effect in the catalogue describes", [f"What helps most is {record.meaning}: {size}."]
+        delta = record.smallest_interesting if isinstance(record, Parameter) else None
+        times = f", {times_words(abs(found['estimate']) / delta)} the size that would matter" if delta else ""
+        return "A force or torque that no effect in the catalogue describes", [
+            f"What helps most is {record.meaning}: {size}{times}."
+        ]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
     come = "come" if len(bent) > 1 else "comes"
@@ -115,7 +122,19 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         return f"{capital(probability_words(sure))} that {what} {size} to matter", [*there_words(t), fall, *rivals, *forces]
     if t.verdict == "outside":
         return "Sure that something is there, less so what", [fall, *rivals, *forces]
-    seen = [r for r in t.diagnosis["ranking"] if r["power"] >= 0.8]
-    share = f"{len(seen)} of {len(t.rows)}"
-    lead = f"{share} effects would have been seen" if t.verdict == "adequate" else f"Only {share} effects could have been seen"
-    return lead, [f"Each at the smallest size that would matter, in at least 8 of 10 such campaigns. {fall}", *forces]
+    lead, explained = _would_be_seen(t)
+    return lead, [explained, fall, *forces]
+
+
+def _would_be_seen(t: Told) -> tuple[str, str]:
+    """What the verdict rests on where nothing was found, and how it is counted. A diagnosis of an older version does not say
+    it: then effects are counted that these runs would show."""
+    share, adequate = t.diagnosis.get("seen"), t.verdict == "adequate"
+    counted = f"at the smallest size that would matter, in at least {DEFAULT.power:.0%} of such campaigns".replace("%", " %")
+    if share is None:
+        many = f"{sum(r['power'] >= DEFAULT.power for r in t.rows.values())} of {len(t.rows)} effects"
+        return f"{many} would have been seen" if adequate else f"Only {many} could have been seen", f"Each {counted}."
+    causes = f"{share:.0%} of all causes".replace("%", " %")
+    lead = f"{causes} would have been seen" if adequate else f"Only {causes} could have been seen"
+    apart = "effects of one cause count as one, and what mass or sizes given a little wrong would do as well counts as seen"
+    return lead, f"Each {counted}; {apart}."

@@ -8,13 +8,14 @@ from html import escape
 from typing import Any
 
 COMMAND = re.compile(r"(wheelchair add [\w ]+)\.$")  # at the end of a sentence, as somebody types it
+KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
 SYMBOL = re.compile(r"\b([^\W\d_])_([^\W_]+)\b")  # one letter with an index: C_λ
 
 
 def cards_html(cards: Sequence[Mapping[str, Any]]) -> str:
     """Three cards above the fold."""
     return "".join(
-        f'<section class="card"><h2>{escape(c["head"])}</h2><p class="lead">{escape(c["lead"])}</p>'
+        f'<section class="card"><h2>{escape(c["head"])}</h2><p class="lead">{marked(c["lead"])}</p>'
         f"{_gauge(c['gauge']) if 'gauge' in c else ''}{_lines(c['lines'])}</section>"
         for c in cards
     )
@@ -47,8 +48,9 @@ def _lines(lines: Sequence[str]) -> str:
 
 
 def marked(line: str) -> str:
-    """A sentence as HTML, with commands and symbols as they are printed."""
-    return SYMBOL.sub(r"\1<sub>\2</sub>", COMMAND.sub(_typed, escape(line)))
+    """A sentence as HTML, with commands and symbols as they are printed; a number stays with its per cent and its error."""
+    together = KEPT.sub("\N{NO-BREAK SPACE}", escape(line))
+    return SYMBOL.sub(r"\1<sub>\2</sub>", COMMAND.sub(_typed, together))
 
 
 def _typed(command: re.Match[str]) -> str:

@@ -32,6 +32,10 @@ h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a520
 svg{background:#fff}}"""
 
 
+LEGEND = "Each row is a channel, each column a run; all rows have one scale. Crosses are readings that were left out."
+NOTHING = "No signal of these files is known yet: which column is what has to be found out, or written down, first."
+
+
 @dataclass(frozen=True, eq=False)
 class Signal:
     """One channel of one run: times and values (n,), NaN in gaps; `odd` (m,) are times of readings that were left out."""
@@ -54,8 +58,9 @@ class Run:
 
 
 def seen(recorded: Iterable[Recorded]) -> list[Run]:
-    """Runs as their devices recorded them."""
-    return [Run(run.name, run.entry.text("role"), dict(_signals(run))) for run in recorded]
+    """Runs as their devices recorded them, but for those of which nothing is known yet: of these there is nothing to see."""
+    runs = (Run(run.name, run.entry.text("role"), dict(_signals(run))) for run in recorded)
+    return [run for run in runs if run.signals]
 
 
 def _signals(run: Recorded) -> Iterator[tuple[str, Signal]]:
@@ -74,14 +79,28 @@ def figures(runs: Sequence[Run]) -> list[Figure]:
 def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str]]) -> str:
     """The pictures and all faults (severity, text) as one HTML file that needs nothing else."""
     pictures = "".join(_svg(figure) for figure in drawn)
-    said = "".join(f'<li class="{html.escape(kind)}">{html.escape(text)}</li>' for kind, text in faults)
+    said = "".join(f'<li class="{html.escape(kind)}">{told}</li>' for kind, told in _by_cause(faults))
     listed = f"<h2>What is odd</h2><ul>{said}</ul>" if said else "<p>Nothing odd was found.</p>"
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
     return (
         f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>'
-        "<p>Each row is a channel, each column a run; all rows have one scale. Crosses are readings that were left out.</p>"
-        f"{pictures}{listed}</body></html>\n"
+        f"<p>{LEGEND if pictures else NOTHING}</p>{pictures}{listed}</body></html>\n"
     )
+
+
+def _by_cause(faults: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """(severity, HTML) of each cause: what is wrong alike in many places is said once, with the places behind it."""
+    places: dict[tuple[str, str, str], list[str]] = {}
+    for kind, text in faults:
+        said = f"{kind}: " if text.startswith(f"{kind}: ") else ""
+        where, _, what = text.removeprefix(said).partition(": ")
+        places.setdefault((kind, said, what), []).append(where)
+    for (kind, said, what), (first, *more) in places.items():
+        if more:
+            inside = html.escape("; ".join((first, *more)))
+            yield kind, f"<details><summary>{said}in {1 + len(more)} places: {html.escape(what)}</summary>{inside}</details>"
+        else:
+            yield kind, html.escape(f"{said}{first}: {what}" if what else f"{said}{first}")
 
 
 def _svg(figure: Figure) -> str:

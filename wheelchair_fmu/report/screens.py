@@ -183,12 +183,21 @@ def _tried(t: Told) -> dict[str, Any]:
     if not known:
         return {"title": "Put one in", "lines": ["Any effect can be tried below, at any size."]}
     row = max(known, key=_plain) if adequate else min(known, key=_plain_unfitted)
+    what = f"{capital(t.title(row['effect']))}, at the smallest size that would matter:"
     if adequate:
-        title, what = "Put one in, and the error rises", "it makes the error rise. These runs would have shown it."
+        title, lines = (
+            "Put one in, and look where it shows",
+            [
+                f"{what} the model parts from what was measured, and these runs would have shown that.",
+                "Over all readings the error may hardly rise; below the curves, the mean error over half a second shows where.",
+            ],
+        )
     else:
-        title, what = "Put one in: these runs hardly tell", "it hardly changes the error. These runs could not have shown it."
-    line = f"{capital(t.title(row['effect']))}: at the smallest size that would matter, {what}"
-    return {"title": title, "lines": [line], "effect": row["effect"]}
+        title, lines = (
+            "Put one in: these runs hardly tell",
+            [f"{what} the error hardly changes, and these runs could not have shown that."],
+        )
+    return {"title": title, "lines": lines, "effect": row["effect"]}
 
 
 def _plain(row: Mapping[str, Any]) -> float:

@@ -10,18 +10,9 @@ from ..quantities import Quantity, Unit
 from .cards import cards
 from .screens import screens
 from .told import Told, capital, next_words
-from .words import spoken
+from .words import channel_words, spoken
 
-CHANNELS = {
-    "wheel_speed_l": "the left wheel's speed",
-    "wheel_speed_r": "the right wheel's speed",
-    "yaw_rate": "the yaw rate",
-    "a_x": "the forward acceleration",
-    "a_y": "the sideways acceleration",
-    "x": "the position along x",
-    "y": "the position along y",
-    "yaw": "the heading",
-}
+MERELY = 0.95  # of how much a channel varies: what is left of it that is as good as all
 
 
 @dataclass(frozen=True)
@@ -42,11 +33,6 @@ def story_of(
     return Story(cards(t), screens(t), physical_words(t, units), next_words(t))
 
 
-def channel_words(channel: str) -> str:
-    """A channel in a sentence."""
-    return CHANNELS.get(channel, channel.replace("_", " "))
-
-
 def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
     """What is left on runs held out in each channel's own unit, where the diagnosis says so."""
     left = t.diagnosis.get("physical") or {}
@@ -61,6 +47,8 @@ def physical_words(t: Told, units: Mapping[str, Unit]) -> list[str]:
 def _share(share: float | None) -> str:
     if share is None:
         return ""
+    if share > MERELY:
+        return ", as much as it varies at all"
     return f", {f'{share:.0%}'.replace('%', ' %') if share > 0.01 else 'less than 1 %'} of how much it varies"
 
 

@@ -150,7 +150,7 @@ def fall_words(t: Told) -> str:
     before, after = t.fall
     if abs(before - after) < STILL:
         unmoved = "" if t.verdict in ("adequate", "cannot_see") else ", before and after"  # nothing was put in
-        where = f", with {it(t)} as without" if t.slight else unmoved
+        where = f", and hardly changes with {it(t)}" if t.slight else unmoved
         if t.found and not t.slight:
             told = [f"{error:.2f}" for error in t.fall]
             moves = f"is {told[1]}" if told[0] == told[1] else f"hardly changes, from {' to '.join(told)}"
@@ -251,8 +251,8 @@ def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
         most = number(max(len(r["parameters"]) for r in rivals)).lower()
         return f"with {most} sizes to choose where this has {number(own).lower()}"
     if _better(t, rivals[0]):
-        return "though the runs that were kept back speak less for " + ("them" if len(rivals) > 1 else "it")
-    return f"though the runs speak a little less for {'them' if len(rivals) > 1 else 'it'}"
+        return "though the runs that were kept back speak less for " + ("them" if len(rivals) > 1 else "that")
+    return f"though the runs speak a little less for {'them' if len(rivals) > 1 else 'that'}"
 
 
 def size_lines(t: Told, effect: str) -> list[str]:
@@ -271,6 +271,8 @@ def sized(t: Told, effect: str) -> str:
     every = t.sizes(effect)
     seen = [size for size in every if _seen(size[1])] or every
     sizes = " and ".join(f"{_which(name, every)}{spoken(v['estimate'], v['se'], r.unit)}" for name, v, r in seen)
+    if len(every) == 1 and every[0][1]["estimate"] < 0:  # of which the sign says something
+        sizes += f" ({every[0][2].meaning})"
     sure = any(_seen(v) for _, v, _ in every)
     size = f"{multiple_words(t, effect)} the size that would matter" if sure else "a size that these runs leave open"
     return f"{capital(t.title(effect))}: {sizes}, {size}."
@@ -288,7 +290,10 @@ def _interest(t: Told, effect: str) -> str:
 
 def multiple_words(t: Told, effect: str) -> str:
     """The size found as a multiple of the smallest that would interest anyone."""
-    multiple = t.multiple(effect)
+    return times_words(t.multiple(effect))
+
+
+def times_words(multiple: float) -> str:
     if multiple < 0.95:
         return f"{multiple:.2g} times"
     return f"{multiple:.1f} times".replace(".0 ", " ") if multiple < 9.95 else f"{multiple:.0f} times"

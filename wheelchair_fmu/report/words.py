@@ -16,6 +16,17 @@ SEEN = 0.05  # a p below which the data show something like an effect that was n
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
 NOTHING = "Something is left that no effect in the catalogue explains."
 AGAIN = " measured again"  # the end of a next experiment that is no manoeuvre but values of the chair
+CHANNELS = {
+    "wheel_speed_l": "the left wheel's speed",
+    "wheel_speed_r": "the right wheel's speed",
+    "yaw_rate": "the yaw rate",
+    "a_x": "the forward acceleration",
+    "a_y": "the sideways acceleration",
+    "x": "the position along x",
+    "y": "the position along y",
+    "yaw": "the heading",
+}
+UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
@@ -75,16 +86,26 @@ def strained(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> l
     return [f"the {records[name].meaning}" if name in records else name for name in bent]
 
 
+def channel_words(channel: str) -> str:
+    """A channel in a sentence."""
+    return CHANNELS.get(channel, channel.replace("_", " "))
+
+
 def named(text: str, titles: Mapping[str, str], records: Mapping[str, Quantity]) -> str:
-    """Text of the search with what code names mean in their place."""
+    """Text of the search with what code names mean in their place, and units as they are printed."""
+    text = UNIT.sub(lambda found: found.group().replace(".", " ").replace("2", "²"), text)
 
     def plain(found: re.Match[str]) -> str:
         name = found.group()
         if "." in name and name in records:
             return f"the {records[name].meaning}"
-        return titles[name] if "_" in name and name in titles else name
+        if "_" in name and name in titles:
+            return titles[name]
+        return channel_words(name) if "_" in name and name in CHANNELS else name
 
-    return NAME.sub(plain, text)
+    channel, colon, rest = text.partition(": ")
+    about = f"{channel_words(channel)}{colon}" if channel in CHANNELS else NAME.sub(plain, f"{channel}{colon}")
+    return about + NAME.sub(plain, rest)
 
 
 def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:

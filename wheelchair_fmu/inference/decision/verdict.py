@@ -82,6 +82,7 @@ class Diagnosis:
     next_experiment: dict[str, Any] | None
     seconds: float = 0.0
     unexplained: Unexplained | None = None
+    seen: float | None = None  # share of the catalogue's causes that would have been seen, where nothing was
 
     @property
     def top(self) -> Fit:
@@ -210,7 +211,7 @@ def _diagnosed(
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
-    verdict = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
+    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
     heard = (*heard, *beginning.heard(in_time))
     return Diagnosis(
         campaign=models.campaign.name,
@@ -233,6 +234,7 @@ def _diagnosed(
         heard=heard,
         notes=_notes(found, heard, verdict, proposal, values),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
+        seen=seen,
     )
 
 
@@ -338,20 +340,21 @@ def _verdict(
     ladder: Sequence[Step],
     left: Evidence,
     strained: Sequence[str],
-) -> str:
+) -> tuple[str, float | None]:
+    """The verdict, and the share of causes that would have been seen, where it rests on that."""
     if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
-        return "outside"
+        return "outside", None
     lasting = correlation_time(left) > models.policy.lasting
     if effects and not models.factory.leads and insufficient(ladder, models.policy) and lasting:
-        return "outside"
+        return "outside", None
     if effects:
-        return "tie" if ties else "missing"
+        return ("tie" if ties else "missing"), None
     if lasting and _structured(left, models.policy):
-        return "outside"
+        return "outside", None
     if _slight(rounds[0]):
-        return "small"
-    seen = _seen(models, rounds[0])
-    return "adequate" if share_seen(seen, models.factory.catalogue) >= models.policy.library else "cannot_see"
+        return "small", None
+    seen = share_seen(_seen(models, rounds[0]), models.factory.catalogue)
+    return ("adequate" if seen >= models.policy.library else "cannot_see"), seen
 
 
 def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:

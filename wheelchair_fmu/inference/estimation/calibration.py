@@ -49,7 +49,7 @@ class Calibrated:
     def words(self) -> str:
         """What there is to say of it; empty where it is as it was given."""
         unit = "" if self.record.unit.name == "1" else f" {self.record.unit.name}"
-        value, prior, sd = (f"{float(f'{v:.{d}g}'):.9g}" for v, d in ((self.value, 4), (self.prior, 4), (self.prior_sd, 2)))
+        value, prior, sd = _to_the_same_place(self.value, self.prior, self.prior_sd)
         told = f"{self.record.name} comes out at {value}{unit}"
         known = f"usual {prior} ± {sd}{unit}" if self.record.adjusted else f"{prior} ± {sd}{unit} given"
         given = f"{abs(self.off):.1f} standard deviations from the {known}"
@@ -93,6 +93,14 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
         stopped, reach = at_bound(record, value, mean, sd), (float(problem.lower[i]), float(problem.upper[i]))
         out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach))
     return out
+
+
+def _to_the_same_place(value: float, prior: float, sd: float) -> tuple[str, str, str]:
+    """A value and what was given to the second digit of its standard deviation; to four digits where nothing is known."""
+    if not np.isfinite(sd):
+        return f"{float(f'{value:.4g}'):.9g}", f"{float(f'{prior:.4g}'):.9g}", f"{sd:g}"
+    place = 1 - int(np.floor(np.log10(sd)))
+    return f"{round(value, place):.9g}", f"{round(prior, place):.9g}", f"{float(f'{sd:.2g}'):.9g}"
 
 
 def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
+from ...campaign import BY_NAME
 from ...campaign.series import estimate
 from .evidence import Evidence
 from .noise_model import FORCES, NoiseModel
@@ -61,9 +62,9 @@ def noise_model_of(
             known = (
                 ("stated", "the data's own") if channel not in estimated else ("its readings show alone", "what a model leaves")
             )
-            notes.append(
-                f"{channel}: its noise is about {sigma:.2g} (SI), not the {stated[channel]:.2g} {known[0]}; {known[1]} is used"
-            )
+            unit = BY_NAME[channel].unit.name.replace(".", " ")
+            differs = f"its noise is about {sigma:.2g} {unit}, not the {stated[channel]:.2g} {known[0]}"
+            notes.append(f"{channel}: {differs}; {known[1]} is used")
     pushes = {side: _push_colour(evidence, side, stated.get(side, 0.0)) for side in FORCES}
     ar |= {side: phi for side, phi in pushes.items() if phi > STEADY}
     return replace(taken, sd=sd, ar=ar), notes

@@ -31,6 +31,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
+        "seen": d.seen,
         "sync": {
             run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
             for run, of in d.clocks.items()

@@ -88,6 +88,8 @@ class Unexplained:
     @property
     def words(self) -> list[str]:
         """What a person is told."""
+        if not self.before.fall and not self.after.fall:
+            return ["The model needs no force and no moment that nobody recorded."]
         told = [f"As calibrated, the model needs {_size(self.before)} that nobody recorded; in the end, {_size(self.after)}."]
         if self.forces and not self.ordered and self.like_a_floor:
             nothing = "nothing else" if self.orders else "nothing"
@@ -109,12 +111,13 @@ def _figures(s: Strength) -> dict[str, float]:
 
 
 def _size(s: Strength) -> str:
+    nothing = "no force and no moment"
     if not s.fall:
-        return "no force and no moment"
+        return nothing
     force, moment, body = (_told(*pair) for pair in zip((s.along, s.moment, s.body), USUAL * MOST, strict=True))
-    if not s.body:
-        return f"{force} N and {moment} N m"
-    return f"{force} N, {moment} N m and a swing of the rider's body of {body} N s"
+    each = ((force, f"{force} N"), (moment, f"{moment} N m"), (body, f"a swing of the rider's body of {body} N s"))
+    *most, last = [words for size, words in each if size != "0"] or [nothing]
+    return f"{', '.join(most)} and {last}" if most else last
 
 
 def _told(size: float, most: float) -> str:

@@ -9,7 +9,7 @@ import { evidence } from "page/evidence";
 import { Figures } from "page/figures";
 import { lacking, reckoned, rolled } from "page/motion";
 import { mini } from "page/mini";
-import { rms, significant, unitText } from "page/numbers";
+import { beside, rms, significant, unitText } from "page/numbers";
 import { papers } from "page/paper";
 import { Pins } from "page/pins";
 import { Pool } from "page/pool";
@@ -140,6 +140,7 @@ class App {
     } else {
       this.now = this.error();
       if (exact && !this.opened) this.firstTime();
+      if (exact && this.parting) this.parted();
       this.want(exact ? "rested" : "all");
       if (exact && !this.pending) this.record();
       this.say(this.fitting ? "fitting the sizes together …" : exact ? "exact" : "about, while it moves", this.fitting ? "busy" : exact ? "exact" : "quick");
@@ -177,10 +178,10 @@ class App {
     if (best.run !== this.shown.run || best.channel !== this.shown.channel) this.turn(best);
   }
 
-  /** The last step of the search, simulated beside, for where it gained. */
+  /** The last step of the search, simulated beside, for where it gained; where nothing was put in, the largest error stays in sight. */
   async later() {
-    if (this.shown.chosen || !this.opensAtStart) return;
     const { values } = this.campaign.diagnosis.models.at(-1);
+    if (this.shown.chosen || !this.opensAtStart || same(values, this.start.values)) return;
     this.gained(await Promise.all(this.campaign.runs.map((_, run) => this.pool.later({ run, values, aside: true, brief: true }).catch(() => null))));
   }
 
@@ -191,7 +192,7 @@ class App {
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
     if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
-    const words = `There the ${most.channel} is missed by ${significant(most.ends[0].value, 2)} ${most.unit} before and ${significant(most.ends[1].value, 2)} ${most.unit} after.`;
+    const words = `There the ${most.channel} is missed by ${most.ends.map((v) => beside(significant(v.value, 2), most.unit)).join(" before and ")} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
     [...card.querySelectorAll("p:not(.lead)")].find((p) => /kept back|fitted to/.test(p.textContent))?.after(h("p", { class: "physical" }, words));
@@ -202,6 +203,14 @@ class App {
     if (this.shown.chosen || last.includes(null)) return;
     const mean = (r, c) => r.squares[c] / r.counts[c], fall = (i, c) => (mean(this.opened[i], c) - mean(last[i], c)) * (c in last[i].squares ? 1 : 0);
     this.turnTo(fall, SEEN);
+  }
+
+  /** Turns to where the model parts most from the one that the search began with, unless the reader has chosen. */
+  parted() {
+    this.parting = false;
+    if (this.shown.chosen || !this.opened?.length) return;
+    const mean = (r, c) => r.squares[c] / r.counts[c];
+    this.turnTo((i, c) => mean(this.results[i], c) - mean(this.opened[i], c));
   }
 
   /** The shown run as it was where the search began. */

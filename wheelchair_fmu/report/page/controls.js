@@ -80,7 +80,7 @@ export class Controls {
   slider(p, [low, high], row) {
     const { unit, factor } = display(p), id = `slider-${p.name}`;
     const range = h("input", { type: "range", id, min: low * factor, max: high * factor, step: "any", "aria-describedby": `${id}-help` });
-    const number = h("input", { type: "number", min: (p.lower ?? -1e300) * factor, max: (p.upper ?? 1e300) * factor, step: "any", "aria-label": `${p.name} [${unit}]` });
+    const number = h("input", { type: "number", min: (p.lower ?? -1e300) * factor, max: (p.upper ?? 1e300) * factor, step: "any", "aria-label": `${capital(p.meaning)} [${unitText(unit) || "1"}]`, "data-name": p.name });
     const put = (source) => {
       const value = source.valueAsNumber / factor;
       if (!Number.isFinite(value) || value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity)) return this.shown.delete(p.name), number.setCustomValidity(`between ${p.lower} and ${p.upper}`);
@@ -92,9 +92,9 @@ export class Controls {
     number.addEventListener("change", () => put(number));
     this.sliders.set(p.name, { range, number, factor, record: p });
     const found = row?.parameters[p.name.split(".").at(-1)], fitted = found && seen(found) ? found.estimate : row ? null : this.start().values[p.name];
-    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `${p.name}: back to the fitted size`, onclick: () => this.put({ ...this.values, [p.name]: fitted }) }, "↺");
-    const help = [p.name.startsWith("effect.") ? null : p.name, p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, fitted === null || fitted === undefined ? null : `▲ fitted ${inUnit(fitted, p)}`].filter(Boolean).join("; ");
-    return h("div", { class: "slider" }, h("label", { for: id }, symbols(capital(p.meaning))), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
+    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted }) }, "↺");
+    const help = [p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, fitted === null || fitted === undefined ? null : `▲ fitted ${inUnit(fitted, p)}`].filter(Boolean).join("; ");
+    return h("div", { class: "slider" }, h("label", { for: id, title: p.name }, symbols(capital(p.meaning))), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
       h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit)), fitted === null || fitted === undefined ? null : back), h("small", { id: `${id}-help` }, help));
   }
 
@@ -139,7 +139,7 @@ export class Controls {
       if (this.shown.get(name) === value && active !== range && active !== number) continue;
       this.shown.set(name, value);
       if (document.activeElement !== range || Math.abs(range.valueAsNumber - value) > 1e-9 * Math.abs(value)) range.value = value;
-      if (document.activeElement !== number) number.value = Number(value.toPrecision(5));
+      if (document.activeElement !== number) number.value = written(value, record.delta * factor);
       range.setAttribute("aria-valuetext", `${significant(value, 4)} ${unitText(display(record).unit)}`);
     }
     this.models.forEach((m, i) => this.steps[i].setAttribute("aria-pressed", same(m.values, this.values)));
@@ -151,6 +151,12 @@ function marks(p, low, high, fitted) {
   const at = (v) => `calc(8px + (100% - 16px) * ${Math.min(1, Math.max(0, (v - low) / (high - low))).toFixed(4)})`, inside = (v) => v >= low && v <= high;
   const band = p.delta && p.name.startsWith("effect.") ? h("i", { class: "of-no-interest", style: `left:${at(-p.delta)};right:calc(100% - ${at(p.delta)})` }) : null;
   return h("span", { class: "marks", "aria-hidden": "true" }, band, fitted !== null && fitted !== undefined && inside(fitted) ? h("i", { class: "fitted", style: `left:${at(fitted)}` }, "▲") : null);
+}
+
+/** A value in five digits, but none below a thousandth of the size that matters. */
+function written(value, delta) {
+  const place = delta > 0 ? Math.min(12, Math.max(0, 3 - Math.floor(Math.log10(delta)))) : 12;
+  return Number(Number(value.toPrecision(5)).toFixed(place));
 }
 
 const seen = (found) => found.se === null || found.se < 3 * Math.abs(found.estimate);

@@ -40,7 +40,7 @@ export function symbolic(x, y, words, fill, anchor, more) {
   const made = text(x, y, "", fill, anchor, { ...more, "xml:space": "preserve" }); // else some programs drop the space after an index
   let low = false;
   made.replaceChildren(...indexed(String(words)).map(([t, below]) => {
-    const piece = svg("tspan", { dy: below === low ? null : below ? 3 : -3, "font-size": below ? "9.5" : null }, t);
+    const piece = svg("tspan", { dy: below === low ? null : below ? 3 : -3, "font-size": below ? "10" : null }, t);
     low = below;
     return piece;
   }));

@@ -8,15 +8,14 @@ import { Heat, QUIET, heat } from "page/heat";
 import { crossings, profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { UNSEEN, between, degrees, display, inUnit, rms, significant, toPlace, unitText, withError } from "page/numbers";
+import { UNSEEN, beside, between, degrees, display, inUnit, rms, significant, toPlace, unitText, withError } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const LOW = 230; // px: height of curves below which no error stands under them, as its label has no room
 const AXES = 92; // px: what curves have above, between and below them
 const LATE = 10; // samples from the end of a run
-const SLOW = 6; // figures' rows of physical errors at most, beside one another
 
 /** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
  *  rises at once, and a picture of it would say nothing of how sure a size is. */
@@ -67,7 +66,7 @@ export class Figures {
     return {
       draw: (width, look) => staircase(width, look, this.ladder, this.apart() ? this.app.now : null),
       columns: () => ({ step: steps().map((s) => s.name), "held-out runs": steps().map((s) => s.heldout), "fitted runs": steps().map((s) => s.fit) }),
-      caption: () => `Error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${s.name} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
+      caption: () => `Error over all channels, in units of what sensor noise alone gives: ${steps().map((s) => `${stillOf(s.name)} ${rms(s.heldout ?? s.fit)}`).join(", ")}${this.ladder[0].heldout === null ? "" : " on runs held out"}.`,
     };
   }
 
@@ -90,7 +89,7 @@ export class Figures {
     return {
       draw: (width, look, room) => forest(width, look, rows.slice(0, Math.max(room ? fitting(room) : FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
       columns: () => Object.fromEntries(["parameter", "estimate", "se", "unit", "delta", "value", "low", "high"].map((k) => [{ delta: "smallest of interest", value: "in sizes of interest" }[k] ?? k, rows.map((r) => r[k])])),
-      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : "None of them is needed."}${rows.length > FIRST ? ` The likeliest of ${rows.length} are drawn.` : ""}`,
+      caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN || Math.abs(r.value) < 0.005 ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : `None of them ${diagnosis.verdict === "outside" ? "suffices" : "is needed"}.`}${rows.length > FIRST ? ` The likeliest of ${rows.length} sizes are drawn.` : ""}`,
     };
   }
 
@@ -132,8 +131,8 @@ export class Figures {
     const all = curves.map((c) => { const { record, name } = this.sizeOf(c.parameter), { factor, unit } = display(record); return { label: `${name} [${unitText(unit) || "1"}]`, xs: c.values.map((v) => v * factor), ys: c.heights, estimate: c.estimate * factor }; });
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
-      columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "fall of twice the log likelihood": all.flatMap((p) => p.ys) }),
-      caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again, as a fall of twice the log likelihood; below the dashed line lies the 95 % interval. ${curves.map((c) => this.sure(c)).join(" ")}`,
+      columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "misfit above the best": all.flatMap((p) => p.ys) }),
+      caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval. ${curves.map((c) => this.sure(c)).join(" ")}`,
     };
   }
 
@@ -151,7 +150,7 @@ export class Figures {
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),
-      columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "fall of twice the log likelihood": cells.map((c) => c[2]) }),
+      columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "misfit above the best": cells.map((c) => c[2]) }),
       caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter. The point is what fits best, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
@@ -241,7 +240,7 @@ export class Figures {
     const all = this.app.physical();
     return {
       draw: (width, look) => {
-        const shown = all.slice(0, SLOW).map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: `${v.value === undefined ? "" : `${significant(v.value, 2)} ${r.unit}`}` })) }));
+        const shown = all.map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: v.value === undefined ? "" : beside(significant(v.value, 2), r.unit) })) }));
         return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
       },
       columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
@@ -252,7 +251,7 @@ export class Figures {
   /** What a step of the search changed most, in the unit of a sensor. */
   missed(rows) {
     const known = rows.filter((r) => r.values.length > 1 && r.values.every((v) => v.value !== undefined)), most = known.reduce((a, b) => (a && a.values[0].times >= b.values[0].times ? a : b), null);
-    return most ? ` The ${most.channel} is missed by ${listed(most.values.map((v) => `${significant(v.value, 2)} ${most.unit} ${v.step}`))}.` : "";
+    return most ? ` The ${most.channel} is missed by ${listed(most.values.map((v) => `${beside(significant(v.value, 2), most.unit)} ${stillOf(v.step)}`))}.` : "";
   }
 
   /** What follows a change at once, where it is in sight. */

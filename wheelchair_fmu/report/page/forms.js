@@ -3,7 +3,7 @@
 import { h, symbols } from "page/dom";
 import { course, extent, svg } from "page/draw";
 import { significant, unitText } from "page/numbers";
-import { capital } from "page/words";
+import { capital, channelOf } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
 const ROLLING = /^(F_r|wheel_)/; // channels that may be logged as torques or as turning
@@ -57,7 +57,7 @@ export function columns(bench) {
     const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
     const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => (!devices || "used" in row.dataset) === there));
     return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, used.length ? table(heads, used) : null,
-      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}columns${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
+      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}column${rest.length > 1 ? "s" : ""}${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
   }));
 }
 
@@ -83,7 +83,7 @@ function columnRow(bench, header, place, given, options, record) {
   const rolls = () => { radius.hidden = !ROLLING.test(which.value); };
   const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
   const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
-  const derived = channel && !(channel in options) ? { [channel]: `${channel.replaceAll("_", " ")}, from which other signals are worked out` } : {};
+  const derived = channel && !(channel in options) ? { [channel]: `${channelOf(channel)}, from which other signals are worked out` } : {};
   const which = select(`channel of ${header}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
   rolls();

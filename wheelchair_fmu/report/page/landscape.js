@@ -4,18 +4,26 @@ import { broken, canvas, course, line, long, svg, text, ticked, ticks } from "pa
 
 const HIGH = 236;
 
+/** A curve's heights about its lowest, as far as it rises to `most` on either side: beyond that a search may have found another
+ *  model, which would say nothing of this one. Others are null. */
+export function rising(heights, most) {
+  const there = heights.map((v) => v ?? Infinity), least = there.indexOf(Math.min(...there)), out = heights.map(() => null);
+  for (const way of [-1, 1]) for (let i = least, on = true; on && i in heights; i += way) [out[i], on] = [heights[i], there[i] < most];
+  return out;
+}
+
 /** Curves of heights over sizes: [{label, xs, ys, estimate}], with the level below which 95 % lie; three abreast at most. */
 export function profiles(width, look, all, level) {
   const abreast = Math.max(1, Math.min(all.length, 3, Math.floor(width / 240))), wide = width / abreast, most = 2.4 * level, drawn = [];
   all.forEach((p, n) => {
     const x0 = (n % abreast) * wide + 46, y0 = Math.floor(n / abreast) * (HIGH + 10) + 10, w = Math.min(wide - 60, 460), hh = HIGH - 70;
-    const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - v / most), curve = smooth(p.xs.map(across), p.ys.map((v) => (v === null ? NaN : down(v))));
+    const from = p.xs[0], to = p.xs.at(-1), across = (v) => x0 + (w * (v - from)) / (to - from || 1), down = (v) => y0 + hh * (1 - v / most), curve = smooth(p.xs.map(across), rising(p.ys, most).map((v) => (v === null ? NaN : down(v))));
     for (const [v, words] of ticked(ticks(0, most, 4))) drawn.push(line(x0, down(v), x0 + w, down(v), look.line), text(x0 - 6, down(v) + 4, words, look.faint, "end", { "font-size": 11 }));
     for (const [v, words] of ticked(ticks(from, to, Math.max(3, w / 80)))) drawn.push(text(across(v), y0 + hh + 16, words, look.faint, "middle", { "font-size": 11 }));
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
     drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : Math.min(y, y0 + hh))), look.accent, { "stroke-width": 2 }));
     broken(p.label, wide - 12, look, 12, 400, 2).forEach((t, k) => drawn.push(text(x0 + w / 2, y0 + hh + 34 + 14 * k, t, look.ink, "middle")));
-    if (n % abreast === 0) drawn.push(text(0, 0, "fall of 2 ln L", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
+    if (n % abreast === 0) drawn.push(text(0, 0, "misfit, above the best", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
 }

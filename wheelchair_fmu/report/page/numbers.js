@@ -8,6 +8,9 @@ const UNITS = {
 /** A unit's name in print; "1" is none. */
 export const unitText = (unit) => UNITS[unit] ?? unit;
 
+/** A number, as it is written, with its unit; degrees stand close, and what is not known has none. */
+export const beside = (text, unit) => (text === "–" ? text : `${text}${unit && unit !== "°" ? " " : ""}${unit}`);
+
 /** How a quantity is shown: {unit, factor} from SI. */
 export const display = (record) => record?.display?.[0] ?? { unit: record?.unit ?? "1", factor: 1 };
 
@@ -44,7 +47,7 @@ export function withError(estimate, se, record) {
 }
 
 /** A size, or zero where a fit has left next to nothing of it. */
-export const settled = (value, record) => (record.delta && Math.abs(value) < 1e-6 * record.delta ? 0 : value);
+export const settled = (value, record) => (Math.abs(value) < 1e-6 * (record.delta || Math.abs(record.default ?? 0)) ? 0 : value);
 
 /** A value in the unit it is shown in. */
 export function inUnit(value, record, digits = 3) {

@@ -9,6 +9,7 @@ import { rms } from "page/numbers";
 import { capital, channelOf, runOf } from "page/words";
 
 const SLIGHT = 1.5; // error of a channel, noise = 1: below that, its curves hardly part to the eye
+const LEAST = 0.6; // of an axis of mean errors either side of zero, so that what is next to nothing looks it
 const HALF = 0.25; // s either side of a mean
 
 /** Means of a series over half a second. */
@@ -73,7 +74,17 @@ export class Story {
   async reveal() {
     const { choice, app } = this, { run } = app.shown, values = this.campaign.diagnosis.ranking.find((r) => r.effect === choice?.effect)?.values;
     const after = values ? await app.pool.later({ run, values, aside: true }).catch(() => null) : null;
-    if (choice === this.choice && run === app.shown.run) this.guessed.replaceChildren(...(after ? this.curves(app.before(), after, "with this guess") : []));
+    if (choice !== this.choice || run !== app.shown.run) return;
+    this.revealed = { choice, run, after };
+    this.drawGuess();
+  }
+
+  /** The curve of a guess, again where the run, the width or the theme is another one. */
+  drawGuess() {
+    const { choice, app, revealed } = this;
+    if (!choice) return;
+    if (revealed?.choice !== choice || revealed.run !== app.shown.run) this.reveal();
+    else this.guessed.replaceChildren(...(revealed.after ? this.curves(app.before(), revealed.after, "with this guess") : []));
   }
 
   /** What stands beside the last screen: the missing force, where it is drawn; commands can be copied. */
@@ -93,7 +104,7 @@ export class Story {
     const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), told = this.told("put").effect, first = known.find((r) => effects.includes(r.effect)) ?? known.find((r) => r.effect === told) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
-    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.parting = !this.isIn() && same(this.last.values, begins.values); this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
@@ -109,6 +120,7 @@ export class Story {
     const kind = this.screens[this.at].dataset.kind, stage = this.stages[kind];
     if (kind === "put") return this.drawPut(rested);
     if (!rested) return;
+    if (kind === "guess") this.drawGuess();
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
     if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
     if (kind === "rivals") {
@@ -154,7 +166,7 @@ export class Story {
     const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = this.room(this.stages[this.screens[this.at].dataset.kind], 760);
     const shown = there ? after : before, slight = Math.sqrt(before.squares[channel] / before.counts[channel]) < SLIGHT;
     const mean = (result) => smooth(run.time, result.errors[channel]), was = there ? [["before", mean(before), "before", 1.2, [3, 3]]] : [];
-    const means = slight ? [{ label: "error ÷ noise", lines: [...was, ["error", mean(shown), "error", 1.5]], height: 90 }] : [], [low, high] = extent(...means.flatMap((m) => m.lines.map((l) => l[1]))), most = Math.max(-low, high);
+    const means = slight ? [{ label: "error ÷ noise", lines: [...was, ["error", mean(shown), "error", 1.5]], height: 90 }] : [], [low, high] = extent(...means.flatMap((m) => m.lines.map((l) => l[1]))), most = Math.max(LEAST, -low, high);
     for (const m of means) m.reach = [-most, most];
     const below = slight ? ` Below it, the mean error over half a second${there ? ", before (dashed) and now" : ""}.` : "";
     return [lines(width, look(), run.time, [run.time[0], run.time.at(-1)], [{ label: labelled(record), lines: drawn, edges, height: 190 }, ...means]), h("p", { class: "caption" }, `${capital(channelOf(channel))} in ${runOf(run)}. The band holds 95 of 100 readings where the model is right.${below}`)];

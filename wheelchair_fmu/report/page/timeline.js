@@ -2,7 +2,7 @@
 
 import { h, write } from "page/dom";
 import { look, present, ticked } from "page/draw";
-import { display, toPlace, unitText } from "page/numbers";
+import { beside, display, toPlace, unitText } from "page/numbers";
 import { channelOf } from "page/words";
 
 const AXIS = 62; // px left of every chart, so that their times stand above one another
@@ -74,7 +74,7 @@ export class Timeline {
     [this.scrub.min, this.scrub.max] = [this.time[0], this.time.at(-1)];
     this.drawn.clear();
     this.cells = Object.keys(run.channels).map((name, k) => {
-      const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), read = (v) => `${toPlace(v * factor, (run.noise.sd[k] * factor) / 3)} ${unitText(unit)}`;
+      const { factor, unit } = display(this.campaign.channels.find((c) => c.name === name)), read = (v) => beside(toPlace(v * factor, (run.noise.sd[k] * factor) / 3), unitText(unit));
       return { name, read, measured: h("span"), model: h("span"), error: h("span") };
     });
     this.readings.replaceChildren(h("caption", {}, "What every channel reads at the cursor"),

@@ -12,6 +12,9 @@ export function stepOf(campaign, step) {
   return step.startsWith("+") ? `${added[0]?.step === step ? "with" : "and"} ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
 }
 
+/** The same in a list of several, where what was put in before is still in. */
+export const stillOf = (name) => (name.startsWith("and ") ? `with ${name.slice(4)} as well` : name);
+
 /** The last part of a parameter's name in words; a symbol with an index stays one. */
 export function shortOf(name) {
   const own = name.split(".").at(-1);
@@ -19,7 +22,7 @@ export function shortOf(name) {
 }
 
 export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
-export const channelOf = (name) => name.replace("wheel_speed_l", "left wheel speed").replace("wheel_speed_r", "right wheel speed").replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
+export const channelOf = (name) => name.replace(/^wheel_(speed|angle)_([lr])$/, (_, what, side) => `${side === "l" ? "left" : "right"} wheel ${what}`).replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
 
 /** A name in a sentence: one that is written from right to left leaves the order of the words about it as it is. */
 export const isolated = (name) => (/[\p{Script=Arabic}\p{Script=Hebrew}\p{Script=Syriac}\p{Script=Thaana}]/u.test(name) ? `\u2068${name}\u2069` : name);

@@ -188,8 +188,10 @@ class Workbench {
       : job.state === "done" ? `${capital(DONE[job.kind] ?? job.kind)}, in ${whole(seconds)}.` : job.state === "cancelled" ? "Cancelled; nothing was changed." : `Failed: ${job.lines.at(-1) ?? "nothing was said"}`;
     const said = running ? job.lines.at(-1) ?? "starting" : words.textContent;
     if (byId("said").textContent !== said) byId("said").textContent = said;
-    const found = job.kind === "try" && job.state === "done" ? job.result : null;
-    if (job.kind === "try") byId("tried").replaceChildren(...(found ? this.triedWords(found) : [running ? "It is being fitted …" : ""]));
+    const trying = job.kind === "try", { at } = this.state.history;
+    if (trying && running) this.triedAt = at; // what was tried is told of this model alone
+    const found = trying && job.state === "done" && this.triedAt === at ? job.result : null;
+    byId("tried").replaceChildren(...(found ? this.triedWords(found) : [trying && running ? "It is being fitted …" : ""]));
   }
 
   /** What an effect that was tried does to the error, and the way to keep it. */
