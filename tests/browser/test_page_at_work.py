@@ -32,7 +32,8 @@ def test_five_screens_go_from_the_error_to_what_to_do(reader):
     assert "Yes" in page.inner_text(".answer")
     page.wait_for_selector(".screen:visible .curve svg")  # and by its curve
     assert "with this guess" in page.text_content(".screen:visible .curve svg")
-    inks = "[...new Set([...document.querySelectorAll('.screen:not([hidden]) .curve text')].map((t) => t.getAttribute('fill')))]"
+    letters = "[...document.querySelectorAll('.screen:not([hidden]) .curve text')]"
+    inks = f"[...new Set({letters}.map((t) => t.getAttribute('fill')))]"
     light = page.evaluate(inks)
     page.click("#theme")  # and the curve follows the theme
     page.wait_for_function(f"(light) => !{inks}.some((ink) => light.includes(ink))", arg=light)
