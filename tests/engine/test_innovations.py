@@ -49,6 +49,24 @@ def test_innovations_are_generalised_least_squares(colour):
     assert logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
 
 
+@pytest.mark.parametrize("colour", [0.0, 0.8])
+@pytest.mark.parametrize("nx", [3, 9, 20])
+def test_signals_side_by_side_are_whitened_as_each_alone(colour, nx):
+    """However many they are, and however long the filter's rows are."""
+    rng = np.random.default_rng(2)
+    n, nq, nz, m = 12, 2, 3, 31
+    run = drawn(rng, n, nx, nz, 0.1)
+    noise = Noise(np.array([0.3, 0.5]), np.full(nq, colour), np.array([0.2, 0.4, 0.1]), np.full(nz, colour), 0.01 * np.eye(nx))
+    signals, none = rng.normal(size=(n, nz, m)), np.zeros(nx)
+    present = np.ones((n, nz), bool)
+    present[4, 1] = False
+    whitener = Whitener(run, [0, 1, 2], noise, present)
+    together = whitener(signals, none)
+    for j in range(m):
+        alone = whitener(signals[:, :, [j]], none)[:, :, 0]
+        np.testing.assert_allclose(together[present][:, j], alone[present], rtol=1e-9, atol=1e-9)
+
+
 def test_forces_that_nobody_recorded_are_part_of_the_covariance():
     """A disturbance is a coloured push on a mixture of wheels, beside the noise of the record."""
     rng = np.random.default_rng(4)

@@ -43,3 +43,13 @@ def test_errors_of_pushes_that_are_found_are_the_likeliest(swinging):
         least = unlikely(1.0)
         assert unlikely(0.9) > least and unlikely(1.1) > least
         assert unlikely(0.0) > least + 10
+
+
+def test_innovations_elsewhere_do_not_need_the_run_without_errors_of_its_pushes(swinging):
+    """Which is simulated only where somebody keeps what comes out."""
+    campaign, likelihood = swinging
+    felt, there = likelihood.evidence(campaign.runs, INERTIA, tune_start=TUNED), {**INERTIA, "resistance.f_r": 0.013}
+    entire, part = likelihood.resimulated(felt, there), likelihood.resimulated(felt, there, whole=False)
+    np.testing.assert_array_equal(part.r, entire.r)
+    assert part.rms != entire.rms
+    assert likelihood.whole(part, there).rms == entire.rms

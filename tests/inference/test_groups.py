@@ -95,7 +95,7 @@ def test_a_member_is_tried_beside_those_that_it_acts_through():
         records={p.name: p for effect in (LEAN, RUBS) for p in effect.owned},
         unfitted=lambda names: np.zeros(len(names)),
     )
-    product = Some(resimulated=lambda known, at: Some(r=-at.get(ANGLE_NAME, 0.0) * at.get(DRAG_NAME, 0.0) * w))
+    product = Some(resimulated=lambda known, at, whole: Some(r=-at.get(ANGLE_NAME, 0.0) * at.get(DRAG_NAME, 0.0) * w))
     known = Some(r=0 * w)
     (S,) = _secants(factory, product, known, {}, TOGETHER)
     np.testing.assert_allclose(S, np.stack([0 * w, ANGLE.smallest_interesting * w], axis=1))

@@ -56,7 +56,9 @@ def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkey
     tries = [[*(calibrated.values[n] for n in CALIBRATED), r, left] for r, left in product(sizes, sizes)]
     calls = []
     again = likelihood.resimulated
-    monkeypatch.setattr(likelihood, "resimulated", lambda e, values: calls.append(len(e.runs)) or again(e, values))
+    monkeypatch.setattr(
+        likelihood, "resimulated", lambda e, *of, whole: calls.append(len(e.runs)) or again(e, *of, whole=whole)
+    )
     quick = most_promising(likelihood, known, names, tries, 2, known.r)
     glances, calls[:] = sum(calls), []
     monkeypatch.setattr(starts, "GLANCED", len(known.runs))

@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
 from ..inference.decision.final import final
@@ -32,7 +34,8 @@ def searched(
     """The diagnosis, and the story that `diagnose --json` writes."""
     found = diagnose(measured, chair, library(), progress=say, experiments=experiments(), fixed=fixed)
     terms = {p.name: p for e in library().values() for p in e.owned}
-    return found, {**story(found), "missing": missing(found), "final": final(found, terms)}
+    with threadpool_limits(limits=1):  # as in diagnose: BLAS threads would spin for seconds
+        return found, {**story(found), "missing": missing(found), "final": final(found, terms)}
 
 
 def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:

@@ -227,7 +227,7 @@ class Whitener:
         """
         out = np.asarray(signals, float, order="C") if in_place else np.array(signals, float, order="C")
         m = out.shape[2]
-        mean, work = np.ascontiguousarray(start_mean, float), np.empty(2 * self._gain.shape[2] * m)
+        mean = np.ascontiguousarray(start_mean, float)
         _library().wc_whiten(
             ctypes.byref(self._filter),
             ctypes.c_long(len(out)),
@@ -236,7 +236,6 @@ class Whitener:
             _of(mean),
             ctypes.c_int(m),
             _of(out),
-            _of(work),
         )
         out[~self.present, 0] = np.nan
         return out

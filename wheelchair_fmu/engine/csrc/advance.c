@@ -15,8 +15,10 @@ typedef struct {
     const double *at; /* times of rows wanted inside, ascending */
     long wanted;
     double *rows;
-    /* told of each accepted step from `done` on, before x changes */
-    void (*accepted)(void *context, const double *x, const double *wa, const double *wb, double done, double h);
+    /* takes steps in the place of the kernel's, which tells less of them: x1 and its error */
+    void (*taken)(void *context, const double *x, const double *wa, const double *wb, double h, double *x1, double *e);
+    /* told of each of these that is accepted, from `done` on */
+    void (*accepted)(void *context, const double *x, const double *wa, double done, double h);
     void *context;
     int unseen; /* nobody looks at the states before the end */
 } stretch;
@@ -85,7 +87,8 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
         }
         const double *arg[] = {x, wa, wb, &now, p};
         double *res[] = {x1, e, d2, d3};
-        step(arg, res, 0, 0, 0);
+        if (s->taken) s->taken(s->context, x, wa, wb, now, x1, e);
+        else step(arg, res, 0, 0, 0);
         double error = error_norm(k, tolerance, mass, x, x1, e);
         if (!(error <= 1) && s->unseen && !mass) {
             /* No step carries the error of an algebraic row on, so it is enough to put these rows right at the end. Where
@@ -98,8 +101,8 @@ static wc_status go(const wc_kernel *k, const double *p, double tolerance, stret
         }
         double factor = error == 0 ? 6 : 0.9 / sqrt(sqrt(error));
         if (error <= 1) {
-            fill_rows(k, s, done, now, x, x1, d2, d3);
-            if (s->accepted) s->accepted(s->context, x, wa, wb, done, now);
+            if (s->taken) s->accepted(s->context, x, wa, done, now);
+            else fill_rows(k, s, done, now, x, x1, d2, d3);
             for (int i = 0; i < k->states; i++) x[i] = fabs(x1[i]) < WC_NOTHING ? 0 : x1[i];
             done = now == left ? s->length : done + now;
             if (steps) ++*steps;

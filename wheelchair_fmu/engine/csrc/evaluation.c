@@ -82,8 +82,7 @@ void wc_evaluation_room(const wc_recording *s, wc_evaluation *e, double *kept_in
     space kept = {kept_in, 0}, work = {work_in, 0};
     long n = s->n, nx = states(s), all = readings(s), u = uncertain(s), l = s->constants, nd = s->noise.nd, nq = s->noise.nq;
     long size = nx + nq + nd + s->noise.nz, busy = wc_tangent_work(s->kernel, s->tangent, s->active);
-    if (busy < 2 * size * (u + 1)) busy = 2 * size * (u + 1); /* of the filter */
-    if (busy < n) busy = n;                                   /* of one series */
+    if (busy < n) busy = n; /* of one series */
     double **each[] = {&e->path, &e->told, &e->spread, &e->measured, &e->added, &e->gain, &e->scale, &e->offset,
                        &e->by_start, &e->slopes, &e->constant, &e->less, &e->as_push};
     long sizes[] = {n * nd, 2, all, all, all, all * size, all, nx + l, all * u, all * u, all * l, l * l, nq * nd};
@@ -356,7 +355,7 @@ static void marginal(const wc_recording *s, const wc_evaluation *e, int m, doubl
 static void innovate(const wc_recording *s, wc_evaluation *e, const double *measured, const double *foretold, double *r) {
     int l = s->constants, nx = states(s);
     for (long at = 0; at < readings(s); at++) e->innovations[at] = measured[at] - foretold[at];
-    wc_whiten(&e->f, s->n, e->gain, e->scale, e->offset, 1, e->innovations, e->busy);
+    wc_whiten(&e->f, s->n, e->gain, e->scale, e->offset, 1, e->innovations);
     memcpy(r, e->innovations, sizeof(double) * (size_t)readings(s));
     for (long at = 0; at < readings(s); at++) {
         for (int j = 0; j < l; j++) r[at] -= e->constant[at * l + j] * e->offset[nx + j];
@@ -441,7 +440,7 @@ static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e
     find_slopes(s, e);
     memcpy(e->slopes, e->by_start, sizeof(double) * (size_t)(readings(s) * u));
     memset(e->none, 0, sizeof(double) * (size_t)(nx * nx));
-    wc_whiten(&e->f, s->n, e->gain, e->scale, e->none, u, e->slopes, e->busy);
+    wc_whiten(&e->f, s->n, e->gain, e->scale, e->none, u, e->slopes);
     if (!find_constants(s, e)) return WC_UNBOUNDED;
     marginal(s, e, u, e->slopes);
     innovate(s, e, e->measured, e->own.foretold, e->own.r);

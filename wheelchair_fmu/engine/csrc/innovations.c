@@ -11,6 +11,7 @@
  * The filter's own state is s = (e, q, a), of size nx + nq + nz.
  */
 #include "innovations.h"
+#include "rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,157 +28,267 @@ static inline void add_row(int m, double factor, const double *restrict from, do
     for (int c = 0; c < m; c++) to[c] += factor * from[c];
 }
 
-/* to = F from, where both have m columns: F takes s from sample i to i+1, but for fresh noise. */
-static inline void carry(const filter *f, long i, int m, const double *restrict from, double *restrict to) {
-    int nx = f->nx, nq = f->nq;
-    memset(to, 0, sizeof(double) * (size_t)((nx + nq + f->nz) * m));
-    for (int r = 0; r < nx; r++) {
-        for (int k = 0; k < nx; k++) add_row(m, f->A[(i * nx + r) * nx + k], from + k * m, to + r * m);
-        for (int q = 0; q < nq; q++) {
-            long at = (i * nx + r) * nq + q;
-            add_row(m, f->B[at] + f->C[at] * f->input_phi[i * nq + q], from + (nx + q) * m, to + r * m);
-        }
-    }
-    for (int q = 0; q < nq; q++) add_row(m, f->input_phi[i * nq + q], from + (nx + q) * m, to + (nx + q) * m);
-    for (int z = nx + nq; z < nx + nq + f->nz; z++) {
-        add_row(m, f->phi[i * f->nz + z - nx - nq], from + z * m, to + z * m);
-    }
-}
-
-static void transpose(int n, const double *from, double *to) {
-    for (int r = 0; r < n; r++) {
-        for (int c = 0; c < n; c++) to[c * n + r] = from[r * n + c];
-    }
-}
-
 static inline double common(const filter *f, int q, int p) { return f->common ? f->common[q * f->nq + p] : q == p; }
 
-/* Adds to P, at sample i+1, what inputs q and p bring that have this covariance. */
-static void fresh(const filter *f, long i, int q, int p, double covariance, double *P) {
-    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
-    double G[WC_MOST] = {0};
-    for (int r = 0; r < nx; r++) G[r] = f->C[(i * nx + r) * nq + p];
-    G[nx + p] = 1;
-    for (int r = 0; r < nx; r++) add_row(nx + nq, covariance * f->C[(i * nx + r) * nq + q], G, P + r * n);
-    add_row(nx + nq, covariance, G, P + (nx + q) * n);
+/* Does a reading's own noise last from one sample to the next? Where it does not, it is no part of s. */
+static int lasts(const filter *f, long n) {
+    for (long at = 0; at < (n - 1) * f->nz; at++) if (f->phi[at] != 0) return 1;
+    return 0;
 }
 
-/* P at sample i+1 from P at i. */
-static void predict(const filter *f, long i, double *P) {
-    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
-    double T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST];
-    carry(f, i, n, P, T);
-    transpose(n, T, U);
-    carry(f, i, n, U, P); /* (F P Fᵀ)ᵀ, which is symmetric */
-    for (int q = 0; q < nq; q++) { /* fresh noise of the inputs at i+1 */
+/* Of input or reading k of s, the share that stays from sample i to i+1. */
+static inline double stays(const filter *f, long i, int k) {
+    return k < f->nx + f->nq ? f->input_phi[i * f->nq + k - f->nx] : f->phi[i * f->nz + k - f->nx - f->nq];
+}
+
+/* F of the states (nx rows of nx + nq): what takes them from sample i to i+1, but for fresh noise. */
+static inline void find_motion(const filter *f, long i, double *F) {
+    int nx = f->nx, nq = f->nq;
+    for (int r = 0; r < nx; r++, F += nx + nq) {
+        const double *B = f->B + (i * nx + r) * nq, *C = f->C + (i * nx + r) * nq;
+        memcpy(F, f->A + (i * nx + r) * nx, sizeof(double) * (size_t)nx);
+        for (int q = 0; q < nq; q++) F[nx + q] = B[q] + C[q] * f->input_phi[i * nq + q];
+    }
+}
+
+/* --- covariances --- */
+
+/* The covariance of s, in rows of whole lanes. */
+typedef struct {
+    int size, stride, lasting; /* is the readings' own noise in it? */
+    double P[WC_MOST * WC_MOST];
+} covariance;
+
+static void begin(const filter *f, long n, covariance *c) {
+    int nx = f->nx, nq = f->nq, own = nx + nq;
+    c->lasting = lasts(f, n);
+    c->size = own + (c->lasting ? f->nz : 0);
+    c->stride = padded(c->size);
+    memset(c->P, 0, sizeof(double) * (size_t)(c->size * c->stride));
+    for (int r = 0; r < nx; r++) memcpy(c->P + r * c->stride, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
+    for (int q = 0; q < nq; q++) {
+        for (int p = 0; p < nq; p++) c->P[(nx + q) * c->stride + nx + p] = common(f, q, p) * f->input_sd[q] * f->input_sd[p];
+    }
+    for (int z = 0; z < c->size - own; z++) c->P[(own + z) * (c->stride + 1)] = f->sd[z] * f->sd[z];
+}
+
+/* rows: what fresh noise of each input at i+1 (nq) shares with s there, through the states and in itself. */
+static void find_fresh(const filter *f, long i, int stride, double *rows) {
+    int nx = f->nx, nq = f->nq;
+    const double *phi = f->input_phi + i * nq, *sd = f->input_sd + (i + 1) * nq, *C = f->C + i * nx * nq;
+    memset(rows, 0, sizeof(double) * (size_t)(nq * stride));
+    for (int q = 0; q < nq; q++) {
         for (int p = 0; p < nq; p++) {
             double factor = common(f, q, p);
             if (factor == 0) continue;
-            const double *phi = f->input_phi + i * nq, *sd = f->input_sd + (i + 1) * nq;
-            fresh(f, i, q, p, factor * (1 - phi[q] * phi[p]) * sd[q] * sd[p], P);
+            double shared = factor * (1 - phi[q] * phi[p]) * sd[q] * sd[p];
+            for (int r = 0; r < nx; r++) rows[q * stride + r] += shared * C[r * nq + p];
+            rows[q * stride + nx + p] += shared;
         }
-    }
-    for (int z = 0; z < f->nz; z++) {
-        int k = nx + nq + z;
-        double phi = f->phi[i * f->nz + z];
-        P[k * n + k] += (1 - phi * phi) * f->sd[z] * f->sd[z];
     }
 }
 
-static void begin(const filter *f, double *P) {
-    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
-    memset(P, 0, sizeof(double) * (size_t)(n * n));
-    for (int r = 0; r < nx; r++) memcpy(P + r * n, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
-    for (int q = 0; q < nq; q++) {
-        for (int p = 0; p < nq; p++) P[(nx + q) * n + nx + p] = common(f, q, p) * f->input_sd[q] * f->input_sd[p];
+/* P at sample i+1 from P at i: F P Fᵀ, of which the states' own part is all that takes a second product, and fresh noise. */
+static void predict(const filter *f, long i, covariance *c) {
+    int stride = c->stride, nx = f->nx, nq = f->nq, both = nx + nq, size = c->size, short_stride = padded(nx);
+    double F[WC_MOST * WC_MOST], T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST], fresh[WC_MOST * WC_MOST], *P = c->P;
+    find_motion(f, i, F);
+    memset(T, 0, sizeof(double) * (size_t)(nx * stride));
+    for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, P, stride, F + r * both, 1}, T + r * stride);
+    memset(U, 0, sizeof(double) * (size_t)(both * short_stride));
+    for (int k = 0; k < both; k++) {
+        for (int r = 0; r < nx; r++) U[k * short_stride + r] = T[r * stride + k];
     }
-    for (int z = 0; z < f->nz; z++) P[(nx + nq + z) * (n + 1)] = f->sd[z] * f->sd[z];
+    find_fresh(f, i, stride, fresh);
+    for (int k = nx; k < size; k++) {
+        double stay = stays(f, i, k);
+        for (int j = nx; j < size; j++) P[k * stride + j] *= stay * stays(f, i, j);
+        for (int r = 0; r < nx; r++) P[r * stride + k] = stay * T[r * stride + k];
+        if (k < both) add_row_of(stride, 1, fresh + (k - nx) * stride, P + k * stride);
+        else P[k * stride + k] += (1 - stay * stay) * f->sd[k - both] * f->sd[k - both];
+    }
+    for (int r = 0; r < nx; r++) {
+        double sum[WC_MOST] = {0};
+        add_rows(short_stride, 1, &(weighed_rows){both, U, short_stride, F + r * both, 1}, sum);
+        memcpy(P + r * stride, sum, sizeof(double) * (size_t)nx);
+        add_rows(stride, 1, &(weighed_rows){nq, fresh, stride, f->C + (i * nx + r) * nq, 1}, P + r * stride);
+        for (int k = nx; k < size; k++) P[k * stride + r] = P[r * stride + k];
+    }
 }
 
 /* Variance of reading z at sample i, and Ph, its covariance with s. */
-static double expect(const filter *f, long i, int z, const double *P, double *Ph) {
-    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz, own = nx + nq + z;
+static double expect(const filter *f, long i, int z, const covariance *c, double *Ph) {
+    int stride = c->stride, nx = f->nx, nq = f->nq, own = nx + nq + z;
     const double *H = f->H + (i * f->nz + z) * nx, *D = f->D + (i * f->nz + z) * nq;
-    memcpy(Ph, P + own * n, sizeof(double) * (size_t)n);
-    for (int k = 0; k < nx; k++) add_row(n, H[k], P + k * n, Ph);
-    for (int q = 0; q < nq; q++) add_row(n, D[q], P + (nx + q) * n, Ph);
-    double variance = Ph[own];
+    if (c->lasting) memcpy(Ph, c->P + own * stride, sizeof(double) * (size_t)stride);
+    else memset(Ph, 0, sizeof(double) * (size_t)stride);
+    add_rows(stride, 1, &(weighed_rows){nx, c->P, stride, H, 1}, Ph);
+    add_rows(stride, 1, &(weighed_rows){nq, c->P + nx * stride, stride, D, 1}, Ph);
+    double variance = c->lasting ? Ph[own] : f->sd[z] * f->sd[z];
     for (int k = 0; k < nx; k++) variance += H[k] * Ph[k];
     for (int q = 0; q < nq; q++) variance += D[q] * Ph[nx + q];
     return variance;
 }
 
+/* The same, and P once the reading is known. */
+static double hear(const filter *f, long i, int z, covariance *c, double *Ph) {
+    double variance = expect(f, i, z, c, Ph);
+    for (int r = 0; r < c->size; r++) add_row_of(c->stride, -(Ph[r] / variance), Ph, c->P + r * c->stride);
+    return variance;
+}
+
 double wc_design(const filter *f, long n, double *gain, double *scale) {
-    int size = f->nx + f->nq + f->nz;
-    double P[WC_MOST * WC_MOST], Ph[WC_MOST], total = 0;
+    int both = f->nx + f->nq, size = both + f->nz;
+    double Ph[WC_MOST], total = 0;
+    covariance c;
     if (size > WC_MOST) return NAN;
-    begin(f, P);
+    begin(f, n, &c);
+    memset(gain, 0, sizeof(double) * (size_t)(n * f->nz * size));
     for (long i = 0; i < n; i++) {
-        if (i) predict(f, i - 1, P);
+        if (i) predict(f, i - 1, &c);
         for (int z = 0; z < f->nz; z++) {
             double *K = gain + (i * f->nz + z) * size;
             scale[i * f->nz + z] = 0;
             if (!f->present[i * f->nz + z]) continue;
-            double variance = expect(f, i, z, P, Ph);
+            double variance = hear(f, i, z, &c, Ph);
             scale[i * f->nz + z] = 1 / sqrt(variance);
             total += log(variance);
-            for (int r = 0; r < size; r++) K[r] = Ph[r] / variance;
-            for (int r = 0; r < size; r++) add_row(size, -K[r], Ph, P + r * size);
+            for (int r = 0; r < c.size; r++) K[r] = Ph[r] / variance;
+            if (!c.lasting) K[both + z] = f->sd[z] * f->sd[z] / variance;
         }
     }
     return total;
 }
 
-static inline void whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
-                          double *signals, double *work) {
-    int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
-    double *S = work, *next = work + size * m;
-    memset(S, 0, sizeof(double) * (size_t)(size * m));
-    for (int r = 0; r < nx; r++) S[r * m] = start_mean[r];
+/* --- signals --- */
+
+/* s of some signals side by side, in rows of whole lanes, one sample on. */
+static void carry(const filter *f, long i, int lasting, const double *S, double *next, int stride) {
+    int nx = f->nx, nq = f->nq, both = nx + nq, size = both + (lasting ? f->nz : 0);
+    double F[WC_MOST * WC_MOST];
+    find_motion(f, i, F);
+    memset(next, 0, sizeof(double) * (size_t)(size * stride));
+    for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, S, stride, F + r * both, 1}, next + r * stride);
+    for (int k = nx; k < size; k++) {
+        double stay = stays(f, i, k);
+        add_row_of(stride, stay, S + k * stride, next + k * stride);
+    }
+}
+
+/* What is new in a reading of these signals, given s, which it then corrects. */
+static void correct(const filter *f, long at, int lasting, const double *gain, double *S, double *signal, int stride) {
+    int nx = f->nx, nq = f->nq, own = nx + nq + (int)(at % f->nz), size = nx + nq + (lasting ? f->nz : 0);
+    add_rows(stride, -1, &(weighed_rows){nx, S, stride, f->H + at * nx, 1}, signal);
+    add_rows(stride, -1, &(weighed_rows){nq, S + nx * stride, stride, f->D + at * nq, 1}, signal);
+    if (lasting) add_row_of(stride, -1, S + own * stride, signal);
+    for (int r = 0; r < size; r++) add_row_of(stride, gain[r], signal, S + r * stride);
+}
+
+/* Whitens `some` of the m signals, the first of which is `signals`; start_mean is of this one, if it is the first of all. */
+static void whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m, int some,
+                   double *signals) {
+    int stride = padded(some), nx = f->nx, nz = f->nz, size = nx + f->nq + nz, lasting = lasts(f, n);
+    double one[WC_MOST * LANES * LANE], other[WC_MOST * LANES * LANE], *S = one, *next = other, signal[LANES * LANE] = {0};
+    memset(S, 0, sizeof(double) * (size_t)(size * stride));
+    for (int r = 0; start_mean && r < nx; r++) S[r * stride] = start_mean[r];
     for (long i = 0; i < n; i++) {
         if (i) {
-            carry(f, i - 1, m, S, next);
+            carry(f, i - 1, lasting, S, next, stride);
             double *kept = S;
             S = next;
             next = kept;
         }
-        for (int z = 0; z < nz; z++) {
-            long at = i * nz + z;
-            double *signal = signals + at * m;
+        for (long at = i * nz; at < (i + 1) * nz; at++) {
+            double *to = signals + at * m;
             if (!f->present[at]) {
-                memset(signal, 0, sizeof(double) * (size_t)m);
+                memset(to, 0, sizeof(double) * (size_t)some);
                 continue;
             }
-            for (int k = 0; k < nx; k++) add_row(m, -f->H[at * nx + k], S + k * m, signal);
-            for (int q = 0; q < nq; q++) add_row(m, -f->D[at * nq + q], S + (nx + q) * m, signal);
-            add_row(m, -1, S + (nx + nq + z) * m, signal);
-            for (int r = 0; r < size; r++) add_row(m, gain[at * size + r], signal, S + r * m);
-            for (int j = 0; j < m; j++) signal[j] *= scale[at];
+            memcpy(signal, to, sizeof(double) * (size_t)some);
+            correct(f, at, lasting, gain + at * size, S, signal, stride);
+            for (int j = 0; j < some; j++) to[j] = signal[j] * scale[at];
         }
     }
 }
 
-double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual) {
-    int nx = f->nx, nq = f->nq, nz = f->nz, size = nx + nq + nz;
-    double P[WC_MOST * WC_MOST], Ph[WC_MOST], s[WC_MOST] = {0}, next[WC_MOST], total = 0;
-    if (size > WC_MOST) return NAN;
-    begin(f, P);
-    memcpy(s, start_mean, sizeof(double) * (size_t)nx);
+/* s of one signal, one sample on. */
+static void carry_one(const filter *f, long i, int lasting, const double *s, double *next) {
+    int nx = f->nx, nq = f->nq, size = nx + nq + (lasting ? f->nz : 0);
+    double moved[WC_MOST];
+    for (int k = nx; k < size; k++) next[k] = stays(f, i, k) * s[k];
+    for (int q = 0; q < nq; q++) moved[q] = s[nx + q];
+    for (int r = 0; r < nx; r++) {
+        const double *A = f->A + (i * nx + r) * nx, *B = f->B + (i * nx + r) * nq, *C = f->C + (i * nx + r) * nq;
+        double sum = 0;
+        for (int k = 0; k < nx; k++) sum += A[k] * s[k];
+        for (int q = 0; q < nq; q++) sum += B[q] * moved[q] + C[q] * next[nx + q];
+        next[r] = sum;
+    }
+}
+
+/* What a reading is expected to be. */
+static double expected(const filter *f, long at, int lasting, const double *s) {
+    int nx = f->nx, nq = f->nq;
+    double sum = lasting ? s[nx + nq + at % f->nz] : 0;
+    for (int k = 0; k < nx; k++) sum += f->H[at * nx + k] * s[k];
+    for (int q = 0; q < nq; q++) sum += f->D[at * nq + q] * s[nx + q];
+    return sum;
+}
+
+/* One signal, which is what is most asked for. */
+static void whiten_one(const filter *f, long n, const double *gain, const double *scale, const double *start_mean,
+                       double *signal) {
+    int nz = f->nz, all = f->nx + f->nq + nz, lasting = lasts(f, n), size = lasting ? all : all - nz;
+    double one[WC_MOST] = {0}, other[WC_MOST], *s = one, *next = other;
+    memcpy(s, start_mean, sizeof(double) * (size_t)f->nx);
     for (long i = 0; i < n; i++) {
         if (i) {
-            predict(f, i - 1, P);
-            carry(f, i - 1, 1, s, next);
-            memcpy(s, next, sizeof(double) * (size_t)size);
+            carry_one(f, i - 1, lasting, s, next);
+            double *kept = s;
+            s = next;
+            next = kept;
+        }
+        for (long at = i * nz; at < (i + 1) * nz; at++) {
+            double told = f->present[at] ? signal[at] - expected(f, at, lasting, s) : 0;
+            if (f->present[at]) add_row(size, told, gain + at * all, s);
+            signal[at] = told * scale[at];
+        }
+    }
+}
+
+void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
+               double *signals) {
+    if (m == 1) {
+        whiten_one(f, n, gain, scale, start_mean, signals);
+        return;
+    }
+    for (int first = 0, some; first < m; first += some) {
+        some = m - first < LANES * LANE ? m - first : LANES * LANE;
+        whiten(f, n, gain, scale, first ? 0 : start_mean, m, some, signals + first);
+    }
+}
+
+double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual) {
+    int nz = f->nz;
+    double Ph[WC_MOST], one[WC_MOST] = {0}, other[WC_MOST], *s = one, *next = other, total = 0;
+    covariance c;
+    if (f->nx + f->nq + nz > WC_MOST) return NAN;
+    begin(f, n, &c);
+    memcpy(s, start_mean, sizeof(double) * (size_t)f->nx);
+    for (long i = 0; i < n; i++) {
+        if (i) {
+            predict(f, i - 1, &c);
+            carry_one(f, i - 1, c.lasting, s, next);
+            double *kept = s;
+            s = next;
+            next = kept;
         }
         for (int z = 0; z < nz; z++) {
             long at = i * nz + z;
             if (!f->present[at]) continue;
-            double variance = expect(f, i, z, P, Ph), told = residual[at] - s[nx + nq + z];
-            for (int k = 0; k < nx; k++) told -= f->H[at * nx + k] * s[k];
-            for (int q = 0; q < nq; q++) told -= f->D[at * nq + q] * s[nx + q];
+            double variance = hear(f, i, z, &c, Ph), told = residual[at] - expected(f, at, c.lasting, s);
             total += told * told / variance + log(variance);
-            add_row(size, told / variance, Ph, s);
-            for (int r = 0; r < size; r++) add_row(size, -Ph[r] / variance, Ph, P + r * size);
+            add_row(c.size, told / variance, Ph, s);
         }
     }
     return total;
@@ -201,12 +312,6 @@ void wc_respond(const filter *f, long n, const double *change, double *readings)
             for (int q = 0; q < nq; q++) readings[at] += f->D[at * nq + q] * now[q];
         }
     }
-}
-
-void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
-               double *signals, double *work) {
-    if (m == 1) whiten(f, n, gain, scale, start_mean, 1, signals, work); /* what is most asked for: compiled without loops */
-    else whiten(f, n, gain, scale, start_mean, m, signals, work);
 }
 
 /* to = Fᵀ from: what a change of s at sample i does to what `from` is of at i+1. */
@@ -275,9 +380,9 @@ static double undone(const filter *f, int state, int q) {
     return swings(f, q) ? (f->B[at] + f->C[at]) / log(f->input_phi[q]) : 0; /* -T / dt = 1 / log φ */
 }
 
-/* A simulation without such inputs begins where that is undone already. */
-static void begin_undone(const filter *f, double *P) {
-    int nx = f->nx, nq = f->nq, n = nx + nq + f->nz;
+/* A simulation without such inputs begins where that is undone already. P: rows of n. */
+static void begin_undone(const filter *f, int n, double *P) {
+    int nx = f->nx, nq = f->nq;
     for (int r = 0; r < nx; r++) {
         for (int q = 0; q < nq; q++) add_row(nq, undone(f, r, q), P + (nx + q) * n + nx, P + r * n + nx);
         for (int q = 0; q < nq; q++) P[(nx + q) * n + r] = P[r * n + nx + q];
@@ -288,12 +393,13 @@ static void begin_undone(const filter *f, double *P) {
 }
 
 void wc_spread(const filter *f, long n, double *scale) {
-    double P[WC_MOST * WC_MOST], Ph[WC_MOST];
-    begin(f, P);
-    if (n > 1) begin_undone(f, P);
+    double Ph[WC_MOST];
+    covariance c;
+    begin(f, n, &c);
+    if (n > 1) begin_undone(f, c.stride, c.P);
     for (long i = 0; i < n; i++) {
-        if (i) predict(f, i - 1, P);
-        for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, P, Ph));
+        if (i) predict(f, i - 1, &c);
+        for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, &c, Ph));
     }
 }
 

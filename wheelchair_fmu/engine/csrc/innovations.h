@@ -43,9 +43,9 @@ void wc_compose(const wc_noise *s, const wc_slopes *by, long n, filter *f);
 double wc_design(const filter *f, long n, double *gain, double *scale);
 
 /* signals: n x nz x m, turned into innovations in place; 0 in gaps, whatever they were.
- * start_mean: nx, of the first signal only. work: 2 * size * m doubles. */
+ * start_mean: nx, of the first signal only. */
 void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
-               double *signals, double *work);
+               double *signals);
 
 /* −2 log likelihood, but for a constant, of one signal (n x nz): Σ of squares of its innovations, and of log of their variances.
  * NaN where there is no room. */

@@ -97,15 +97,21 @@ void wc_rodas_stage(wc_rodas *s, int i) {
     solve_one(s, U);
 }
 
+void wc_rodas_end(const wc_rodas *s, double *x1, double *error) {
+    int nx = s->of.k->states, last = WC_STAGES - 1;
+    for (int r = 0; r < nx; r++) {
+        error[r] = s->U[last * nx + r];
+        x1[r] = s->xs[r] + error[r]; /* stiffly accurate: the last stage is taken at x1 but for its own U */
+    }
+}
+
 void wc_rodas_step(wc_rodas_given of, double **result) {
     wc_rodas s;
     int nx = of.k->states, last = WC_STAGES - 1;
     size_t size = sizeof(double) * (size_t)nx;
     wc_rodas_begin(&s, of);
     for (int i = 0; i < WC_STAGES; i++) wc_rodas_stage(&s, i);
-    memcpy(result[0], s.xs, size); /* stiffly accurate: the last stage is taken at x1 but for its own U */
-    wc_add_row(nx, 1, s.U + last * nx, result[0]);
-    memcpy(result[1], s.U + last * nx, size);
+    wc_rodas_end(&s, result[0], result[1]);
     memset(result[2], 0, size);
     memset(result[3], 0, size);
     wc_add_stages(nx, wc_DENSE_2, last, s.U, result[2]);

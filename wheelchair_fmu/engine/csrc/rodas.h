@@ -28,6 +28,9 @@ void wc_rodas_begin(wc_rodas *s, wc_rodas_given of);
 
 void wc_rodas_stage(wc_rodas *s, int i);
 
+/* After the last stage: the step's end, and its error. */
+void wc_rodas_end(const wc_rodas *s, double *x1, double *error);
+
 /* Wᵀ k = right for m right sides at once, in place; rows of `right` are contiguous. */
 void wc_rodas_solve_transposed(const wc_rodas *s, int m, double *right);
 

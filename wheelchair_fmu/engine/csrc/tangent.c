@@ -36,6 +36,7 @@ typedef struct {
     int touches;
     wc_function sloped, prepare, bent;
     double mass[WC_MAX_STATES];
+    wc_rodas s;         /* the latest step */
 } carrier;
 
 static void call(wc_function f, const double *a, const double *b, const double *c, double *result) {
@@ -113,22 +114,15 @@ static void bend_by_difference(const carrier *c, const wc_rodas *s, const double
     for (int e = 0; e < size; e++) bend[e] = (bend[e] - s->first[e]) / STEPWISE;
 }
 
-/* Slopes where stage i is taken, and how J U + F_w dw of it moves. */
-static void evaluate(carrier *c, const wc_rodas *s, int i, const double *dw) {
-    int nx = c->nx, size = nx * c->span;
-    const double *U = s->U + i * nx;
-    if (i == 0 && !c->out->forced) memcpy(c->slopes, s->first, sizeof(double) * (size_t)size);
-    else call(c->sloped, s->xs, s->ws, c->p, c->slopes + i * size);
-    if (c->bent) call(c->bent, c->prepared, U, dw, c->bend + i * size);
-    else bend_by_difference(c, s, U, dw, c->bend + i * size);
-}
-
-/* The same for all stages, several in a call. */
-static void evaluate_together(carrier *c) {
+/* Slopes where each stage is taken, and how J U + F_w dw of it moves: several stages in a call. */
+static void evaluate(carrier *c, const wc_rodas *s) {
     int nx = c->nx, nw = c->k->inputs, size = nx * c->span;
     for (int i = 0; i < WC_STAGES; i += c->side) {
-        call(c->sloped, c->xs + i * nx, c->ws + i * nw, c->p, c->slopes + i * size);
-        call(c->bent, c->prepared, c->along + i * nx, c->dw + i * nw, c->bend + i * size);
+        const double *U = c->along + i * nx, *dw = c->dw + i * nw;
+        if (i == 0 && !c->out->forced) memcpy(c->slopes, s->first, sizeof(double) * (size_t)size);
+        else call(c->sloped, c->xs + i * nx, c->ws + i * nw, c->p, c->slopes + i * size);
+        if (c->bent) call(c->bent, c->prepared, U, dw, c->bend + i * size);
+        else bend_by_difference(c, s, U, dw, c->bend + i * size);
     }
 }
 
@@ -137,7 +131,6 @@ static void compose(carrier *c, double from, double to) {
     int nx = c->nx, stride = c->stride;
     const double *push[] = {c->step + nx * stride, c->step + (nx + WC_PUSHES) * stride};
     double *D = c->spare;
-    for (int r = 0; r < nx; r++) c->step[r * stride + r] += 1;
     memset(D, 0, sizeof(double) * (size_t)(c->m * stride));
     for (int row = 0; row < c->m; row++)
         for (int k = 0; k < nx; k++) add(stride, c->D[row * stride + k], c->step + k * stride, D + row * stride);
@@ -152,35 +145,50 @@ static void compose(carrier *c, double from, double to) {
     c->D = D;
 }
 
-static void carry(void *context, const double *x, const double *wa, const double *wb, double done, double h) {
+/* The same of a step over the whole interval, before which there was none: D is the step. */
+static void take_whole(carrier *c) {
+    double *kept = c->D;
+    c->D = c->step;
+    c->step = kept;
+}
+
+/* One step, as far as nobody knows whether it is accepted. */
+static void take(void *context, const double *x, const double *wa, const double *wb, double h, double *x1, double *e) {
     carrier *c = context;
+    wc_rodas *s = &c->s;
     int nx = c->nx, nw = c->k->inputs;
-    wc_rodas s;
-    double V[WC_MAX_STATES], dw[WC_MAX_INPUTS];
-    wc_rodas_begin(&s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
-    if (c->prepare) call(c->prepare, x, wa, c->p, c->prepared);
+    wc_rodas_begin(s, (wc_rodas_given){.k = c->k, .g = c->g, .p = c->p, .mass = c->mass, .x = x, .w0 = wa, .w1 = wb, .h = h});
     for (int i = 0; i < WC_STAGES; i++) {
-        wc_rodas_stage(&s, i);
+        double dw[WC_MAX_INPUTS];
+        wc_rodas_stage(s, i);
         for (int q = 0; q < nw; q++) dw[q] = wc_GAMMA_I[i] * (wb[q] - wa[q]);
-        if (c->side == 1) {
-            evaluate(c, &s, i, dw);
-            continue;
-        }
-        place(c, i, nx, s.xs, c->xs);
-        place(c, i, nw, s.ws, c->ws);
-        place(c, i, nx, s.U + i * nx, c->along);
+        place(c, i, nx, s->xs, c->xs);
+        place(c, i, nw, s->ws, c->ws);
+        place(c, i, nx, s->U + i * nx, c->along);
         place(c, i, nw, dw, c->dw);
     }
-    if (c->side > 1) evaluate_together(c);
+    wc_rodas_end(s, x1, e);
+}
+
+/* Derives a step that is accepted. */
+static void carry(void *context, const double *x, const double *wa, double done, double h) {
+    carrier *c = context;
+    const wc_rodas *s = &c->s;
+    int nx = c->nx;
+    double V[WC_MAX_STATES];
+    if (c->prepare) call(c->prepare, x, wa, c->p, c->prepared);
+    evaluate(c, s);
     memset(c->step, 0, sizeof(double) * (size_t)(c->m * c->stride));
     for (int i = WC_STAGES - 1; i >= 0; i--) {
         memset(V, 0, sizeof V);
-        wc_add_stages(nx, wc_C[i], i, s.U, V);
-        for (int r = 0; r < nx; r++) V[r] = (V[r] - s.U[i * nx + r] / wc_GAMMA) / h;
-        backward(c, &s, i, h);
-        gather(c, i, V, s.first);
+        wc_add_stages(nx, wc_C[i], i, s->U, V);
+        for (int r = 0; r < nx; r++) V[r] = (V[r] - s->U[i * nx + r] / wc_GAMMA) / h;
+        backward(c, s, i, h);
+        gather(c, i, V, s->first);
     }
-    compose(c, done / c->length, (done + h) / c->length);
+    for (int r = 0; r < nx; r++) c->step[r * c->stride + r] += 1;
+    if (done == 0 && h == c->length) take_whole(c);
+    else compose(c, done / c->length, (done + h) / c->length);
 }
 
 static void fresh(carrier *c) {
@@ -318,7 +326,7 @@ wc_status wc_tangent_run(const wc_kernel *k, const wc_tangent *g, const double *
         *reached = i + 1;
         if (i + 1 == n) return WC_OK;
         stretch s = {.t0 = t[i], .length = t[i + 1] - t[i], .w0 = w + i * nw, .w1 = w + (i + 1) * nw,
-                     .accepted = carry, .context = &c};
+                     .taken = take, .accepted = carry, .context = &c};
         c.length = s.length;
         status = go(k, p, tolerance, &s, now, &h, 0);
         if (status != WC_OK) return status;

@@ -176,7 +176,7 @@ class Problem:
             """As long as all innovations and as steep, in few numbers: their part along the slopes, and the rest's size."""
             if q.tobytes() not in latest:
                 try:
-                    latest[q.tobytes()] = self.likelihood.resimulated(here, self.values(q))
+                    latest[q.tobytes()] = self.likelihood.resimulated(here, self.values(q), whole=False)
                 except SimulationError:
                     return np.full(len(q) + 1, wall)  # the search turns back where the model cannot run
             r = np.concatenate([latest[q.tobytes()].r, self.prior.rows(q)])
@@ -194,7 +194,11 @@ class Problem:
             gtol=1e-10,
             max_nfev=10,
         )
-        return found.x, latest[found.x.tobytes()]
+        there = latest[found.x.tobytes()]
+        try:
+            return found.x, there if there is here else self.likelihood.whole(there, self.values(found.x))
+        except SimulationError:
+            return theta, here  # it cannot run there by itself
 
 
 def fit(

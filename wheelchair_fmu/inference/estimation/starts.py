@@ -33,7 +33,7 @@ def outlook(likelihood: Likelihood, known: Evidence, names: Sequence[str], theta
     run."""
     at = tuple(map(float, theta))
     try:
-        r = likelihood.resimulated(known, dict(zip(names, at, strict=True))).r
+        r = likelihood.resimulated(known, dict(zip(names, at, strict=True)), whole=False).r
     except SimulationError:
         return Outlook(float("inf"), at, at)
     problem = Problem(likelihood, names)

@@ -195,10 +195,12 @@ def _one_by_one(
     columns: list[np.ndarray] = []
     before, r = dict(values), known.r
     for i, own in enumerate(members):
-        columns += [(r - likelihood.resimulated(known, {**before, n: before[n] + size}).r) / size for n, size in own.items()]
+        for n, size in own.items():
+            moved = likelihood.resimulated(known, {**before, n: before[n] + size}, whole=False).r
+            columns.append((r - moved) / size)
         before |= {n: before[n] + size for n, size in own.items()}
         if i < len(members) - 1:
-            r = likelihood.resimulated(known, before).r
+            r = likelihood.resimulated(known, before, whole=False).r
     return columns
 
 
