@@ -190,7 +190,7 @@ def test_columns_of_devices_are_told_by_what_they_serve(page: Any) -> None:
     used, rest = page.locator("#forms tr[data-used]"), page.locator("#forms details details tbody tr")
     assert used.count() == 2 and rest.count() == len(page.evaluate("Object.keys(workbench.state.headers)")) - 2
     chosen = used.first.locator("select").evaluate("e => e.selectedOptions[0].textContent")
-    assert chosen == "wheel angle l, from which other signals are worked out"
+    assert chosen == "left wheel angle, from which other signals are worked out"
     assert "turned round" in used.first.inner_text() and not rest.first.is_visible()
     assert "how far the rear axle is behind it" in page.inner_text("#assumed")
 
