@@ -245,9 +245,13 @@ CASTERS = {"start.caster_l": (-3.2, 3.2), "start.caster_r": (-3.2, 3.2)}
         (
             '"0.5 turn"',
             [
-                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '0.5 turn' is not a finite number; give a number in SI "
-                "units"
+                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '0.5 turn' is not a finite number; write 3.1416, which "
+                "that is in rad"
             ],
+        ),
+        (
+            '"left"',
+            ["campaign.toml line 18: run 1 (a.csv): start.caster_l = 'left' is not a finite number; give a number in SI units"],
         ),
         (
             "0.5",

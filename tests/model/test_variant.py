@@ -27,6 +27,16 @@ def test_what_is_written_is_read(tmp_path):
         ('[laws]\ntire = "linear"', "no law in [laws] 'tire'; did you mean 'tyre'?"),
         ('[laws]\ntyre = ["linear"]', "no tyre law"),
         ('[values]\n"chair.mass" = 91.0', "no parameter 'chair.mass'"),
+        (
+            '[values]\n"start.caster_l" = 0.4',
+            "start.caster_l is a parameter of another caster law than 'ideal', which this chair has; choose "
+            'caster = "swivelling" or caster = "slipping" in the [laws] of a variant',
+        ),
+        (
+            '[laws]\ncaster = "slipping"\n[values]\n"start.caster_l" = 90',
+            "start.caster_l = 90 is outside its bounds -3.2 to 3.2 rad",
+        ),
+        ('[values]\n"wheel.I" = 0.2', 'choose wheel = "spinning" in the [laws]'),
         ('[values]\n"chair.m" = -1.0', "chair.m = -1.0 is outside its bounds"),
     ],
 )

@@ -282,6 +282,15 @@ def test_a_tir_file_written_by_hand(tmp_path):
     assert {f.condition.load for f in found.conditions} == {375, 500, 750}
 
 
+def test_a_tir_file_of_a_flat_tyre_is_refused(tmp_path):
+    """A pressure of nothing is no pressure that was left out."""
+    text = TIR.replace("FNOMIN = 500\n", "FNOMIN = 500\nINFLPRES = 0\n")
+    line = text.split("\n").index("INFLPRES = 0") + 1
+    assert faults(written(tmp_path / "flat.tir", text)) == [
+        f"flat.tir line {line} column 'INFLPRES': 0 is not positive; give it in Pa"
+    ]
+
+
 def test_mf52_is_odd_without_shifts_and_its_slope_is_the_stiffness():
     tyre = Mf52(
         {

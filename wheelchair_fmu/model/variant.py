@@ -5,6 +5,7 @@
     [laws]
     tyre = "linear"          # linear | dugoff | magic_formula
     caster = "ideal"         # ideal | swivelling | slipping
+    wheel = "rolling"        # rolling | spinning
     equations = "extended"   # extended | paper
     effects = ["relaxation_length"]
 
@@ -33,7 +34,7 @@ from ..errors import Failure, Note, UsageError, unknown
 from ..given import toml
 from ..quantities import Parameter
 from . import carried
-from .choice import KINDS, Choice, OwnLaw, configured, names, serves, taken_along
+from .choice import KINDS, Choice, OwnLaw, configured, laws, names, serves, taken_along
 from .effects import bundled
 from .former import current
 from .stage import Effect, Program
@@ -86,6 +87,9 @@ class Variant:
         values = current(values, self.values)
         grown = self.with_effects(e for e in effects_in(values) if e not in self.effects)
         records = {p.name: p for p in grown.parameters()}
+        for name in values:
+            if name not in records:
+                _refuse_of_other_laws(name, grown.choice)
         numbers = {name: number(records, name, value) for name, value in values.items()}
         choice = grown.choice
         if "tyre.law" in numbers:
@@ -111,6 +115,17 @@ class Variant:
         """Parameter values, shape (np,), in the order of `parameters()`; `values` go before the variant's own."""
         given = {**self.values, **(values or {}), "tyre.law": 1 + names(self.choice)["tyre"].index(self.choice.tyre)}
         return np.array([given.get(p.name, p.default) for p in self.parameters()])
+
+
+def _refuse_of_other_laws(name: str, choice: Choice) -> None:
+    """Raises UsageError for a parameter that only laws have which were not chosen."""
+    for kind in KINDS:
+        if owners := [law for law, record in laws(kind, choice).items() if any(p.name == name for p in record.parameters)]:
+            one = " or ".join(f'{kind} = "{law}"' for law in owners)
+            raise UsageError(
+                f"{name} is a parameter of another {kind} law than {getattr(choice, kind)!r}, which this chair has; "
+                f"choose {one} in the [laws] of a variant"
+            )
 
 
 def number(records: Mapping[str, Parameter], name: str, value: float | str) -> float:

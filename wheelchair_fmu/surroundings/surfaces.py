@@ -5,8 +5,9 @@ its grade, so the ramps say what the chair weighs and what their own floor takes
 
     W = k (f + grade),    so a floor adds  Δf = (W − W of a level ramp) / k  to the coefficient of a hard one
 
-with no need of the weight. Hoffman and others tell Δf themselves. A chair whose coefficient on a hard floor is f has
-`floor.rolling_factor` 1 + Δf/f on it.
+with no need of the weight. Hoffman and others tell Δf themselves. On grass no wheelchair's was at hand: those two rows are what
+aircraft tyres take there more than on concrete. A chair whose coefficient on a hard floor is f has `floor.rolling_factor`
+1 + Δf/f on it.
 """
 
 from __future__ import annotations
@@ -72,6 +73,8 @@ SURFACES: Mapping[str, Surface] = {
     "soil": _measured(34.4, "native soil (DIRP)"),
     "wood-chips": _measured(41.7, "wood chips of brush, compacted (CPBR)"),
     "wood-fibre": _measured(56.7, "engineered wood fibre, compacted (EWFK)"),
+    "grass": Surface("short dry grass: of aircraft tyres, 0.05 beside 0.02 on concrete", "Mason1997", told=0.03),
+    "long-grass": Surface("long grass: of aircraft tyres, 0.10 beside 0.02 on concrete", "Mason1997", told=0.08),
 }
 
 

@@ -34,6 +34,7 @@ FITTED = (5.0, 6.0)  # FITTYP of MF 5.2 and what it reads unchanged
 FORMATS = ("PAC2002", "MF_05", "MF05")
 RADIUS = DEFAULTS["wheel.R"]
 SIGNED = ("PKY1", "PDY1")
+PRESSURES = ("INFLPRES", "INFLATION_PRESSURE", "NOMPRES")  # whichever is there first
 _ENTRY = re.compile(r"\s*([A-Za-z]\w*)\s*=\s*('[^']*'|[^\s$!]+)")
 _SKIP = ("$", "!", "#")
 
@@ -53,21 +54,15 @@ def read_tir(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
         elif (key in SIGNED and numbers.get(key) == 0) or (key not in SIGNED and numbers.get(key, 1.0) <= 0):
             what = "is zero" if key in SIGNED else "is not positive"
             faults.append(Fault(path.name, lines[key], key, f"{numbers[key]:g} {what}", "correct it"))
+    given = next((key for key in PRESSURES if key in numbers), None)
+    if given is None:
+        fact = f"no inflation pressure given, {RATED:g} bar assumed"
+        faults.append(Fault(path.name, None, PRESSURES[0], fact, f"add {PRESSURES[0]}, in Pa", WARNING))
+    elif not numbers[given] > 0:
+        faults.append(Fault(path.name, lines[given], given, f"{numbers[given]:g} is not positive", "give it in Pa"))
     if any(f.severity != WARNING for f in faults):
         return None, faults
-    pressure = next((numbers[k] / PA for k in ("INFLPRES", "INFLATION_PRESSURE", "NOMPRES") if k in numbers), None)
-    if pressure is None:
-        faults.append(
-            Fault(
-                path.name,
-                None,
-                "INFLPRES",
-                f"no inflation pressure given, {RATED:g} bar assumed",
-                "add INFLPRES, in Pa",
-                WARNING,
-            )
-        )
-    return _curves(path, numbers, pressure or RATED), faults
+    return _curves(path, numbers, numbers[given] / PA if given else RATED), faults
 
 
 def _entries(file: str, text: str) -> tuple[dict[str, str], dict[str, int], list[Fault]]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from math import degrees, hypot, pi
 from typing import Any
 
 from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
 from ...model.former import clash, former, renamed
-from ...units import UnitError
+from ...units import UnitError, quantity
 from .. import body
 from ..axes import ISO, SAE
 from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
@@ -368,7 +369,7 @@ def _parameter(
         return
     plain = number(value)
     if plain is None:
-        yield doc.fault(path, f"{title}{name} = {value!r} is not a finite number", "give a number in SI units", place)
+        yield doc.fault(path, f"{title}{name} = {value!r} is not a finite number", _in_number(name, value), place)
     elif known is not None:
         lower, upper = known[name]
         if not lower <= plain <= upper:
@@ -377,6 +378,14 @@ def _parameter(
         elif name in CASTERS and abs(plain) in TURNS:
             fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
             yield doc.fault(path, fact, f"if a share of a turn is meant, write {2 * pi * plain:.4f}", place, NOTE)
+
+
+def _in_number(name: str, value: Any) -> str:
+    """What to write instead of what is no number: the angle itself, where it was given with a unit."""
+    if name in CASTERS and isinstance(value, str):
+        with suppress(UnitError):
+            return f"write {quantity(value, 'rad'):.4f}, which that is in rad"
+    return "give a number in SI units"
 
 
 def bad_column(doc: Document, known: Known | None) -> Iterator[Fault]:
