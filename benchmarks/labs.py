@@ -54,6 +54,7 @@ class Lab:
     answer: Mapping[str, Any]
     sizes: Sequence[float]
     at: str = ""
+    body: float = 0.0  # kg that moved with `rider.s`, where it was filmed
 
 
 def recorded(measurements: Path, name: str) -> Lab:
@@ -65,7 +66,8 @@ def recorded(measurements: Path, name: str) -> Lab:
 def drawn(out: Path, seed: int) -> Lab:
     """One whose raw files are written into a folder."""
     answer = write(out, seed)
-    return Lab(out, answer, [answer["given"][option.removeprefix("--")] for option in OPTIONS])
+    given = answer["given"]
+    return Lab(out, answer, [given[option.removeprefix("--")] for option in OPTIONS], body=given.get("body", 0.0))
 
 
 def imported(lab: Lab, out: Path) -> Path:
@@ -73,7 +75,8 @@ def imported(lab: Lab, out: Path) -> Path:
     sizes = [word for one in zip(OPTIONS, lab.sizes, strict=True) for word in one]
     runs = lab.answer["runs"].items()
     kept = [word for run, told in runs if told["role"] == "holdout" for word in ("--holdout", run)]
-    done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *kept)])
+    body = ("--person", lab.body) if lab.body else ()
+    done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *body, *kept)])
     if done.exit_code:
         raise RuntimeError(f"{lab.raw.name}: wheelchair import ended with {done.exit_code}: {done.output}")
     if lab.at:

@@ -51,6 +51,7 @@ NOISE = {
     "s": 0.002,
 }  # N m, m/s, °/s, m/s², m, °, m
 RATES = {"left": 240.0, "right": 200.0, "frame": 100.0, "markers": 100.0}
+FILMED = 0.6  # of all that was weighed, what moves as the filmed part of the rider's body does
 SETTLING = 1.5  # s of a run that its figures leave out
 
 
@@ -123,6 +124,8 @@ def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
         "cm-ahead": round(b + rng.normal(0, 0.01), 2),
         "caster-track": round(chair.t_f + rng.normal(0, 0.008), 2),
     }
+    if strong:
+        told["body"] = round(FILMED * told["mass"], 1)
     ripple = {"left": rng.uniform(0, 0.6), "right": rng.uniform(0, 0.3)}
     truth = hide(Truth(chair=chair), effects)
     return Lab(truth, radius, spin, ripple, 0.35 if strong else 0.2, strong, told), tuple(effects), fair
@@ -265,7 +268,7 @@ def _devices(
         },
     )
     if drawn.filmed:
-        share = drawn.truth.chair.m / (0.6 * drawn.told["mass"])
+        share = drawn.truth.chair.m / drawn.told["body"]
         yield (
             "markers",
             {
