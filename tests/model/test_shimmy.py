@@ -21,11 +21,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from benchmarks.independent.chair import Chair as Independent
 from benchmarks.independent.chair import Start, simulate
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.handling.linearize import linearize
+from wheelchair_fmu.handling.manoeuvres import TOP_SPEED
 from wheelchair_fmu.handling.trim import Chair, trim
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
@@ -82,6 +84,27 @@ def test_casters_shimmy_between_two_speeds():
     assert 3 < low < 4 and 18 < high < 20
     for speed, beyond in ((low, 1.03), (high, 1 / 1.03)):
         assert fastest_growth(speed / beyond) < 0 < fastest_growth(speed * beyond)
+
+
+def against_each_other(u: float, sigma: float, d: float) -> complex:
+    """The swing of both casters against each other, which moves no pivot, of the usual chair."""
+    found = linearize(trim(Chair(variant(**{"caster.sigma": sigma, "caster.d": d})), u, 0.0)).eigenvalues
+    expected = roots(u, sigma, d)
+    return complex(found[np.argmin(np.abs(found - expected[np.argmax(expected.imag)]))])
+
+
+# the upper one of the others is beyond what a chair is trimmed at
+LIMITS = [(SIGMA, DAMPING, 0), (SIGMA, DAMPING, 1), (SIGMA, 0.1, 0), (0.07, 0.1, 0), (0.2, 0.4, 0)]
+
+
+@pytest.mark.parametrize(("sigma", "d", "which"), LIMITS)
+def test_critical_speeds_are_where_the_swing_neither_grows_nor_dies_out(sigma, d, which):
+    """The eigenvalue of the linearised chair crosses the imaginary axis there, at the frequency that the condition has."""
+    speed = limits(sigma, d)[which]
+    found = brentq(lambda u: against_each_other(u, sigma, d).real, 0.8 * speed, min(1.25 * speed, TOP_SPEED), xtol=1e-6)
+    assert found == pytest.approx(speed, rel=1e-3)
+    omega = np.sqrt((d * speed + TRAIL**2 * STIFFNESS) / (INERTIA * sigma))  # the cubic above, where s is imaginary
+    assert against_each_other(found, sigma, d).imag == pytest.approx(omega, rel=1e-3)
 
 
 def test_casters_with_a_trail_longer_than_the_relaxation_length_never_shimmy():

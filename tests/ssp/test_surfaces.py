@@ -34,6 +34,10 @@ def test_no_floor_is_easier_than_a_hard_one_and_pads_make_them_harder():
         assert factors[bare] < factors[padded]
 
 
+def test_grass_is_harder_than_carpet_as_who_measured_both_says():
+    assert SURFACES["carpet"].adds < SURFACES["grass"].adds < SURFACES["long-grass"].adds
+
+
 def test_a_chair_that_rolls_hard_itself_feels_a_floor_less():
     """What a floor adds is added, whatever the chair has already."""
     light, heavy = (SURFACES["soil"].factor(f) for f in (0.01, 0.03))
