@@ -13,7 +13,7 @@ import argparse
 import json
 import tempfile
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,31 +52,28 @@ class Lab:
 
     raw: Path
     answer: Mapping[str, Any]
-    sizes: Sequence[float]
+    sizes: Mapping[str, float]  # by option of `wheelchair import`
     at: str = ""
-    body: float = 0.0  # kg that moved with `rider.s`, where it was filmed
 
 
 def recorded(measurements: Path, name: str) -> Lab:
     """One of the lab folders among the measurements."""
     answers = json.loads((measurements / "lab-answers.json").read_text(encoding="utf-8"))
-    return Lab(measurements / name, answers[name], GIVEN[name], AT.get(name, ""))
+    return Lab(measurements / name, answers[name], dict(zip(OPTIONS, GIVEN[name], strict=True)), AT.get(name, ""))
 
 
 def drawn(out: Path, seed: int) -> Lab:
     """One whose raw files are written into a folder."""
     answer = write(out, seed)
-    given = answer["given"]
-    return Lab(out, answer, [given[option.removeprefix("--")] for option in OPTIONS], body=given.get("body", 0.0))
+    return Lab(out, answer, {f"--{name}": size for name, size in answer["given"].items()})
 
 
 def imported(lab: Lab, out: Path) -> Path:
     """The campaign of a lab's raw files, with what stands in its protocol."""
-    sizes = [word for one in zip(OPTIONS, lab.sizes, strict=True) for word in one]
+    sizes = [word for size in lab.sizes.items() for word in size]
     runs = lab.answer["runs"].items()
     kept = [word for run, told in runs if told["role"] == "holdout" for word in ("--holdout", run)]
-    body = ("--person", lab.body) if lab.body else ()
-    done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *body, *kept)])
+    done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *kept)])
     if done.exit_code:
         raise RuntimeError(f"{lab.raw.name}: wheelchair import ended with {done.exit_code}: {done.output}")
     if lab.at:

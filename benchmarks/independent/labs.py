@@ -125,7 +125,7 @@ def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
         "caster-track": round(chair.t_f + rng.normal(0, 0.008), 2),
     }
     if strong:
-        told["body"] = round(FILMED * told["mass"], 1)
+        told["person"] = round(FILMED * told["mass"], 1)
     ripple = {"left": rng.uniform(0, 0.6), "right": rng.uniform(0, 0.3)}
     truth = hide(Truth(chair=chair), effects)
     return Lab(truth, radius, spin, ripple, 0.35 if strong else 0.2, strong, told), tuple(effects), fair
@@ -268,7 +268,7 @@ def _devices(
         },
     )
     if drawn.filmed:
-        share = drawn.truth.chair.m / drawn.told["body"]
+        share = drawn.truth.chair.m / drawn.told["person"]
         yield (
             "markers",
             {

@@ -245,8 +245,22 @@ CASTERS = {"start.caster_l": (-3.2, 3.2), "start.caster_r": (-3.2, 3.2)}
         (
             '"0.5 turn"',
             [
-                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '0.5 turn' is not a finite number; write 3.1416, which "
-                "that is in rad"
+                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '0.5 turn' is not a finite number; write it in rad: "
+                "3.1416"
+            ],
+        ),
+        (
+            '"270 deg"',  # a caster that is turned by more than half a turn is turned the other way
+            [
+                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '270 deg' is not a finite number; write it in rad: "
+                "-1.5708"
+            ],
+        ),
+        (
+            '"1e400 deg"',
+            [
+                "campaign.toml line 18: run 1 (a.csv): start.caster_l = '1e400 deg' is not a finite number; give a number in "
+                "SI units"
             ],
         ),
         (

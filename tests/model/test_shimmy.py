@@ -60,8 +60,12 @@ def critical_damping(u: float) -> float:
     return float(np.roots([u / I, u * u / SIGMA + c * c * C / I, -C * c * (1 - c / SIGMA) * u]).max())
 
 
+def modes(u: float, **values: float) -> np.ndarray:
+    return linearize(trim(Chair(variant(**values)), u, 0.0)).eigenvalues
+
+
 def eigenvalues(u: float, **values: float) -> np.ndarray:
-    return linearize(trim(Chair(variant(**{**STEADY, **values})), u, 0.0)).eigenvalues
+    return modes(u, **{**STEADY, **values})
 
 
 def fastest_growth(u: float, **values: float) -> float:
@@ -88,7 +92,7 @@ def test_casters_shimmy_between_two_speeds():
 
 def against_each_other(u: float, sigma: float, d: float) -> complex:
     """The swing of both casters against each other, which moves no pivot, of the usual chair."""
-    found = linearize(trim(Chair(variant(**{"caster.sigma": sigma, "caster.d": d})), u, 0.0)).eigenvalues
+    found = modes(u, **{"caster.sigma": sigma, "caster.d": d})
     expected = roots(u, sigma, d)
     return complex(found[np.argmin(np.abs(found - expected[np.argmax(expected.imag)]))])
 

@@ -282,13 +282,19 @@ def test_a_tir_file_written_by_hand(tmp_path):
     assert {f.condition.load for f in found.conditions} == {375, 500, 750}
 
 
-def test_a_tir_file_of_a_flat_tyre_is_refused(tmp_path):
+@pytest.mark.parametrize(
+    ("pressure", "told"),
+    [
+        ("0", "0 is not positive; give it in Pa"),
+        ("hard", "'hard' is not a number; write a number"),
+        ("nan", "nan is not finite; write a number"),
+    ],
+)
+def test_a_tir_file_of_a_flat_tyre_is_refused(tmp_path, pressure, told):
     """A pressure of nothing is no pressure that was left out."""
-    text = TIR.replace("FNOMIN = 500\n", "FNOMIN = 500\nINFLPRES = 0\n")
-    line = text.split("\n").index("INFLPRES = 0") + 1
-    assert faults(written(tmp_path / "flat.tir", text)) == [
-        f"flat.tir line {line} column 'INFLPRES': 0 is not positive; give it in Pa"
-    ]
+    text = TIR.replace("FNOMIN = 500\n", f"FNOMIN = 500\nINFLPRES = {pressure}\n")
+    line = text.split("\n").index(f"INFLPRES = {pressure}") + 1
+    assert faults(written(tmp_path / "flat.tir", text)) == [f"flat.tir line {line} column 'INFLPRES': {told}"]
 
 
 def test_mf52_is_odd_without_shifts_and_its_slope_is_the_stiffness():

@@ -39,7 +39,7 @@ COMMANDS = {
     "workbench": "Do all of this in a browser, from recordings dropped in.",
     "effects": "The physical effects that the chair can have.",
     "laws": "The laws of tyres, casters and rear wheels to choose from.",
-    "surfaces": "How hard a chair rolls on floors that were measured.",
+    "surfaces": "How hard a chair rolls on floors of published measurements.",
     "quantities": "What the equations speak of, for laws of your own.",
     "ssp": "Systems of FMUs: the chair with a pusher and a floor.",
 }

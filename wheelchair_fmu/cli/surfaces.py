@@ -1,4 +1,4 @@
-"""`wheelchair surfaces`: how hard a chair rolls on floors that were measured, and on soft tyres."""
+"""`wheelchair surfaces`: how hard a chair rolls on floors of published measurements, and on soft tyres."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def surfaces(
     mass: Annotated[float, typer.Option(metavar="KG", help="Of chair and user.")] = 80.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """How hard a chair rolls on floors that were measured, and on soft tyres."""
+    """How hard a chair rolls on floors of published measurements, and on soft tyres."""
     if not mass > 0:
         raise UsageError(f"a mass of {mass:g} kg is no chair's; give one above 0")
     told: list[dict[str, Any]] = [

@@ -54,11 +54,11 @@ def read_tir(path: Path, raw: bytes) -> tuple[Rows | None, list[Fault]]:
         elif (key in SIGNED and numbers.get(key) == 0) or (key not in SIGNED and numbers.get(key, 1.0) <= 0):
             what = "is zero" if key in SIGNED else "is not positive"
             faults.append(Fault(path.name, lines[key], key, f"{numbers[key]:g} {what}", "correct it"))
-    given = next((key for key in PRESSURES if key in numbers), None)
+    given = next((key for key in PRESSURES if key in words), None)
     if given is None:
         fact = f"no inflation pressure given, {RATED:g} bar assumed"
         faults.append(Fault(path.name, None, PRESSURES[0], fact, f"add {PRESSURES[0]}, in Pa", WARNING))
-    elif not numbers[given] > 0:
+    elif numbers.get(given, 1.0) <= 0:
         faults.append(Fault(path.name, lines[given], given, f"{numbers[given]:g} is not positive", "give it in Pa"))
     if any(f.severity != WARNING for f in faults):
         return None, faults
@@ -94,7 +94,7 @@ def _numbers(file: str, words: Mapping[str, str], lines: Mapping[str, int]) -> t
             if not np.isfinite(numbers[key]):
                 faults.append(Fault(file, lines[key], key, f"{word} is not finite", "write a number"))
         except ValueError:
-            if key in NEEDED or (re.fullmatch(r"[PQ][A-Z]{2}\d+|L[A-Z]{2,4}", key) and key != "LENGTH"):
+            if key in (*NEEDED, *PRESSURES) or (re.fullmatch(r"[PQ][A-Z]{2}\d+|L[A-Z]{2,4}", key) and key != "LENGTH"):
                 faults.append(Fault(file, lines[key], key, f"{word!r} is not a number", "write a number"))
     return numbers, faults
 

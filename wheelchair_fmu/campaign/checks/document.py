@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from math import degrees, hypot, pi
+from math import degrees, hypot, isfinite, pi, remainder
 from typing import Any
 
 from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
@@ -384,7 +384,8 @@ def _in_number(name: str, value: Any) -> str:
     """What to write instead of what is no number: the angle itself, where it was given with a unit."""
     if name in CASTERS and isinstance(value, str):
         with suppress(UnitError):
-            return f"write {quantity(value, 'rad'):.4f}, which that is in rad"
+            if isfinite(angle := quantity(value, "rad")):
+                return f"write it in rad: {remainder(angle, 2 * pi):.4f}"
     return "give a number in SI units"
 
 
