@@ -19,6 +19,7 @@ from ..errors import Failure, UsageError
 from ..model.chassis import PUSH_LIMIT
 from ..model.variant import Variant
 from .continuation import Equations, NoSolutionError, follow, newton
+from .dense import DenseFunction
 from .manoeuvres import TOP_SPEED
 
 PSI, U = 2, 3  # places of ψ and u among the states, of which x, y, ψ are the pose
@@ -42,12 +43,11 @@ class Chair:
         self.model = m = self.variant.model()
         self.p = self.variant.vector()
         self.parameters = tuple(q.name for q in m.parameters)
-        jacobians = [cs.densify(cs.jacobian(e, v)) for e in (m.f, m.y) for v in (m.x, m.w, m.p)]
-        by_heading = cs.densify(cs.jacobian(m.f[U:], m.x[PSI]))
-        tilts = cs.densify(cs.jacobian(by_heading, m.p))
-        self._all = cs.Function("all", [m.x, m.w, m.p], [m.f, m.y, m.mass, *jacobians, tilts])
-        self._some = cs.Function("some", [m.x, m.w, m.p], [m.f, *jacobians[:2]])
-        self._start = cs.Function("start", [m.p, m.w], [m.start])
+        jacobians = [cs.jacobian(e, v) for e in (m.f, m.y) for v in (m.x, m.w, m.p)]
+        tilts = cs.jacobian(cs.jacobian(m.f[U:], m.x[PSI]), m.p)
+        self._all = DenseFunction("all", [m.x, m.w, m.p], [m.f, m.y, m.mass, *jacobians, tilts])
+        self._some = DenseFunction("some", [m.x, m.w, m.p], [m.f, *jacobians[:2]])
+        self._start = DenseFunction("start", [m.p, m.w], [m.start])
         names = [i.name for i in m.inputs]
         self.still = np.array([i.start for i in m.inputs])  # inputs (nw,) without pushes
         self.pushes = np.zeros((len(names), 2))  # what (F, ΔF) adds to them
@@ -68,7 +68,7 @@ class Chair:
 
         def equations(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             state = self.state(speed, z)
-            f, f_x, f_w = (e.full() for e in self._some(state.x, state.w, self.p))
+            f, f_x, f_w = self._some(state.x, state.w, self.p)
             return f[U:, 0], np.hstack([f_x[U:, MOTION:], f_w[U:] @ self.pushes])
 
         return equations
@@ -78,7 +78,7 @@ class Chair:
         names = ("start.u", "start.v", "start.psi_dot")
         p = self.p.copy()
         p[[self.parameters.index(n) for n in names]] = speed, 0.0, 0.0
-        return np.concatenate([self._start(p, self.still).full()[MOTION:, 0], [0.0, 0.0]])
+        return np.concatenate([self._start(p, self.still)[0][MOTION:, 0], [0.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ class SteadyState:
         return self.derivatives_with(p)
 
     def derivatives_with(self, p: np.ndarray) -> list[np.ndarray]:
-        return [e.full() for e in self.chair._all(self.x, self.w, p)]
+        return self.chair._all(self.x, self.w, p)
 
     @cached_property
     def results(self) -> dict[str, float]:
