@@ -10,7 +10,7 @@ import numpy as np
 from wheelchair_fmu.campaign import Campaign, Run
 from wheelchair_fmu.engine.tangent import EXTERNAL
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN
+from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN, HANDS
 from wheelchair_fmu.model.variant import Variant
 
 T_R, B = 0.55, 0.2
@@ -27,16 +27,25 @@ def wandering(rng: np.random.Generator, time: np.ndarray, sd: float, lasting: fl
     return out
 
 
-def swinging(rng: np.random.Generator, time: np.ndarray, sd: float) -> np.ndarray:
-    """A momentum (n,) of second order, p'' + 15 p' + 50 p = white noise, by steps of a tenth of a sample."""
-    out, p, rate, noise = np.empty(len(time)), 0.0, 0.0, sd * np.sqrt(2 * 15 * 50)
+def swinging(rng: np.random.Generator, time: np.ndarray, sd: float, hard: np.ndarray | float = 1.0) -> np.ndarray:
+    """A momentum (n,), (1 + s/15) (1 + s/10) (1 + 3 s/20) p = white noise, by steps of a millisecond: of this standard
+    deviation, as long as its noise is the usual one and not `hard` (n,) times that."""
+    noise = sd * np.sqrt(2 * 1000 * (950 / 3 * 95 / 3 - 1000) / (95 / 3))
+    out, p, rate, bend, hard = np.empty(len(time)), 0.0, 0.0, 0.0, np.broadcast_to(hard, time.shape)
     for i, gap in enumerate(np.diff(time, prepend=time[0] - 5.0)):
         steps = max(10, round(gap / 1e-3))
-        for shock in noise * np.sqrt(gap / steps) * rng.standard_normal(steps):
-            rate += -(15 * rate + 50 * p) * gap / steps + shock
+        for shock in hard[i] * noise * np.sqrt(gap / steps) * rng.standard_normal(steps):
+            bend += -(95 / 3 * bend + 950 / 3 * rate + 1000 * p) * gap / steps + shock
+            rate += bend * gap / steps
             p += rate * gap / steps
         out[i] = p
     return out
+
+
+def pushing(run: Run) -> np.ndarray:
+    """RMS push (n,) of both hands within 0.6 s of each moment."""
+    both = np.sum([run.inputs[name] for name in HANDS], axis=0)
+    return np.sqrt([np.mean(both[np.abs(run.time - t) <= 0.6] ** 2) for t in run.time])
 
 
 def floor(rng: np.random.Generator, slope: float, length: float = 0.4) -> Callable[..., tuple[np.ndarray, np.ndarray]]:

@@ -13,10 +13,10 @@ from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import FORCED, HANDS, NoiseModel, disturbance, stroke
+from wheelchair_fmu.inference.evidence.noise_model import BODYS, FORCED, HANDS, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, B, floor, ridden, swinging, wandering
+from .forces import T_R, B, floor, pushing, ridden, swinging, wandering
 
 
 @pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.0)])
@@ -51,12 +51,12 @@ def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
 def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
     """A height of which nothing but its slopes and its length is known; a body moves on it, too."""
     rng, slope, swings, weight = np.random.default_rng(21), 0.004, 2.0, 80.0 * 9.81
-    slopes, true = floor(rng, slope), []
+    slopes, true, usual = floor(rng, slope), [], stroke(*sample.runs)
 
     def pushes(run, without):
         along, aside = slopes(*(without[name] for name in ("sensor.x", "sensor.y", "sensor.yaw")))
         true.append((along, aside))
-        body = np.gradient(swinging(rng, run.time, swings), run.time)
+        body = np.gradient(swinging(rng, run.time, swings, pushing(run) / usual), run.time)
         return -weight * along - body, weight * B * aside
 
     campaign = ridden(sample, rng, pushes)
@@ -68,10 +68,11 @@ def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
 
 def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
     """It pushes by what its momentum changes, forward as much as backward; a floor leans on the chair for a while."""
-    rng, swings = np.random.default_rng(7), 2.0
+    rng, swings, usual = np.random.default_rng(7), 2.0, stroke(*sample.runs)
 
     def pushes(run, without):
-        return wandering(rng, run.time, 1.0) - np.gradient(swinging(rng, run.time, swings), run.time), 0 * run.time
+        body = swinging(rng, run.time, swings, pushing(run) / usual)
+        return wandering(rng, run.time, 1.0) - np.gradient(body, run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
     found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
@@ -80,33 +81,37 @@ def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
 
 
 @pytest.mark.parametrize(
-    ("noise", "at", "force"), [({"body": 3.0}, 2, 3.0 * np.sqrt(50)), ({"floor": 2.5, "lasting": 0.4}, 4, 2.5)]
+    ("noise", "of", "force"),
+    [
+        ({"body": 3.0}, BODYS, 3.0 * np.sqrt(1000 / (95 / 3))),
+        ({"floor": 2.5, "lasting": 0.4}, ~BODYS & (np.arange(FORCED) > 1), 2.5),
+    ],
 )
-def test_bodies_and_floors_push_without_a_mean(noise, at, force):
-    """Of p'' + (α + β) p' + α β p = white noise, p' has a standard deviation of √(α β) times that of p, and no mean."""
-    unknown, pair = disturbance(NoiseModel({}, **noise), HANDS, T_R), slice(at, at + 2)
-    weights = unknown.as_push[:, pair].sum(axis=0) * unknown.sd[pair]
-    assert np.sqrt(weights @ unknown.common[pair, pair] @ weights) == pytest.approx(force)
-    slow = weights * np.sqrt(2 / unknown.lasting[pair]) * unknown.lasting[pair]  # what one noise does to each at rest, added up
+def test_bodies_and_floors_push_without_a_mean(noise, of, force):
+    """Of (s³ + b₂ s² + b₁ s + b₀) p = white noise, s p has a standard deviation of √(b₀ / b₂) times that of p, and no mean."""
+    unknown = disturbance(NoiseModel({}, **noise), HANDS, T_R)
+    weights = unknown.as_push[:, of].sum(axis=0) * unknown.sd[of]
+    assert np.sqrt(weights @ unknown.common[np.ix_(of, of)] @ weights) == pytest.approx(force)
+    slow = weights * np.sqrt(2 / unknown.lasting[of]) * unknown.lasting[of]  # what one noise does to each at rest, added up
     assert slow.sum() == pytest.approx(0.0, abs=1e-12)
-    assert np.allclose(unknown.as_push[0, pair], unknown.as_push[1, pair]), "along the heading"
+    assert np.allclose(unknown.as_push[0, of], unknown.as_push[1, of]), "along the heading"
 
 
-def test_a_body_swings_as_hard_as_hands_push(sample):
-    """Twice the push, twice the swing: one strength serves runs of easy and of hard strokes, and of none."""
-    rng, swings = np.random.default_rng(12), 0.04
-    hardest = max(stroke(run) for run in sample.runs)
+def test_who_pushes_moves_and_who_rolls_sits_still(sample):
+    """One strength serves easy and hard strokes, and none: twice the push, twice the swing, for as long as a swing takes."""
+    rng, swings, usual = np.random.default_rng(12), 2.0, stroke(*sample.runs)
 
     def pushes(run, without):
-        return -np.gradient(swinging(rng, run.time, swings * stroke(run)), run.time), 0 * run.time
+        return -np.gradient(swinging(rng, run.time, swings, pushing(run) / usual), run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
     found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    assert found.body == pytest.approx(swings, rel=0.15) and found.along < 0.5
     known = found.put_into(NoiseModel(campaign.noise))
     for run in campaign.runs:
-        assert known.body * known.swinging(run) == pytest.approx(swings * stroke(run), rel=0.25, abs=0.02 * swings * hardest)
+        np.testing.assert_allclose(known.swinging(run) * known.stroke, pushing(run), atol=0.03 * pushing(run).max())
     still = replace(campaign.runs[0], inputs={name: 0 * w for name, w in campaign.runs[0].inputs.items()})
-    assert known.swinging(still) == 0.0
+    assert not known.swinging(still).any()
 
 
 def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
@@ -129,7 +134,7 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     again = likelihood.evidence(campaign.fit, {}, ())
     assert again.misfit == pytest.approx(first.misfit, abs=5.0)
     for e, other in zip(first.runs, again.runs, strict=True):
-        np.testing.assert_allclose(e.path, other.path, atol=0.1 * max(noise.force, noise.moment))
+        np.testing.assert_allclose(e.path, other.path, atol=0.2 * max(noise.force, noise.moment))  # steps end at 0.03
     assert float(np.mean(first.r**2)) == pytest.approx(1, abs=0.03)
     assert first.summary().rms == pytest.approx(first.rms, rel=1e-9), "what is kept of a run is judged as the run was"
 
@@ -168,9 +173,25 @@ def test_a_body_that_answers_pushes_has_its_size_whatever_else_it_does(sample):
         noise = NoiseModel(campaign.noise, body=own, mass=80.0)
         likelihood = Likelihood(campaign, chair, noise).led(moving(campaign))
         found = fit(likelihood, ("chair.m", swing), {"chair.m": 80.0, swing: 0.0})
-        off.append((found.values[swing] - 0.008) / standard_errors(found)[swing])
-        assert found.values[swing] == pytest.approx(0.008, rel=0.15)
+        error = standard_errors(found)[swing]
+        off.append((found.values[swing] - 0.008) / error)
+        assert error < 0.0006
     assert abs(np.mean(off)) < 3 / np.sqrt(len(off)) and np.abs(off).max() < 4
+
+
+def test_what_a_record_of_pushes_has_wrong_passes_for_no_swing_of_the_body(sample):
+    """It drives the model and is in the innovations as well: slopes at the recorded pushes leaned by three standard errors. The
+    slope of the likelihood at the true value is 0 ± 1, in units of its own standard deviation."""
+    swing, told = "effect.trunk_motion.swing", []
+    for seed in range(20, 26):
+        rng = np.random.default_rng(seed)
+        campaign = ridden(sample, rng, lambda run, without: (0 * run.time, 0 * run.time))
+        noise = NoiseModel(campaign.noise, body=2.5, mass=80.0)
+        likelihood = Likelihood(campaign, Variant(effects=("trunk_motion",)), noise).led(moving(campaign))
+        evidence = likelihood.evidence(likelihood.campaign.fit, {swing: 0.0}, (swing,), tune_start=1)
+        r, S = evidence.r, evidence.S[:, 0]
+        told.append(S @ r / np.linalg.norm(S))
+    assert abs(np.mean(told)) < 3 / np.sqrt(len(told)) and np.abs(told).max() < 4
 
 
 @pytest.mark.parametrize("f_r", [0.03, 0.05])

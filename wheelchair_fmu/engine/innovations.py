@@ -68,10 +68,10 @@ class Noise:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
-    over which it is forgotten. `as_push` (nq, d) says as what change of the recorded pushes one unit of each acts, `common`
-    (d, d) how they are correlated at one moment: two that one white noise drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂).
-    Without it, each is on its own."""
+    """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,), or (n, d) where that
+    changes from moment to moment, and a time (d,) in s over which it is forgotten. `as_push` (nq, d) says as what change of the
+    recorded pushes one unit of each acts, `common` (d, d) how they are correlated at one moment: two that one white noise
+    drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each is on its own."""
 
     sd: np.ndarray
     lasting: np.ndarray
@@ -158,7 +158,7 @@ class Whitener:
     def _compose(self, unknown: Disturbance | None) -> None:
         """What the filter has of its inputs and readings, with these forces acting that nobody recorded."""
         n, nz = self.present.shape
-        nx, nd = self.arrays["A"].shape[1], 0 if unknown is None else len(unknown.sd)
+        nx, nd = self.arrays["A"].shape[1], 0 if unknown is None else len(unknown.lasting)
         nq = self.recorded + nd
         self.size = (nx, nq, nz)
         if sum(self.size) > MOST:
@@ -251,6 +251,10 @@ class Whitener:
         """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""
         return self._noise(innovations)[:, self.recorded :]
 
+    def errors_of_pushes(self, innovations: np.ndarray) -> np.ndarray:
+        """By how much recorded pushes (n, nq) were larger than their record, as all readings have them."""
+        return np.ascontiguousarray(self._noise(innovations)[:, : self.recorded])
+
     def _noise(self, innovations: np.ndarray) -> np.ndarray:
         """Errors of the recorded pushes, and forces, together (n, nq)."""
         told = np.ascontiguousarray(np.nan_to_num(innovations), float)
@@ -292,9 +296,9 @@ def noise_arrays(time: np.ndarray, noise: Noise, step: np.ndarray, unknown: Dist
         "sd": noise.readings,
         "ar": noise.colour,
         "step": step,
-        "unknown_sd": forces.sd,
+        "unknown_sd": np.broadcast_to(forces.sd, (len(time), len(forces.lasting))),
         "lasting": forces.lasting,
-        "together": np.eye(len(forces.sd)) if forces.common is None else forces.common,
+        "together": np.eye(len(forces.lasting)) if forces.common is None else forces.common,
         "as_push": forces.as_push,
     }
     return {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}

@@ -19,7 +19,7 @@ from ..inference.estimation.statistics import finite
 from ..inference.evidence.initial_state import CASTERS, START, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
-from ..inference.evidence.noise_model import NoiseModel, disturbance, noise_of, pushes_of
+from ..inference.evidence.noise_model import BODYS, NoiseModel, disturbance, noise_of, pushes_of
 from ..inference.explain.landscape import landscape
 from ..inference.models.factory import ModelFactory
 from ..inference.models.models import Models
@@ -177,15 +177,15 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
             "step": noise.push_step.tolist(),
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
-        "forces": _sizes(colour, run) if colour.disturbed else [],
+        "forces": _sizes(colour, run) if colour.disturbed else {"sd": [], "swings": [], "swing": _series([])},
         "constants": [_constant(c) for c in locals_of(run)],
     }
 
 
-def _sizes(colour: NoiseModel, run: Run) -> list[float]:
-    """Standard deviations of the forces in one run."""
-    sizes: list[float] = disturbance(colour, EXTERNAL, mass=colour.mass, swinging=colour.swinging(run)).sd.tolist()
-    return sizes
+def _sizes(colour: NoiseModel, run: Run) -> dict[str, Any]:
+    """Standard deviations of the forces in one run, and times how much more those of the rider's body are at each moment."""
+    usual: list[float] = disturbance(colour, EXTERNAL, mass=colour.mass).sd.tolist()
+    return {"sd": usual, "swings": BODYS.astype(int).tolist(), "swing": _series(np.round(colour.swinging(run), 4))}
 
 
 def _constant(local: Local) -> dict[str, Any]:

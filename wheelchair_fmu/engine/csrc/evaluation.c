@@ -455,12 +455,14 @@ static double follow(const wc_recording *s, wc_evaluation *e) {
     int nd = s->noise.nd, nq = e->f.nq;
     double most = 0;
     wc_smooth(&e->f, s->n, e->gain, e->scale, e->innovations, e->noise);
-    for (long i = 0; i < s->n; i++) {
-        for (int d = 0; d < nd; d++) {
-            double step = e->noise[i * nq + s->noise.nq + d] - e->path[i * nd + d];
-            e->step[i * nd + d] = step;
-            if (s->noise.unknown_sd[d] > 0) most = fmax(most, fabs(step) / s->noise.unknown_sd[d]);
+    for (int d = 0; d < nd; d++) {
+        double step = 0, sd = 0; /* largest */
+        for (long i = 0; i < s->n; i++) {
+            e->step[i * nd + d] = e->noise[i * nq + s->noise.nq + d] - e->path[i * nd + d];
+            step = fmax(step, fabs(e->step[i * nd + d]));
+            sd = fmax(sd, s->noise.unknown_sd[i * nd + d]);
         }
+        if (sd > 0) most = fmax(most, step / sd);
     }
     return most;
 }

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.linalg import block_diag
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
@@ -15,15 +17,19 @@ from ...engine.innovations import Disturbance, Noise
 from ...engine.tangent import EXTERNAL
 
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
-HANDS = tuple(BY_NAME[n].fmu for n in FORCES)
+HANDS, TURNS = (tuple(BY_NAME[n].fmu for n in names) for names in (FORCES, TORQUES))
 SCATTER = 1.15  # ratio of two estimates of the same noise
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
-# s, of the second order by which the momentum of a rider's body swings: with each stroke, about once a second, and back
-SWUNG = (0.1, 0.2)
+# s, of the third order by which the momentum of a rider's body swings: with each stroke, about once a second, and back, and
+# smoothly, as muscles pull; of second order it would tremble, and a slow force would seem likelier than a body
+SWUNG = (1 / 15, 1 / 10, 3 / 20)
 # of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
 RISES = (1 / 3, 2 / 3)
-FORCED = 6  # processes of `disturbance`
+FORCED = 2 + len(SWUNG) + len(RISES)  # processes of `disturbance`: a force, a moment, those of the body and those of a floor,
+BODYS = np.isin(np.arange(FORCED), 2 + np.arange(len(SWUNG)))  # and which of them are the body's
+DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
+RIM = 0.3  # m, about: a torque on a wheel is as large as a force there
 
 
 @dataclass(frozen=True)
@@ -55,9 +61,9 @@ class NoiseModel:
             times = float(np.sqrt(np.mean(others))) if others else 1.0
         return self.sd.get(channel, 0.0) * times
 
-    def swinging(self, run: Run) -> float:
-        """Times the usual that a rider's body swings in a run: it answers the pushes."""
-        return stroke(run) / self.stroke if self.stroke else 1.0
+    def swinging(self, run: Run) -> np.ndarray:
+        """Times the usual (n,) that a rider's body swings at each moment of a run: who pushes moves, who rolls sits still."""
+        return effort(run) / self.stroke if self.stroke else np.ones(len(run.time))
 
     @property
     def disturbed(self) -> bool:
@@ -106,62 +112,77 @@ def noise_of(
 
 
 def disturbance(
-    noise_model: NoiseModel, inputs: Sequence[str], t_r: float = 1.0, mass: float = 1.0, swinging: float = 1.0
+    noise_model: NoiseModel, inputs: Sequence[str], t_r: float = 1.0, mass: float = 1.0, swinging: np.ndarray | float = 1.0
 ) -> Disturbance:
-    """A force along the heading, a moment, the two processes by which a rider's body pushes, and the two of a floor, as changes
-    of these inputs: of those from outside where they are among them, which no rider's body answers, or else of both hands', on
+    """A force along the heading, a moment, the processes by which a rider's body pushes, and those of a floor, as changes of
+    these inputs: of those from outside where they are among them, which no rider's body answers, or else of both hands', on
     wheels `t_r` apart.
 
     What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
     they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride. `swinging` is
-    times how much the body swings.
+    times how much the body swings, at each moment (n,) or throughout.
 
-    A body whose momentum p against the chair is of second order, p'' + (α + β) p' + α β p = white noise, pushes by −p': two
-    processes of first order, α and β, that one noise drives, and a force without a mean. So does a floor, which rises and falls
-    again: the slope along the way is what its height changes. The slope to the side, which turns a chair, is alike for as long
-    as the height is, so that both are forgotten together.
+    A body pushes by −p', with p its momentum against the chair: a sum of processes of first order that one noise drives, and a
+    force without a mean. So does a floor, which rises and falls again: the slope along the way is what its height changes. The
+    slope to the side, which turns a chair, is alike for as long as the height is, so that both are forgotten together.
     """
-    swings = _swing(noise_model.body * swinging, SWUNG), _rate(noise_model.floor, noise_model.lasting)
-    lasting = np.array([FORGOTTEN, noise_model.lasting, *swings[0].lasting, *swings[1].lasting])
-    as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
+    body, floor = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
+    lasting = np.array([FORGOTTEN, noise_model.lasting, *body.lasting, *floor.lasting])
+    as_push, common = np.zeros((len(inputs), FORCED)), block_diag(1.0, 1.0, body.together, floor.together)
     along = mass / noise_model.mass if noise_model.mass else 1.0
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
     if not shares.keys() <= set(inputs):
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
-        as_push[inputs.index(name)] = [along * ahead, turning, *(-along * ahead, along * ahead) * 2]
-    for at, swing in zip((2, 4), swings, strict=True):
-        common[at, at + 1] = common[at + 1, at] = swing.together
-    sd = np.array([noise_model.force, noise_model.moment, *swings[0].sd, *swings[1].sd])
-    return Disturbance(sd, lasting, as_push, common)
+        as_push[inputs.index(name)] = [along * ahead, turning, *(-along * ahead * np.sign([*body.rates, *floor.rates]))]
+    sd = np.array([noise_model.force, noise_model.moment, *np.abs(body.rates), *np.abs(floor.rates)])
+    return Disturbance(np.where(BODYS, np.multiply.outer(swinging, sd), sd), lasting, as_push, common)
 
 
 class _Swing(NamedTuple):
-    """Two processes of first order that one noise drives: standard deviations, times (s), and their correlation."""
+    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, what one standard
+    deviation of each adds to that rate (k,), and their correlation (k, k)."""
 
-    sd: np.ndarray
-    lasting: tuple[float, float]
-    together: float
+    lasting: Sequence[float]
+    rates: np.ndarray
+    together: np.ndarray
 
 
-def _swing(momentum: float, lasting: tuple[float, float]) -> _Swing:
-    """Those whose difference is the rate of a momentum of this standard deviation (N s)."""
-    alpha, beta = (1 / t for t in lasting)
-    driven = np.sqrt(2 * alpha * beta * (alpha + beta)) / (alpha - beta) * momentum
-    return _Swing(np.sqrt([alpha / 2, beta / 2]) * driven, lasting, 2 * np.sqrt(alpha * beta) / (alpha + beta))
+def _swing(momentum: float, lasting: Sequence[float]) -> _Swing:
+    """Those whose sum is the rate of a momentum of this standard deviation (N s), which white noise drives through
+    1 / ∏ (1 + T s); no two times T may be the same."""
+    T = np.array(lasting)
+    apart = np.subtract.outer(T, T) + np.eye(len(T))
+    together = 2 * np.sqrt(np.outer(T, T)) / np.add.outer(T, T)
+    shares = T ** (len(T) - 1.5) / np.prod(apart, axis=1)  # partial fractions, in standard deviations of each process
+    return _Swing(lasting, -momentum * shares / T / np.sqrt(shares @ together @ shares), together)
 
 
 def _rate(force: float, lasting: float) -> _Swing:
-    """Those whose difference is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (s)."""
+    """Those whose sum is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (s)."""
     first, second = (lasting * share for share in RISES)
     return _swing(force * np.sqrt(first * second), (first, second))
 
 
 def stroke(*runs: Run) -> float:
     """RMS (N) of what both hands together push in these runs, by the time that they last."""
-    both = [np.sum([run.inputs[n] for n in HANDS if n in run.inputs], axis=0) * np.ones(len(run.time)) for run in runs]
     last = [float(np.ptp(run.time)) for run in runs]
-    return float(np.sqrt(np.average([np.mean(F**2) for F in both], weights=last))) if sum(last) else 0.0
+    return float(np.sqrt(np.average([np.mean(_both(run) ** 2) for run in runs], weights=last))) if sum(last) else 0.0
+
+
+def effort(run: Run) -> np.ndarray:
+    """RMS push (n,) in N of both hands together about each moment, as long before and after as a swing takes to die out."""
+    t = run.time
+    done = cumulative_trapezoid(_both(run) ** 2, t, initial=0.0)
+    begins, ends = (np.clip(t + side * DIES_OUT, t[0], t[-1]) for side in (-1, 1))
+    return np.sqrt((np.interp(ends, t, done) - np.interp(begins, t, done)) / (ends - begins))
+
+
+def _both(run: Run) -> np.ndarray:
+    """What both hands together push (n,), in N."""
+    forces = [run.inputs[n] for n in HANDS if n in run.inputs]
+    torques = [run.inputs[n] / RIM for n in TURNS if n in run.inputs]
+    return np.sum([np.zeros(len(run.time)), *forces, *torques], axis=0)
 
 
 def pushes_of(run: Run, led: bool = False) -> tuple[str, ...]:
