@@ -185,7 +185,7 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
 def _sizes(colour: NoiseModel, run: Run) -> dict[str, Any]:
     """Standard deviations of the forces in one run, and times how much more those of the rider's body are at each moment."""
     usual: list[float] = disturbance(colour, EXTERNAL, mass=colour.mass).sd.tolist()
-    return {"sd": usual, "swings": BODYS.astype(int).tolist(), "swing": _series(np.round(colour.swinging(run), 4))}
+    return {"sd": usual, "swings": BODYS.astype(int).tolist(), "swing": _series(colour.swinging(run))}
 
 
 def _constant(local: Local) -> dict[str, Any]:
