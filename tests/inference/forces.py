@@ -43,9 +43,10 @@ def swinging(rng: np.random.Generator, time: np.ndarray, sd: float, hard: np.nda
 
 
 def pushing(run: Run) -> np.ndarray:
-    """RMS push (n,) of both hands within 0.6 s of each moment."""
+    """RMS push (n,) of both hands about each moment, weighed by e^(−|t| / 0.3 s), as a swing's square dies out."""
     both = np.sum([run.inputs[name] for name in HANDS], axis=0)
-    return np.sqrt([np.mean(both[np.abs(run.time - t) <= 0.6] ** 2) for t in run.time])
+    apart = np.abs(np.subtract.outer(run.time, run.time))
+    return np.sqrt(np.exp(-apart / 0.3) @ (both**2 * np.gradient(run.time)) / 0.6)
 
 
 def floor(rng: np.random.Generator, slope: float, length: float = 0.4) -> Callable[..., tuple[np.ndarray, np.ndarray]]:

@@ -251,10 +251,6 @@ class Whitener:
         """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""
         return self._noise(innovations)[:, self.recorded :]
 
-    def errors_of_pushes(self, innovations: np.ndarray) -> np.ndarray:
-        """By how much recorded pushes (n, nq) were larger than their record, as all readings have them."""
-        return np.ascontiguousarray(self._noise(innovations)[:, : self.recorded])
-
     def _noise(self, innovations: np.ndarray) -> np.ndarray:
         """Errors of the recorded pushes, and forces, together (n, nq)."""
         told = np.ascontiguousarray(np.nan_to_num(innovations), float)

@@ -201,7 +201,7 @@ class Likelihood:
             if rounds:
                 self.starts[run.name] = {**start, **dict(zip(names, found.start.tolist(), strict=True))}
                 self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), FORCED))
-            found = replace(found, by_parameter=self._slopes(run, values, by, found)) if by else found
+            found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
             pushed = self._errors_of_pushes(run)
             found = self._evaluated(run, values, by, at, None, rounds, pushed, self._may_flip and rounds > 0)
@@ -210,14 +210,6 @@ class Likelihood:
             if not np.array_equal(found.start, at):
                 self.starts[run.name] = dict(zip(names, found.start.tolist(), strict=True))
         return self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
-
-    def _slopes(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation) -> np.ndarray:
-        """Readings by these parameters, of a run that forces lead, at the likeliest pushes and not at the recorded ones: what a
-        record has wrong drives the model, is in the innovations as well, and would pass for an effect that follows the pushes.
-        So values and pushes are the likeliest together, as in a regression with errors in its variables (Fuller1987)."""
-        untold = found.whitener((found.measured - found.driven + found.added)[:, :, None], found.offset)[:, :, 0]
-        pushed = found.whitener.errors_of_pushes(untold)
-        return self._evaluated(run, values, by, found.start, found.path, 0, pushed).by_parameter
 
     @property
     def _may_flip(self) -> bool:

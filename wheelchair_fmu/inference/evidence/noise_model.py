@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import block_diag
+from scipy.signal import lfilter
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
@@ -29,6 +29,7 @@ RISES = (1 / 3, 2 / 3)
 FORCED = 2 + len(SWUNG) + len(RISES)  # processes of `disturbance`: a force, a moment, those of the body and those of a floor,
 BODYS = np.isin(np.arange(FORCED), 2 + np.arange(len(SWUNG)))  # and which of them are the body's
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
+GRID = 0.01  # s, of the pushes as they swing a body
 RIM = 0.3  # m, about: a torque on a wheel is as large as a force there
 
 
@@ -171,11 +172,12 @@ def stroke(*runs: Run) -> float:
 
 
 def effort(run: Run) -> np.ndarray:
-    """RMS push (n,) in N of both hands together about each moment, as long before and after as a swing takes to die out."""
-    t = run.time
-    done = cumulative_trapezoid(_both(run) ** 2, t, initial=0.0)
-    begins, ends = (np.clip(t + side * DIES_OUT, t[0], t[-1]) for side in (-1, 1))
-    return np.sqrt((np.interp(ends, t, done) - np.interp(begins, t, done)) / (ends - begins))
+    """RMS push (n,) in N of both hands about each moment, by weights that die out before and after it as a swing's square."""
+    grid = np.arange(run.time[0], run.time[-1] + GRID, GRID)
+    squares = np.interp(grid, run.time, _both(run) ** 2)
+    keeps = np.exp(-2 * GRID / DIES_OUT)
+    after, before = (lfilter([1 - keeps], [1, -keeps], squares[::way])[::way] for way in (1, -1))
+    return np.sqrt(np.interp(run.time, grid, (after + before) / 2))
 
 
 def _both(run: Run) -> np.ndarray:
