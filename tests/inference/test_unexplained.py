@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from wheelchair_fmu.inference.decision.verdict import FORCES, diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
@@ -144,21 +141,3 @@ def test_a_force_that_is_none_is_said_once():
     assert Unexplained(along, none, ()).words == [
         "As calibrated, the model needs 0.4 N that nobody recorded; in the end, no force and no moment."
     ]
-
-
-@pytest.mark.nightly
-def test_what_a_force_beyond_any_floor_made_look_like_effects_is_not_told(sample):
-    """Without such a force in the model, its search names five effects here, of which none is there: slopes, drag and toe."""
-    kept = ("straight-strokes", "steady-right", "steady-left", "slalom-quick", "holdout-slalom", "holdout-strokes")
-    part = replace(sample, runs=tuple(run for run in sample.runs if run.name in kept))
-    rng, chair = np.random.default_rng(3), Variant(effects=("rolling_resistance_asymmetry",))
-    campaign = ridden(
-        part,
-        rng,
-        lambda run, without: (wandering(rng, run.time, 15.0), wandering(rng, run.time, 1.0)),
-        chair,
-        {"effect.rolling_resistance_asymmetry.D": 10.0},
-    )
-    found = diagnose(campaign)
-    assert found.verdict == "outside" and {*found.effects} <= {*chair.effects}
-    assert FORCES in [step.name for step in found.ladder] and not found.unexplained.like_a_floor

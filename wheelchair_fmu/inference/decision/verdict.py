@@ -146,10 +146,7 @@ def diagnose(
 
 def _with_forces(found: Diagnosis, again: Callable[[Models], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
-    with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect.
-
-    A force that is more than that stays unexplained; but where no term was found for it, what the first search found may have
-    made up for it, and what is told is what is there beside such a force."""
+    with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
     before, along = _acting(found, (), found.rounds[0].fit)
     if found.verdict != "outside" or found.ladder[-1].left < found.models.policy.a_little or not before.fall:
         return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
@@ -159,15 +156,12 @@ def _with_forces(found: Diagnosis, again: Callable[[Models], Diagnosis], say: Ca
     except SimulationError:  # forces so strong that they hide all that a model does
         return replace(found, unexplained=_left(found, before))
     left = _left(second, before)
-    nobodys = left.like_a_floor and not left.ordered
-    if not nobodys and found.proposal:
+    if left.ordered or not left.like_a_floor:
         return replace(found, unexplained=left)
-    if not nobodys:
-        second = replace(second, verdict="outside", effects=() if second.verdict == "small" else second.effects)
     nominal, calibrated = found.ladder[:2]
     calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.models)
-    ladder = (nominal, calibrated, replace(second.ladder[1], name=FORCES), *second.ladder[2:])
-    return replace(second, ladder=ladder, unexplained=left)
+    with_forces = replace(second.ladder[1], name=FORCES)
+    return replace(second, ladder=(nominal, calibrated, with_forces, *second.ladder[2:]), unexplained=left)
 
 
 def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Models:
