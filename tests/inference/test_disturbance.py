@@ -114,6 +114,15 @@ def test_who_pushes_moves_and_who_rolls_sits_still(sample):
     assert not known.swinging(still).any()
 
 
+def test_a_torque_swings_a_body_as_a_force_on_the_wheel_does(sample):
+    run, R = sample.runs[1], Variant().vector()[[p.name for p in Variant().parameters()].index("wheel.R")]
+    torques = {name.replace(".F_", ".M_"): R * run.inputs[name] for name in HANDS}
+    turned = replace(run, inputs={**run.inputs, **dict.fromkeys(HANDS, 0 * run.time), **torques})
+    assert stroke(turned) == pytest.approx(stroke(run)) and stroke(run) > 1
+    known = NoiseModel({}, body=1.0, stroke=30.0)
+    np.testing.assert_allclose(known.swinging(turned), known.swinging(run))
+
+
 def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
     """What forces do is known: twice the mass needs twice the force for it."""
     known = NoiseModel({}, force=2.0, moment=0.5, body=1.0, mass=80.0)

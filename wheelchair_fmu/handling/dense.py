@@ -1,4 +1,4 @@
-"""CasADi functions whose results are arrays: written into NumPy's memory, which takes a third of the time of `DM.full`."""
+"""CasADi functions whose results are arrays: written into NumPy's memory, without the copies of `DM.full`."""
 
 from __future__ import annotations
 

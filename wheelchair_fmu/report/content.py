@@ -96,13 +96,15 @@ def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _forces(colour: NoiseModel) -> dict[str, Any] | None:
-    """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for."""
+    """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for, and
+    which of them are the rider's body's, whose size in a run is `swinging` times as large."""
     if not colour.disturbed:
         return None
     found = disturbance(colour, EXTERNAL, mass=colour.mass)
     assert found.common is not None
     as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
-    return {"lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": as_push}
+    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist()}
+    return {**sizes, "lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": as_push}
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
@@ -177,15 +179,9 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
             "step": noise.push_step.tolist(),
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
-        "forces": _sizes(colour, run) if colour.disturbed else {"sd": [], "swings": [], "swing": _series([])},
+        "swinging": _series(colour.swinging(run) if colour.disturbed else ()),
         "constants": [_constant(c) for c in locals_of(run)],
     }
-
-
-def _sizes(colour: NoiseModel, run: Run) -> dict[str, Any]:
-    """Standard deviations of the forces in one run, and times how much more those of the rider's body are at each moment."""
-    usual: list[float] = disturbance(colour, EXTERNAL, mass=colour.mass).sd.tolist()
-    return {"sd": usual, "swings": BODYS.astype(int).tolist(), "swing": _series(colour.swinging(run))}
 
 
 def _constant(local: Local) -> dict[str, Any]:

@@ -14,7 +14,7 @@
 #define MOMENTS 8     /* up to which readings are asked where errors of the pushes led, */
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
 #define TURNING 1     /* of the forces that nobody recorded, the moment, */
-#define SWINGS 2      /* and the first of the two by which a body swings */
+#define SWINGS 2      /* and the first of those by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
 static const double shares[] = {1.0, 0.5, 0.25, 0.1}; /* of a step that are tried */

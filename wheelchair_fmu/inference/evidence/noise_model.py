@@ -12,6 +12,7 @@ from scipy.signal import lfilter
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
+from ...campaign.rims import ARM
 from ...campaign.series import estimate
 from ...engine.innovations import Disturbance, Noise
 from ...engine.tangent import EXTERNAL
@@ -26,11 +27,11 @@ FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as lo
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
 # of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
 RISES = (1 / 3, 2 / 3)
-FORCED = 2 + len(SWUNG) + len(RISES)  # processes of `disturbance`: a force, a moment, those of the body and those of a floor,
-BODYS = np.isin(np.arange(FORCED), 2 + np.arange(len(SWUNG)))  # and which of them are the body's
+# of the processes of `disturbance`, a force, a moment, those of the body and those of a floor, which are the body's,
+BODYS = np.repeat([False, True, False], [2, len(SWUNG), len(RISES)])
+FORCED = len(BODYS)  # and how many there are
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
-RIM = 0.3  # m, about: a torque on a wheel is as large as a force there
 
 
 @dataclass(frozen=True)
@@ -183,7 +184,7 @@ def effort(run: Run) -> np.ndarray:
 def _both(run: Run) -> np.ndarray:
     """What both hands together push (n,), in N."""
     forces = [run.inputs[n] for n in HANDS if n in run.inputs]
-    torques = [run.inputs[n] / RIM for n in TURNS if n in run.inputs]
+    torques = [run.inputs[n] / ARM for n in TURNS if n in run.inputs]
     return np.sum([np.zeros(len(run.time)), *forces, *torques], axis=0)
 
 

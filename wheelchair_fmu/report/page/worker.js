@@ -124,9 +124,9 @@ class Kernel {
     const { wasm } = this, names = Object.keys(run.channels), nz = names.length, n = run.time.length, inputs = this.inputs.map(([name]) => name);
     const flags = (all, some) => all.map((name) => +some.includes(name)), among = (all) => (name) => all.indexOf(name);
     const series = names.map((c) => run.channels[c]), time = this.put(run.time), { pushes, constants } = run, nq = pushes.names.length;
-    const forces = campaign.forces ?? { lasting: [], together: [], as_push: {} }, nd = forces.lasting.length;
+    const forces = campaign.forces ?? { sd: [], body: [], lasting: [], together: [], as_push: {} }, nd = forces.lasting.length;
     const asPush = pushes.names.flatMap((name) => forces.as_push[name] ?? forces.lasting.map(() => 0));
-    const { sd, swings, swing } = run.forces, sizes = Float64Array.from({ length: n * nd }, (_, at) => sd[at % nd] * (swings[at % nd] ? swing[Math.floor(at / nd)] : 1));
+    const sizes = Float64Array.from({ length: n * nd }, (_, at) => forces.sd[at % nd] * (forces.body[at % nd] ? run.swinging[Math.floor(at / nd)] : 1));
     const recorded = Float64Array.from({ length: n * nz }, (_, at) => series[at % nz][Math.floor(at / nz)]);
     const doubles = (list) => this.put(Float64Array.from(list)), ints = (list) => this.words(list);
     const of = (part) => constants.flatMap(part), shape = of((c) => [...(c.shape ?? new Float64Array(n))]);
