@@ -5,6 +5,9 @@ less gravity's and with what goes into the states of laws and effects, is not ab
 chair counts by the equations as they were before each had one rate. Camber and self-aligning torque are left out, as the
 paper's own terms for them take part in no balance of energy.
 
+Effects are anywhere in their bounds, their constants with them; of a chair whose `laws` are asked, so is now and then each of
+its parameters.
+
 A tyre that slides and a brake take so much power that they hide what drives. So half of the motions are such that a chair
 without effects loses nothing: no resistance, no brake, and a rear axle that rolls where it points. In the others each of what
 takes power is left out half of the time: what the tyres resist sliding with, each axle's rolling resistance, the brakes.
@@ -22,6 +25,7 @@ import numpy as np
 from ..model.chassis import ROWS
 from ..model.stage import Effect
 from ..model.wheelchair import Model
+from ..quantities import Parameter
 from .places import SOLVED, Place, Settler
 from .subject import Breach, Subject
 
@@ -42,13 +46,17 @@ KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in ea
 WORK = ("push.", "rider.", "external.")  # inputs by which a person does work
 RESISTANCES = ("resistance.f_r", "resistance.f_f")
 HIDING = (*RESISTANCES, "tyre.C_lambda", "caster.C_lambda")  # what takes power, where a chair has it
+OF_NO_CHAIR = ("start.", "speed.", "effect.")  # parameters that say how a chair moves, or that are asked of by themselves
+SELDOM = 0.15  # share of a chair's parameters that are not as usual
 
 
 @dataclass(frozen=True)
 class Energy:
-    """What is asked of one model, in which the effects that are asked of are on and all others off."""
+    """What is asked of one model, in which the effects that are asked of are on and all others off; with `laws`, in chairs
+    with parameters anywhere in their bounds."""
 
     subject: Subject
+    laws: bool = False
 
     def breaches(self, on: Collection[Effect], rng: np.random.Generator, times: int = 60) -> list[Breach]:
         """The first moment, of so many with these effects anywhere in their bounds, in which energy rises."""
@@ -121,12 +129,27 @@ class Energy:
     def _values(self, on: Collection[Effect], rng: np.random.Generator) -> np.ndarray:
         """Parameters (np,): of the effects that are on anywhere in their bounds or at one of these, of the others zero."""
         p = self._off.copy()
+        for i in self._loose if self.laws else ():
+            if rng.random() < SELDOM:
+                p[i] = _within(self._model.parameters[i], rng)
         for effect in on:
             for q in effect.parameters:
                 inside = rng.uniform(-1, 1) * (q.smallest_interesting or 0.0)
                 value = rng.choice([q.lower, q.upper, rng.uniform(q.lower, q.upper), inside])
                 p[self._names.index(f"effect.{effect.id}.{q.name}")] = np.clip(value, q.lower, q.upper)
+            for q in effect.constants:
+                if rng.random() < 0.5:
+                    p[self._names.index(f"effect.{effect.id}.{q.name}")] = _within(q, rng)
         return p
+
+    @cached_property
+    def _loose(self) -> list[int]:
+        """Places of the chair's own parameters that may have another value."""
+        return [
+            i
+            for i, q in enumerate(self._model.parameters)
+            if not (q.choices or q.name in NONE or q.name.startswith(OF_NO_CHAIR))
+        ]
 
     def _powers_at(self, place: Place) -> tuple[float, float, dict[str, float]]:
         """Power [W], the sizes of its parts, and the least of each drag."""
@@ -134,8 +157,10 @@ class Energy:
         return float(parts.sum()), float(abs(parts).sum()), {n: float(v.min()) for n, v in zip(DRAGS, drags, strict=True)}
 
     def _sizes(self, on: Collection[Effect], place: Place) -> str:
-        names = [f"effect.{e.id}.{q.name}" for e in on for q in e.parameters]
-        return "".join(f", {n.rpartition('.')[2]} = {place.p[self._names.index(n)]:.4g}" for n in names)
+        names = {f"effect.{e.id}.{q.name}" for e in on for q in e.parameters}
+        other = {self._names[i] for i in np.flatnonzero(place.p != self._off)}.difference(HIDING)
+        shown = [(i, n) for i, n in enumerate(self._names) if n in names | other]
+        return "".join(f", {n.rpartition('.')[2] if n in names else n} = {place.p[i]:.4g}" for i, n in shown)
 
     def _places(self, state: str) -> list[int]:
         """Where a pair of states is among all."""
@@ -196,6 +221,16 @@ class Energy:
         rows = u * m.f[3], v * m.f[4], psi_dot * m.f[5]
         gravity = -q["m"] * q["g_x"] * u, -q["m"] * q["g_y"] * v
         return cs.Function("powers", [m.x, m.w, m.p], [cs.vertcat(*rows, *gravity, m.absorbed), *(q[n] for n in DRAGS)])
+
+
+def _within(q: Parameter, rng: np.random.Generator) -> float:
+    """A value of a parameter within its bounds, or at one: where these are far apart, of any order of magnitude."""
+    lower, upper = (
+        bound if np.isfinite(bound) else far * max(1.0, abs(q.default)) for bound, far in ((q.lower, -10), (q.upper, 10))
+    )
+    inside = np.exp(rng.uniform(*np.log([lower, upper]))) if lower > 0 else rng.uniform(lower, upper)
+    usual = q.default * np.exp(rng.normal())
+    return float(np.clip(rng.choice([lower, upper, inside, usual]), lower, upper))
 
 
 def _breach(on: Collection[Effect], fact: str, cure: str) -> Breach:

@@ -106,10 +106,10 @@ PARAMETERS = (
     Parameter(
         "tyre.force.C",
         ONE,
-        "shape factor C of the lateral force (Magic Formula)",
+        "shape factor C of the lateral force (Magic Formula); with more than 2 a tyre that slides would be driven aside",
         default=1.3,
         lower=0.1,
-        upper=3.0,
+        upper=2.0,
         symbol="force_C",
         source="Pacejka: the usual value for a lateral force",
     ),
