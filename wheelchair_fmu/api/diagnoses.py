@@ -320,8 +320,11 @@ class Diagnosis:
         effects = [
             (f"{r['effect']}.{r['parameter']}", *(r[k] for k in ("estimate", "se", "lower", "upper", "unit"))) for r in found
         ]
-        values = self._found.calibration
-        others = [(c.record.name, c.value, c.se, *_ends(c.value, c.se), c.record.unit.name) for c in values]
+        ends = {p["name"]: p["interval"] for p in self._told["final"]["parameters"] if p["interval"]}
+        others = [
+            (c.record.name, c.value, c.se, *ends.get(c.record.name, _ends(c.value, c.se)), c.record.unit.name)
+            for c in self._found.calibration
+        ]
         return latex.table([*effects, *others])
 
     def _page(self) -> str:

@@ -167,5 +167,10 @@ class Effect:
         return tuple(p.owned_by(self.id) for p in (*self.parameters, *constants))
 
     @property
+    def cause(self) -> str:
+        """What it is a form of, or its own id."""
+        return next((alike.what for alike in self.alike if alike.one_cause), self.id)
+
+    @property
     def stateless(self) -> bool:
         return not self.rows and not self.needs and not self.delays_record

@@ -11,7 +11,7 @@ from ...campaign import Run
 from ...quantities import Parameter
 from ..estimation.calibration import at_bound
 from ..estimation.fit import Fit
-from ..estimation.interval import half_width
+from ..estimation.interval import half_width, widened
 from ..estimation.statistics import finite, sandwich
 from ..evidence.evidence import Evidence
 from .verdict import Diagnosis
@@ -31,12 +31,14 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
     records, covariance = {**more, **likelihood.records}, sandwich(found)
     errors = np.sqrt(np.maximum(np.diag(covariance), 0))
     priors = _priors(d, found, records)
-    choice = likelihood.variant.choice
+    choice, allowed = likelihood.variant.choice, [d.allowance.get(n, 0.0) for n in found.names]
     return {
         "step": d.ladder[-1].name,
         "laws": {"tyre": choice.tyre, "caster": choice.caster, "wheel": choice.wheel, "equations": choice.equations},
         "parameters": [
-            _parameter(records[name], found.values[name], float(se), *priors[name], _interval(d, found, records, i))
+            _parameter(
+                records[name], found.values[name], (float(se), allowed[i]), *priors[name], _interval(d, found, records[name], i)
+            )
             for i, (name, se) in enumerate(zip(found.names, errors, strict=True))
         ],
         "covariance": ((covariance + covariance.T) / 2).tolist(),  # symmetric to the last digit
@@ -56,19 +58,25 @@ def _priors(d: Diagnosis, found: Fit, records: Mapping[str, Parameter]) -> dict[
     }
 
 
-def _interval(d: Diagnosis, found: Fit, records: Mapping[str, Parameter], at: int) -> tuple[tuple[float, float], str]:
+def _interval(d: Diagnosis, found: Fit, record: Parameter, at: int) -> tuple[tuple[float, float], str]:
     """That of an effect that was found, or one by standard errors alone; and which of the two it is."""
     name = found.names[at]
     if name in d.intervals:
         return d.intervals[name], BY_ERRORS if d.models.factory.leads else BY_PROFILE
-    value, half, record = found.values[name], half_width(found, at), records[name]
-    return (max(value - half, record.lower), min(value + half, record.upper)), BY_ERRORS
+    value, half = found.values[name], half_width(found, at)
+    return widened((value - half, value + half), value, d.allowance.get(name, 0.0), record), BY_ERRORS
 
 
 def _parameter(
-    record: Parameter, value: float, se: float, prior: float, prior_sd: float, interval: tuple[tuple[float, float], str]
+    record: Parameter,
+    value: float,
+    errors: tuple[float, float],
+    prior: float,
+    prior_sd: float,
+    interval: tuple[tuple[float, float], str],
 ) -> dict[str, Any]:
-    """Standard errors say nothing of a value that a bound stopped, which has no `interval` by these."""
+    """`errors` are the standard error and what effects that nobody named add to it. Standard errors say nothing of a value that
+    a bound stopped, which has no `interval` by these."""
     ends, by = interval
     stopped = at_bound(record, value, prior, prior_sd)
     told = by == BY_PROFILE or (not stopped and bool(np.isfinite(ends).all()))
@@ -77,7 +85,8 @@ def _parameter(
         "unit": record.unit.name,
         "meaning": record.meaning,
         "estimate": value,
-        "se": finite(se),
+        "se": finite(errors[0]),
+        "unnamed": finite(errors[1]),
         "interval": list(ends) if told else None,
         "interval_by": by if told else None,
         "prior": prior if np.isfinite(prior_sd) else None,

@@ -18,8 +18,9 @@ from ...model.stage import Effect
 from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts
 from ..estimation.fit import Fit
-from ..estimation.interval import half_width, profile_interval
+from ..estimation.interval import half_width, profile_interval, widened
 from ..estimation.statistics import correlation_time
+from ..estimation.unnamed import allowance
 from ..evidence.disturbance import Strength, acting, strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import MASS
@@ -56,7 +57,8 @@ class Diagnosis:
     `included` are the effects of the model in the end, of which the variant came with `already`; `rounds` those of the search,
     `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
     "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood, or by
-    standard errors where forces that nobody recorded lead the runs. `models` are those that were searched, `retimed` and
+    standard errors where forces that nobody recorded lead the runs, and as much wider as effects that nobody named may move an
+    estimate, by `allowance`, a standard deviation. `models` are those that were searched, `retimed` and
     `clocks` what is known of time, and `heard` sentences on columns and clocks.
     """
 
@@ -74,6 +76,7 @@ class Diagnosis:
     final: Fit
     calibration: tuple[Calibrated, ...]
     intervals: Mapping[str, tuple[float, float]]
+    allowance: Mapping[str, float]
     models: Models
     retimed: Mapping[str, Late]
     clocks: Clocks
@@ -213,6 +216,7 @@ def _diagnosed(
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
     heard = (*heard, *beginning.heard(in_time))
+    allowed = _allowance(models, rounds, found.effects)
     return Diagnosis(
         campaign=models.campaign.name,
         verdict=verdict,
@@ -227,7 +231,8 @@ def _diagnosed(
         proposal=proposal,
         final=base,
         calibration=tuple(values),
-        intervals=_intervals(models, included, effects, base) if proposal is None else {},
+        intervals=_intervals(models, included, effects, base, allowed) if proposal is None else {},
+        allowance=allowed,
         models=models,
         retimed=beginning.retimed,
         clocks=in_time,
@@ -282,13 +287,33 @@ def _notes(
     return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large)
 
 
-def _intervals(models: Models, included: Sequence[str], effects: Sequence[str], found: Fit) -> dict[str, tuple[float, float]]:
+def _allowance(models: Models, rounds: Sequence[Round], effects: tuple[str, ...]) -> dict[str, float]:
+    """By how much (a standard deviation, by name) the estimates of the last model may be off by causes that nobody named. Those
+    that a nuisance of the campaign stands for are allowed for by it."""
+    last = next((r for r in reversed(rounds) if r.effects == effects), None)
+    if last is None:
+        return {}
+    causes = {e: record.cause for e, record in models.factory.catalogue.items()}
+    named = {causes[e] for e in effects}
+    others = [s for s in last.scores if causes[s.effect] not in named and s.effect not in models.doubles]
+    covariance = allowance(others, causes, len(last.fit.names), models.policy)
+    return dict(zip(last.fit.names, map(float, np.sqrt(np.diag(covariance))), strict=True))
+
+
+def _intervals(
+    models: Models, included: Sequence[str], effects: Sequence[str], found: Fit, allowed: Mapping[str, float]
+) -> dict[str, tuple[float, float]]:
     """Intervals of the parameters of the effects that were found."""
     likelihood, names = models.likelihood(included), [n for e in effects for n in models.factory.parameters(e)]
-    if models.factory.leads:  # no value was found by how likely the readings are
-        ends = {n: half_width(found, found.names.index(n)) for n in names if n in found.names}
-        return {n: (found.values[n] - end, found.values[n] + end) for n, end in ends.items()}
-    return {n: profile_interval(likelihood, found, n) for n in names if n in found.names}
+
+    def interval(name: str) -> tuple[float, float]:
+        value, half = found.values[name], half_width(found, found.names.index(name))
+        # Beside forces that nobody recorded no value was found by how likely the readings are.
+        by_errors = (value - half, value + half)
+        ends = by_errors if models.factory.leads else profile_interval(likelihood, found, name)
+        return widened(ends, value, allowed.get(name, 0.0), likelihood.records[name])
+
+    return {n: interval(n) for n in names if n in found.names}
 
 
 def _next(
@@ -361,8 +386,7 @@ def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> flo
     """Share of the causes that would have been seen; of one that has several forms, as large a part as of these."""
     causes: dict[str, list[bool]] = {}
     for effect, would in seen.items():
-        cause = next((alike.what for alike in catalogue[effect].alike if alike.one_cause), effect)
-        causes.setdefault(cause, []).append(would)
+        causes.setdefault(catalogue[effect].cause, []).append(would)
     return float(np.mean([float(np.mean(forms)) for forms in causes.values()] or [0.0]))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ...errors import SimulationError
+from ...quantities import Parameter
 from ..chance import student, value_beyond
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
@@ -69,6 +70,13 @@ def half_width(found: Fit, at: int) -> float:
     if runs < RUNS:
         return lasting
     return max(lasting, student(LEVEL, degrees_between_runs(found, at)) * float(np.sqrt(between_runs(found)[at, at])))
+
+
+def widened(ends: tuple[float, float], value: float, allowed: float, record: Parameter) -> tuple[float, float]:
+    """An interval of an estimate that may be off by something else as well, normal with this standard deviation, within bounds:
+    squares of half widths add."""
+    lower, upper = (float(np.hypot(end - value, NORMAL * allowed)) for end in ends)
+    return max(value - lower, min(record.lower, ends[0])), min(value + upper, max(record.upper, ends[1]))
 
 
 def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], float]:

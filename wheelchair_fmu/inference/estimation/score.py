@@ -40,6 +40,7 @@ class Score:
     signature: np.ndarray  # (N,) unit vector of the projected expected change
     delta: np.ndarray
     covariance: np.ndarray  # (k, k) of the estimate, in units of δ; where the data see nothing as large as BLIND
+    imitated: np.ndarray  # (m, k) by how much the calibrated directions make up for δ of it
 
 
 class Projector:
@@ -54,14 +55,15 @@ class Projector:
 
     def __call__(self, X: np.ndarray) -> np.ndarray:
         """What is left of the columns in the readings (N, k)."""
-        return X - self.Z @ self._imitated(X)
+        return X - self.Z @ self.imitated(X)
 
     def with_strained(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The same, and what is left of the columns in the further readings (m, k)."""
-        imitated = self._imitated(X)
+        imitated = self.imitated(X)
         return X - self.Z @ imitated, -self.slopes @ imitated
 
-    def _imitated(self, X: np.ndarray) -> np.ndarray:
+    def imitated(self, X: np.ndarray) -> np.ndarray:
+        """By how much (m, k) the directions make up for the columns."""
         return self._inverse @ (self.Z.T @ X)
 
 
@@ -120,6 +122,7 @@ def score(
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
     r, scaled = evidence.r, S * delta
     s, strained = off.with_strained(scaled)
+    imitated = off.imitated(scaled)
     I = s.T @ s + strained.T @ strained  # noqa: E741
     size, axes = np.linalg.eigh(I)
     seen = size > max(SEEN, 1e-9 * size.max(initial=0))
@@ -128,7 +131,7 @@ def score(
     if not seen.any():
         nothing = np.zeros(len(delta))
         unknown, blind = np.full(len(delta), np.inf), BLIND * np.eye(len(delta))
-        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, hidden, nothing[:0], delta, blind)
+        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, hidden, nothing[:0], delta, blind, imitated)
     V = axes[:, seen]
     s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
     U = s_V.T @ r + strained_V.T @ off.rows
@@ -161,4 +164,5 @@ def score(
         delta,
         V @ _spread(evidence, s_V, strained_V, I_V, r - direction, off.rows - strained_V @ change) @ V.T
         + BLIND * (np.eye(len(delta)) - V @ V.T),
+        imitated,
     )

@@ -1,7 +1,8 @@
 """The likelihood about the estimates, for drawing: by each size alone, and by the sizes of two rivals together.
 
-Everything else is where these sizes let it be. Heights are −2 log likelihood above the lowest, shrunk as `half_width` widens
-intervals for residuals that last and runs that disagree, so that 95 % of one size lie below 3.84 and of two below 5.99.
+Everything else is where these sizes let it be. Heights are −2 log likelihood above the lowest, shrunk as intervals are widened
+for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84 and of two
+below 5.99.
 """
 
 from __future__ import annotations
@@ -47,17 +48,20 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
         return {"profiles": [], "pair": None}
     try:
         found = fit(likelihood, names, values)
-        return {"profiles": [_profile(likelihood, found, n) for n in own], "pair": _pair(models, told, effects, found)}
+        allowed = {p["name"]: p.get("unnamed") or 0.0 for p in told["final"]["parameters"]}
+        halves = {n: float(np.hypot(half_width(found, found.names.index(n)), NORMAL * allowed.get(n, 0.0))) for n in own}
+        profiles = [_profile(likelihood, found, n, half) for n, half in halves.items()]
+        return {"profiles": profiles, "pair": _pair(models, told, effects, found)}
     except SimulationError:
         return {"profiles": [], "pair": None}
 
 
-def _profile(likelihood: Likelihood, found: Fit, name: str) -> dict[str, Any]:
+def _profile(likelihood: Likelihood, found: Fit, name: str, half: float) -> dict[str, Any]:
     at, record = found.names.index(name), likelihood.records[name]
-    half, misfit = half_width(found, at), profile(likelihood, found, (at,))
+    misfit = profile(likelihood, found, (at,))
     values = np.unique(np.clip(found.values[name] + half * ALONG, record.lower, record.upper))
     heights = np.array(parallel_map(lambda v: misfit((v,)), values)) - found.misfit
-    shrunk = _above(heights * _robust(found, at))
+    shrunk = _above(heights * _robust(found, at, half))
     return {
         "parameter": name,
         "estimate": found.values[name],
@@ -72,9 +76,9 @@ def _above(heights: np.ndarray) -> np.ndarray:
     return heights - min(0.0, float(heights.min()))
 
 
-def _robust(found: Fit, at: int) -> float:
-    """Variance as slopes have it, beside that which intervals are made of."""
-    return float(found.covariance[at, at] / (half_width(found, at) / NORMAL) ** 2)
+def _robust(found: Fit, at: int, half: float) -> float:
+    """Variance as slopes have it, beside that which an interval with this half width is made of."""
+    return float(found.covariance[at, at] / (half / NORMAL) ** 2)
 
 
 def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base: Fit) -> dict[str, Any] | None:
@@ -89,7 +93,7 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
     at = [found.names.index(n) for n in pair]
     records = [likelihood.records[n] for n in pair]
     best, scale = np.array([found.values[n] for n in pair]), np.array([r.smallest_interesting for r in records])
-    shrunk = min(_robust(found, i) for i in at)
+    shrunk = min(_robust(found, i, half_width(found, i)) for i in at)
     size, axes = np.linalg.eigh(found.covariance[np.ix_(at, at)] / np.outer(scale, scale) / shrunk)
     axes = scale[:, None] * axes * np.sqrt(size)
     misfit = profile(likelihood, found, at, corrections=1)

@@ -147,6 +147,11 @@ def errors(case: Case) -> str:
         )
     else:
         told.append(f"All 95 % intervals are by 1.96 standard errors either side{wider}.")
+    if any(p.get("unnamed") for p in case.parameters):
+        told.append(
+            "They allow for effects that are not in the model, each normal about zero beforehand with a quarter of its "
+            "smallest interesting size, as far as the data do not say otherwise."
+        )
     return " ".join(told)
 
 
