@@ -327,7 +327,7 @@ def test_values_to_be_measured_again_have_names_and_the_headline_stays_short():
 
 def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
     row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
-    size = {**row["parameters"]["D"], "estimate": 1.6, "se": 1.2}
+    size = {**row["parameters"]["D"], "estimate": 1.6, "se": 1.2, "interval": None}
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
     assert line.endswith("a size that these runs leave open.")
@@ -336,8 +336,19 @@ def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
 def test_of_a_size_below_zero_it_is_said_what_it_is_of():
     """The wheel that drags is the other one."""
     row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
-    size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1}
+    size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1, "interval": None}
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
-    assert "−1.60 ± 0.10 N (rolling resistance of the left wheel less the right wheel's), 4 times" in line
-    assert "(" not in tale(CASES["tie"]).cards[0]["lines"][0]
+    assert ": rolling resistance of the left wheel less the right wheel's −1.60 ± 0.10 N, 4 times" in line
+    assert ": 1.606 N (95 % sure: 1.582 to 1.631 N), 4 times" in tale(CASES["tie"]).cards[0]["lines"][0]
+
+
+def test_a_size_whose_interval_has_nought_in_it_is_not_on_the_card():
+    """Though its standard error, which knows nothing of how runs differ, is far less than it."""
+    row = next(r for r in SAMPLE["ranking"] if r["effect"] == "trunk_motion")
+    size = row["parameters"]["amplitude"]
+    forward = {**size, "estimate": 0.0232, "se": 0.0003, "interval": [0.0131, 0.0336]}
+    swing = {**size, "estimate": 0.00013, "se": 0.00006, "interval": [-0.0008, 0.0012]}
+    ranking = [{**r, "parameters": {"amplitude": forward, "swing": swing}} if r is row else r for r in SAMPLE["ranking"]]
+    lines = tale(told("missing", ["trunk_motion"], ranking=ranking)).cards[0]["lines"]
+    assert len(lines) == 2 and lines[0].endswith("0.023 m (95 % sure: 0.013 to 0.034 m).")

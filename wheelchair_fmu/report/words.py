@@ -150,7 +150,7 @@ def particulars(
 def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity], titles: Mapping[str, str]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
     parts = [
-        f"{record.meaning} = {spoken(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
+        f"{record.meaning} = {estimated(row['parameters'][name], record.unit)}"
         for name, record in known.items()
     ]
     title = title_of(effect, titles)
@@ -198,6 +198,25 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
 def spoken(value: float, se: float | None, unit: Unit) -> str:
     """The same as it is printed: degrees by their sign."""
     return re.sub(r" deg$", "°", re.sub(r" deg/s$", " °/s", value_text(value, se, unit)))
+
+
+def estimated(size: Mapping[str, Any], unit: Unit) -> str:
+    """A size of the ranking: with its 95 % interval where the diagnosis has one, which allows for runs that differ by more than
+    their noise, as a standard error does not; else with that."""
+    ends = size.get("interval")
+    if not ends or not ends[1] > ends[0]:
+        return spoken(size["estimate"], size["se"], unit)
+    shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
+    first, exponent = f"{(ends[1] - ends[0]) / 2 * shown.factor:.0e}".split("e")
+    place = max(0, (1 if first in "12" else 0) - int(exponent))
+    value, low, high = (f"{round(v * shown.factor, place) + 0.0:.{place}f}" for v in (size["estimate"], *ends))
+    name = "°" if shown.name == "deg" else _spaced(shown.name)
+    return f"{value}{name} (95 % sure: {low} to {high}{name})".replace("-", "−")
+
+
+def _spaced(unit: str) -> str:
+    """A unit as it stands behind a number."""
+    return "" if unit == "1" else f" {unit.replace('deg', '°').replace('.', ' ').replace('2', '²')}"
 
 
 def probability_words(p: float) -> str:
