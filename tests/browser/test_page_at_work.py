@@ -213,6 +213,17 @@ def test_one_time_for_chair_curves_and_readings(reader):
     page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
 
 
+def test_on_a_phone_the_chair_moves_beside_its_curve(browser, report_file):
+    """Between the top of the scene and the end of the first chart lies no more than a screen, less the numbers that stay."""
+    reader = Reader(browser, report_file, 390)
+    box = "(e) => { const { top, bottom } = e.getBoundingClientRect(); return [top, bottom]; }"
+    scene = reader.page.eval_on_selector(".scenery", box)
+    play, chart = (reader.page.eval_on_selector(s, box) for s in (".player", "#overlay .chart"))
+    stays = reader.page.evaluate("document.querySelector('.now').offsetHeight")
+    reader.close()
+    assert scene[0] < play[0] < chart[0] and chart[1] - scene[0] < 860 - stays
+
+
 def test_samples_of_several_devices_are_one_curve_and_a_pause_is_none(browser, tmp_path):
     """A channel that is sampled at every third row, with a pause of two seconds: drawn, read and printed as it is."""
     shutil.copytree(SAMPLE, tmp_path / "campaign")

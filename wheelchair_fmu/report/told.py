@@ -345,7 +345,11 @@ def actions(t: Told) -> list[str]:
     if t.verdict == "small":
         return ["Use the model as it is.", *(inspect(e, t.title(e)) for e in found)]
     if t.verdict == "adequate":
-        return ["Use the model as it is, for manoeuvres like these."]
+        return [
+            "Use the model as it is, for manoeuvres like these.",
+            *measure,
+            "For other manoeuvres, record some of them first and have them diagnosed too.",
+        ]
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
 
 

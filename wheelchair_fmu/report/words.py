@@ -27,6 +27,7 @@ CHANNELS = {
     "yaw": "the heading",
 }
 UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
+CENTRE = re.compile(r"\bCM\b")
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
@@ -123,6 +124,11 @@ def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mappi
     """Effects that help, each with those this campaign cannot tell it from; of many the first, as a long list says nothing."""
     groups = [listed([title_of(e, titles) for e in group[:HELPERS]], "or") for group in grouped(effects, ties)]
     return listed(groups[:HELPERS], "and")
+
+
+def in_full(words: str) -> str:
+    """A title or a meaning for readers who do not know what the equations are written in."""
+    return CENTRE.sub("centre of mass", words)
 
 
 def title_of(effect: str, titles: Mapping[str, str]) -> str:
