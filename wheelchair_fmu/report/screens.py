@@ -264,8 +264,8 @@ def _nothing(t: Told) -> str:
 
 def _nearest(t: Told) -> list[str]:
     """Which effect of the catalogue comes nearest to a term that none of them is."""
-    left = {r["effect"]: t.error(r["effect"]) for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])}
-    known = {e: error for e, error in left.items() if error is not None}
+    alone = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])]
+    known = {e: error for e in alone if (error := t.error(e)) is not None}
     if not t.proposal or not known:
         return []
     best = min(known, key=lambda e: known[e])
@@ -294,8 +294,9 @@ def _bent(t: Told) -> list[str]:
 
 def _unmoved(t: Told) -> list[str]:
     """Where errors over all channels tell little, what the choice rests on."""
-    alike = t.falls or t.slight or near_rivals(t)
-    return [] if alike else ["Over all channels the error is about the same before and after; moment by moment the runs tell them apart."]
+    if t.falls or t.slight or near_rivals(t):
+        return []
+    return ["Over all channels the error is about the same before and after; moment by moment the runs tell them apart."]
 
 
 def bars(t: Told) -> list[dict[str, Any]]:

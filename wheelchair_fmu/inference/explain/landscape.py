@@ -48,7 +48,10 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
         return {"profiles": [], "pair": None}
     try:
         found = _fitted(likelihood, names, values)
-        return {"profiles": [_profile(likelihood, found, n, _interval(told, n)) for n in own], "pair": _pair(models, told, effects, found)}
+        return {
+            "profiles": [_profile(likelihood, found, n, _interval(told, n)) for n in own],
+            "pair": _pair(models, told, effects, found),
+        }
     except SimulationError:
         return {"profiles": [], "pair": None}
 

@@ -12,7 +12,7 @@ function places(width, look, rows) {
   const left = narrow ? 12 : Math.min(0.48 * width, 14 + Math.max(...rows.map((r) => long(r.name, look, 12, weight(r))))), right = narrow ? 12 : noted + 20;
   let y = 24;
   const all = rows.map((r) => {
-    const name = broken(r.name, narrow ? width - 2 * left - Math.max(long(r.note, look, 11), long(r.under ?? "", look, 11)) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 || r.under ? (narrow ? 14 : 10) : 0), top = y;
+    const name = broken(r.name, narrow ? width - 2 * left - Math.max(long(r.note, look, 11), long(r.under ?? "", look, 11)) - 10 : left - 12, look, 12, weight(r), narrow ? 3 : 2), lines = Math.max(name.length, r.under ? 2 : 1), high = (narrow ? 2 * ROW + 14 * (lines - 1) : ROW + 10 * (lines > 1)), top = y;
     y += high;
     return { name, top, high, middle: narrow ? top + high - 14 : top + high / 2 };
   });
