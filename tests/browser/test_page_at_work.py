@@ -213,6 +213,24 @@ def test_one_time_for_chair_curves_and_readings(reader):
     page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
 
 
+def test_paper_shows_what_was_found_beside_what_was_before(reader):
+    """Where nothing was set by hand; on the screen all stays as it is."""
+    page, caption = reader.page, "#overlay .caption"
+    page.wait_for_function("() => report.found?.run === report.shown.run")
+    before = page.inner_text(caption)
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert "before (dashed)" in page.text_content(caption) and "before" in page.text_content("#overlay .paper svg")
+    assert "before what was found was put in" in page.text_content("#where .caption")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.wait_for_function("() => !report.wished")
+    assert page.inner_text(caption) == before and page.evaluate("report.timeline.result === report.results[report.shown.run]")
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert "with the values that the search found" not in page.text_content(caption)
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+
+
 def test_on_a_phone_the_chair_moves_beside_its_curve(browser, report_file):
     """Between the top of the scene and the end of the first chart lies no more than a screen, less the numbers that stay."""
     reader = Reader(browser, report_file, 390)

@@ -192,8 +192,8 @@ export class Figures {
         return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high, "error [sd]": result.errors[c] };
       },
       caption: () => {
-        const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right, by the noise of sensor and pushes${app.forces ? ", by forces that nobody recorded" : ""}${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
+        const result = app.printed ?? app.results[app.shown.run], was = app.printed ? `, ${rms(byChannel(app.before())[app.shown.channel])} before (dashed)` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise${was}; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right, by the noise of sensor and pushes${app.forces ? ", by forces that nobody recorded" : ""}${!app.printed && app.doubt() ? " and by how uncertain its fitted values are" : app.printed ? ", with the values that the search found" : ", with its values as they are set"}.` : "";
       },
     };
   }
@@ -202,7 +202,7 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => `Error of each run and channel in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
+      caption: () => `Error of each run and channel${this.app.printed ? ", before what was found was put in," : ""} in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
     };
   }
 

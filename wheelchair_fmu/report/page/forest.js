@@ -2,6 +2,7 @@
 // was given.
 
 import { broken, canvas, line, long, svg, symbolic, text, ticked, ticks } from "page/draw";
+import { UNSEEN } from "page/numbers";
 import { capital } from "page/words";
 
 const ROW = 24, CLIP = 12;
@@ -26,7 +27,7 @@ export const fitting = (high) => Math.floor((high - 70) / (ROW + 3));
  *  that a value could not leave; the band from −`band` to `band` is what the words `shaded` say. */
 export function forest(width, look, rows, unit, shaded, band = 1) {
   const { narrow, left, right, all, end } = places(width, look, rows);
-  const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
+  const strong = rows.filter((r) => r.strong && r.note !== UNSEEN).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   const strips = narrow ? all.map(({ middle }) => [middle - 9, middle + 9]) : [[24, end]], marks = ticked(ticks(low, most, Math.max(4, (width - left - right) / 70))); // no line runs through words
