@@ -213,6 +213,35 @@ def test_one_time_for_chair_curves_and_readings(reader):
     page.wait_for_function("() => !report.timeline.playing && report.timeline.at === 6")  # to the end of what is shown
 
 
+def test_paper_shows_what_was_found_beside_what_was_before(reader):
+    """Where nothing was set by hand; on the screen all stays as it is."""
+    page, caption = reader.page, "#overlay .caption"
+    page.wait_for_function("() => report.found?.run === report.shown.run")
+    before = page.inner_text(caption)
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert "before (dashed)" in page.text_content(caption) and "before" in page.text_content("#overlay .paper svg")
+    assert "before what was found was put in" in page.text_content("#where .caption")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.wait_for_function("() => !report.wished")
+    assert page.inner_text(caption) == before and page.evaluate("report.timeline.result === report.results[report.shown.run]")
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert "with the values that the search found" not in page.text_content(caption)
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+
+
+def test_on_a_phone_the_chair_moves_beside_its_curve(browser, report_file):
+    """Between the top of the scene and the end of the first chart lies no more than a screen, less the numbers that stay."""
+    reader = Reader(browser, report_file, 390)
+    box = "(e) => { const { top, bottom } = e.getBoundingClientRect(); return [top, bottom]; }"
+    scene = reader.page.eval_on_selector(".scenery", box)
+    play, chart = (reader.page.eval_on_selector(s, box) for s in (".player", "#overlay .chart"))
+    stays = reader.page.evaluate("document.querySelector('.now').offsetHeight")
+    reader.close()
+    assert scene[0] < play[0] < chart[0] and chart[1] - scene[0] < 860 - stays
+
+
 def test_samples_of_several_devices_are_one_curve_and_a_pause_is_none(browser, tmp_path):
     """A channel that is sampled at every third row, with a pause of two seconds: drawn, read and printed as it is."""
     shutil.copytree(SAMPLE, tmp_path / "campaign")

@@ -377,6 +377,13 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
     assert len({len(r) for r in rows}) == 1
 
 
+def test_names_of_runs_are_whole_in_one_column_of_a_journal(open_report, tmp_path):
+    """Heads stand upright where beside one another they would leave a name no room."""
+    drawn = ElementTree.fromstring(taken(open_report, "where", "SVG 85 mm", tmp_path).read_bytes())
+    words = ["".join(e.itertext()) for e in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"coast-down", "straight-strokes", "yaw rate"} <= set(words)
+
+
 @pytest.mark.parametrize("name", ["輪椅", "مقعد"])  # not in the fonts; in them, but joined from right to left
 def test_a_name_that_the_fonts_cannot_write_becomes_a_picture(browser, report_file, tmp_path, name):
     content = unpacked(report_file.read_text(encoding="utf-8"))

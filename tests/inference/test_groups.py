@@ -12,6 +12,7 @@ import pytest
 from benchmarks.independent.campaigns import make
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory, groups_of
 from wheelchair_fmu.inference.models.hypothesis import Model
@@ -22,6 +23,7 @@ from wheelchair_fmu.inference.search.joint import parted
 from wheelchair_fmu.inference.search.judge import judge
 from wheelchair_fmu.inference.search.screen import _secants, screen_groups
 from wheelchair_fmu.inference.search.search import searched
+from wheelchair_fmu.inference.search.selection import Selection
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.stage import Effect, adds
 from wheelchair_fmu.model.variant import Variant
@@ -164,6 +166,22 @@ def test_a_start_whose_slopes_are_beyond_all_numbers_leads_nowhere(tmp_path, mon
     monkeypatch.setattr(joint, "most_promising", lambda *_: [start])
     with np.errstate(all="ignore"):
         assert joint._fitted(models, base, group, group) is None
+
+
+def test_a_step_of_a_group_is_judged_as_by_whoever_simulates_it():
+    """And not along the starts and pushes that other models were fitted from, by which one model had two numbers."""
+    asked = []
+
+    def evidence(runs, values, tune_start):
+        asked.append((runs, values, tune_start))
+        return Evidence((), ())
+
+    models = Some(campaign=Some(fit=1, holdout=2), likelihood=lambda effects: Some(evidence=evidence))
+    models.fitted = lambda effects, start: Some(values={"x": 3.0})
+    selection = Selection(models, Some(effects=()), (), 0.0, lambda ladder: None)
+    step = selection._passed(Some(effects=("caster_inertia", "caster_trail"), fit=Some(values={})), 1)
+    assert step.name == "+caster_inertia" and step.values == {"x": 3.0}
+    assert asked == [(1, {"x": 3.0}, 2), (2, {"x": 3.0}, 2)]
 
 
 def test_effects_of_one_law_are_tried_with_its_constants_as_records_have_them(sample):

@@ -26,7 +26,7 @@ def models():
 
 def test_a_profile_crosses_its_level_where_the_interval_ends(models):
     """The interval was found by another search, for roots; both follow one likelihood."""
-    (one,) = landscape(models, {**TOLD, "ranking": []})["profiles"]
+    (one,) = landscape(models, TOLD)["profiles"]
     heights, lower = np.array(one["heights"]), int(np.argmin(one["heights"]))
     assert heights[lower] == pytest.approx(0, abs=0.2) and one["values"][lower] == pytest.approx(one["estimate"], abs=0.01)
     left = np.interp(-one["level"], -heights[: lower + 1], one["values"][: lower + 1])

@@ -16,7 +16,7 @@ from wheelchair_fmu.report.advice import INSPECT, inspect
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, exceeds, near_rivals
-from wheelchair_fmu.report.words import headline
+from wheelchair_fmu.report.words import headline, in_full
 
 EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
@@ -133,6 +133,18 @@ def test_an_adequate_model_explains_what_it_leaves_only_where_that_is_noise():
     assert what["lines"] == ["The model explains these runs to within the noise of the sensors."]
 
 
+def test_nothing_suffices_though_something_comes_near():
+    """What an effect of the catalogue leaves stands beside what the missing force does."""
+    lines = tale(CASES["outside"]).screens[3]["lines"]
+    nearest = min((r for r in SAMPLE["ranking"] if r["heldout_after"]), key=lambda r: r["heldout_after"])
+    assert lines[1].startswith(TITLES[nearest["effect"]].capitalize()) and "comes nearest with 1.01, where" in lines[1]
+    assert len(tale(CASES["outside, no term"]).screens[3]["lines"]) == 1
+
+
+def test_centre_of_mass_is_written_in_full():
+    assert in_full("moment about the CM, by the CMs") == "moment about the centre of mass, by the CMs"
+
+
 def test_two_effects_are_a_list_and_a_tie_shows_both_sizes():
     two, tie = tale(CASES["two"]).cards[0], tale(CASES["tie"]).cards
     assert two["lead"] == "Two effects" and len(two["lines"]) == 2
@@ -163,6 +175,8 @@ def test_an_effect_that_was_tried_beside_others_is_no_rival_of_theirs():
     assert answer == f"No: beside what was found it changes nothing, and the error stays at {top:.2f}."
     titles = [b["title"] for b in screens[3]["bars"]]
     assert TITLES[beside] not in titles and TITLES[LEAN] in titles
+    said = f"Put in beside it, {TITLES[beside]} brings the error down no further."
+    assert said in screens[3]["lines"] and said not in tale(CASES["missing"]).screens[3]["lines"]
 
 
 def test_rivals_stand_back_each_for_a_reason_of_its_own():
@@ -194,7 +208,7 @@ def test_where_nothing_was_found_one_is_tried_that_says_why(verdict, wanted):
 def test_how_sure_it_is_that_nothing_is_missing_is_told_by_what_decides_it(verdict, only):
     """The verdict counts causes; an older diagnosis does not say how many, and then effects are counted."""
     sure = tale(told(verdict, seen=0.824)).cards[1]
-    assert sure["lead"].startswith(f"{only}82 % of all causes") and "effects of one cause count as one" in sure["lines"][0]
+    assert sure["lead"].startswith(f"{only}82 % of all causes") and "Effects of one cause count as one" in sure["lines"][0]
     known = sum(r["power"] >= 0.8 for r in SAMPLE["ranking"])
     assert tale(told(verdict)).cards[1]["lead"].startswith(f"{only}{known} of {len(SAMPLE['ranking'])} effects")
 
@@ -327,7 +341,7 @@ def test_values_to_be_measured_again_have_names_and_the_headline_stays_short():
 
 def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
     row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
-    size = {**row["parameters"]["D"], "estimate": 1.6, "se": 1.2}
+    size = {**row["parameters"]["D"], "estimate": 1.6, "se": 1.2, "interval": None}
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
     assert line.endswith("a size that these runs leave open.")
@@ -336,8 +350,19 @@ def test_a_size_that_may_as_well_be_none_is_no_multiple_of_what_matters():
 def test_of_a_size_below_zero_it_is_said_what_it_is_of():
     """The wheel that drags is the other one."""
     row = next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG)
-    size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1}
+    size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1, "interval": None}
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
-    assert "−1.60 ± 0.10 N (rolling resistance of the left wheel less the right wheel's), 4 times" in line
-    assert "(" not in tale(CASES["tie"]).cards[0]["lines"][0]
+    assert ": rolling resistance of the left wheel less the right wheel's −1.60 ± 0.10 N, 4 times" in line
+    assert ": 1.606 N (95 % sure: 1.582 to 1.631 N), 4 times" in tale(CASES["tie"]).cards[0]["lines"][0]
+
+
+def test_a_size_whose_interval_has_nought_in_it_is_not_on_the_card():
+    """Though its standard error, which knows nothing of how runs differ, is far less than it."""
+    row = next(r for r in SAMPLE["ranking"] if r["effect"] == "trunk_motion")
+    size = row["parameters"]["amplitude"]
+    forward = {**size, "estimate": 0.0232, "se": 0.0003, "interval": [0.0131, 0.0336]}
+    swing = {**size, "estimate": 0.00013, "se": 0.00006, "interval": [-0.0008, 0.0012]}
+    ranking = [{**r, "parameters": {"amplitude": forward, "swing": swing}} if r is row else r for r in SAMPLE["ranking"]]
+    lines = tale(told("missing", ["trunk_motion"], ranking=ranking)).cards[0]["lines"]
+    assert len(lines) == 2 and lines[0].endswith("0.023 m (95 % sure: 0.013 to 0.034 m).")

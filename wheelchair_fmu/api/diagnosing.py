@@ -22,7 +22,7 @@ from ..report.page import page
 from ..report.paper.case import checked
 from ..report.paper.folder import supplement
 from ..report.tale import story_of
-from ..report.words import headline, particulars
+from ..report.words import headline, in_full, particulars
 from .lacking import missing
 
 Story = dict[str, Any]
@@ -41,8 +41,9 @@ def searched(
 def page_of(measured: Campaign, chair: Variant, told: Story, fixed: Sequence[str]) -> str:
     """The page that `wheelchair report` writes, as HTML."""
     chair = _with_proposal(chair, told)
-    titles = {e.id: e.title for e in chair.catalogue.values()}
-    records = {p.name: p for p in (*chair.parameters(), *(p for e in chair.catalogue.values() for p in e.owned))}
+    titles = {e.id: in_full(e.title) for e in chair.catalogue.values()}
+    known = (*chair.parameters(), *(p for e in chair.catalogue.values() for p in e.owned))
+    records = {p.name: replace(p, meaning=in_full(p.meaning)) for p in known}
     colour = noise_told(told, measured.noise)
     tale = story_of(told, titles, records, {c.name: c.unit for c in CHANNELS})
     return page(

@@ -28,6 +28,9 @@ MOST_COMPONENTS = 16
 FUNCTIONS: dict[str, tuple[Callable[..., Any], int]] = {
     **{name: (getattr(cs, name), 1) for name in ("sin", "cos", "tan", "atan", "exp", "log", "sqrt", "tanh", "fabs", "sum1")},
     **{name: (getattr(cs, name), 2) for name in ("atan2", "fmin", "fmax")},
+    "abs": (cs.fabs, 1),  # as most people write these three
+    "min": (cs.fmin, 2),
+    "max": (cs.fmax, 2),
     "vertcat": (cs.vertcat, 0),
     "magnitude": (magnitude, 2),
     "direction": (direction, 2),

@@ -130,11 +130,14 @@ def _would_be_seen(t: Told) -> tuple[str, str]:
     """What the verdict rests on where nothing was found, and how it is counted. A diagnosis of an older version does not say
     it: then effects are counted that these runs would show."""
     share, adequate = t.diagnosis.get("seen"), t.verdict == "adequate"
-    counted = f"at the smallest size that would matter, in at least {DEFAULT.power:.0%} of such campaigns".replace("%", " %")
+    counted = (
+        "An effect counts as seen if, at the smallest size that would matter, it would show in at least "
+        f"{DEFAULT.power:.0%} of such campaigns."
+    ).replace("%", " %")
     if share is None:
         many = f"{sum(r['power'] >= DEFAULT.power for r in t.rows.values())} of {len(t.rows)} effects"
-        return f"{many} would have been seen" if adequate else f"Only {many} could have been seen", f"Each {counted}."
+        return f"{many} would have been seen" if adequate else f"Only {many} could have been seen", counted
     causes = f"{share:.0%} of all causes".replace("%", " %")
     lead = f"{causes} would have been seen" if adequate else f"Only {causes} could have been seen"
-    apart = "effects of one cause count as one, and what mass or sizes given a little wrong would do as well counts as seen"
-    return lead, f"Each {counted}; {apart}."
+    apart = "Effects of one cause count as one, and what a mass or a size given a little wrong would do as well counts as seen."
+    return lead, f"{counted} {apart}"

@@ -29,6 +29,7 @@ from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..quantities import N, Parameter, Unit
+from .words import in_full
 
 STARTS = (*START, *CASTERS)  # of which a model has those of its own states
 TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
@@ -194,7 +195,7 @@ def _constant(local: Local) -> dict[str, Any]:
 
 
 def _effect(effect: Effect) -> dict[str, Any]:
-    return {"id": effect.id, "title": effect.title, "parameters": [_parameter(p) for p in effect.owned if p.estimated]}
+    return {"id": effect.id, "title": in_full(effect.title), "parameters": [_parameter(p) for p in effect.owned if p.estimated]}
 
 
 def _parameter(p: Parameter) -> dict[str, Any]:
@@ -210,7 +211,7 @@ def _parameter(p: Parameter) -> dict[str, Any]:
 
 def _quantity(name: str, unit: Unit, meaning: str) -> dict[str, Any]:
     shown = [{"unit": d.name, "factor": d.factor} for d in unit.display if d.name.startswith("deg")]
-    return {"name": name, "unit": unit.name, "meaning": meaning, "display": shown}
+    return {"name": name, "unit": unit.name, "meaning": in_full(meaning), "display": shown}
 
 
 def _regimes(variant: Variant) -> list[dict[str, Any]]:

@@ -228,15 +228,19 @@ def _helping(t: Told) -> str:
 def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
-            "Why not one of them",
-            ["These runs cannot tell which. The sizes that each would need:", *(sized(t, e) for e in t.tied)],
+            "Why these runs do not say which",
+            ["Each would do at a size of its own.", *(sized(t, e) for e in t.tied)],
         )
     elif t.found and t.verdict != "outside":
-        title, lines = "Why not the rivals", [*rival_words(t), *_unmoved(t)]
+        title, lines = "Why not the rivals", [*rival_words(t), *_beside_it(t), *_unmoved(t)]
     elif t.verdict == "outside":
         title, lines = (
             "Why nothing in the catalogue",
-            ["Each of the likeliest was put in and its size fitted; this is the error that each leaves.", *_bent(t)],
+            [
+                "Each of the likeliest was put in and its size fitted; this is the error that each leaves.",
+                *_nearest(t),
+                *_bent(t),
+            ],
         )
     elif len(bars(t)) > 1:
         title, lines = (
@@ -258,6 +262,27 @@ def _nothing(t: Told) -> str:
     return "Not one shows in it, but many of them could hide."
 
 
+def _nearest(t: Told) -> list[str]:
+    """Which effect of the catalogue comes nearest to a term that none of them is."""
+    alone = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])]
+    known = {e: error for e in alone if (error := t.error(e)) is not None}
+    if not t.proposal or not known:
+        return []
+    best = min(known, key=lambda e: known[e])
+    return [f"{capital(t.title(best))} comes nearest with {known[best]:.2f}, where {_helping(t)} leaves {t.fall[1]:.2f}."]
+
+
+def _beside_it(t: Told) -> list[str]:
+    """What was put in as well, and brings nothing more."""
+    tried = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and r["effect"] not in t.found and r["values"]]
+    idle = [r["effect"] for r in tried if not t.alone(r["effect"]) and t.error(r["effect"]) is not None]
+    if t.slight or not idle or any(t.rows[e]["heldout_before"] - t.rows[e]["heldout_after"] > STILL for e in idle):
+        return []
+    more = [f"{number(len(idle) - CHOICES).lower()} more"] if len(idle) > CHOICES else []
+    which = listed([*(t.title(e) for e in idle[:CHOICES]), *more], "and")
+    return [f"Put in beside {it(t)}, {which} bring{'s' * (len(idle) == 1)} the error down no further."]
+
+
 def _bent(t: Told) -> list[str]:
     """Why what helps is not the answer all the same."""
     bent = strained(t.diagnosis, t.records)
@@ -269,8 +294,9 @@ def _bent(t: Told) -> list[str]:
 
 def _unmoved(t: Told) -> list[str]:
     """Where errors over all channels tell little, what the choice rests on."""
-    alike = t.falls or t.slight or near_rivals(t)
-    return [] if alike else ["Over all channels the errors are alike; moment by moment the runs tell them apart."]
+    if t.falls or t.slight or near_rivals(t):
+        return []
+    return ["Over all channels the error is about the same before and after; moment by moment the runs tell them apart."]
 
 
 def bars(t: Told) -> list[dict[str, Any]]:

@@ -11,7 +11,7 @@ from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect
-from .words import AGAIN, STILL, listed, probability_words, spoken, strained, title_of, to_measure
+from .words import AGAIN, STILL, estimated, listed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -258,21 +258,23 @@ def why_not(t: Told, rivals: Sequence[Mapping[str, Any]]) -> str:
 def size_lines(t: Told, effect: str) -> list[str]:
     sizes = t.sizes(effect)
     seen = [size for size in sizes if _seen(size[1])] or sizes
-    lines = [f"{capital(r.meaning)}: {spoken(v['estimate'], v['se'], r.unit)}." for _, v, r in seen]
+    lines = [f"{capital(r.meaning)}: {estimated(v, r.unit)}." for _, v, r in seen]
     return [*lines, f"That is {multiple_words(t, effect)} the size that would matter{_interest(t, effect)}."]
 
 
 def _seen(size: Mapping[str, Any]) -> bool:
     """Is a size surely not nought?"""
+    if size.get("interval"):
+        return not size["interval"][0] <= 0 <= size["interval"][1]
     return bool(not size["se"] or abs(size["estimate"]) > SURE * size["se"])
 
 
 def sized(t: Told, effect: str) -> str:
     every = t.sizes(effect)
     seen = [size for size in every if _seen(size[1])] or every
-    sizes = " and ".join(f"{_which(name, every)}{spoken(v['estimate'], v['se'], r.unit)}" for name, v, r in seen)
+    sizes = " and ".join(f"{_which(name, every)}{estimated(v, r.unit)}" for name, v, r in seen)
     if len(every) == 1 and every[0][1]["estimate"] < 0:  # of which the sign says something
-        sizes += f" ({every[0][2].meaning})"
+        sizes = f"{every[0][2].meaning} {sizes}"
     sure = any(_seen(v) for _, v, _ in every)
     size = f"{multiple_words(t, effect)} the size that would matter" if sure else "a size that these runs leave open"
     return f"{capital(t.title(effect))}: {sizes}, {size}."
@@ -343,7 +345,11 @@ def actions(t: Told) -> list[str]:
     if t.verdict == "small":
         return ["Use the model as it is.", *(inspect(e, t.title(e)) for e in found)]
     if t.verdict == "adequate":
-        return ["Use the model as it is, for manoeuvres like these."]
+        return [
+            "Use the model as it is, for manoeuvres like these.",
+            *measure,
+            "For other manoeuvres, record some of them first and have them diagnosed too.",
+        ]
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
 
 

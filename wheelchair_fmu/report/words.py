@@ -27,6 +27,7 @@ CHANNELS = {
     "yaw": "the heading",
 }
 UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
+CENTRE = re.compile(r"\bCM\b")
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
 
 
@@ -125,6 +126,11 @@ def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mappi
     return listed(groups[:HELPERS], "and")
 
 
+def in_full(words: str) -> str:
+    """A title or a meaning for readers who do not know what the equations are written in."""
+    return CENTRE.sub("centre of mass", words)
+
+
 def title_of(effect: str, titles: Mapping[str, str]) -> str:
     """What an effect is, in words."""
     return titles.get(effect, effect.replace("_", " "))
@@ -149,10 +155,7 @@ def particulars(
 
 def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity], titles: Mapping[str, str]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
-    parts = [
-        f"{record.meaning} = {spoken(row['parameters'][name]['estimate'], row['parameters'][name]['se'], record.unit)}"
-        for name, record in known.items()
-    ]
+    parts = [f"{record.meaning} = {estimated(row['parameters'][name], record.unit)}" for name, record in known.items()]
     title = title_of(effect, titles)
     return f"{title[:1].upper()}{title[1:]}: {', '.join(parts)}."
 
@@ -198,6 +201,25 @@ def value_text(value: float, se: float | None, unit: Unit) -> str:
 def spoken(value: float, se: float | None, unit: Unit) -> str:
     """The same as it is printed: degrees by their sign."""
     return re.sub(r" deg$", "°", re.sub(r" deg/s$", " °/s", value_text(value, se, unit)))
+
+
+def estimated(size: Mapping[str, Any], unit: Unit) -> str:
+    """A size of the ranking: with its 95 % interval where the diagnosis has one, which allows for runs that differ by more than
+    their noise, as a standard error does not; else with that."""
+    ends = size.get("interval")
+    if not ends or not ends[1] > ends[0]:
+        return spoken(size["estimate"], size["se"], unit)
+    shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
+    first, exponent = f"{(ends[1] - ends[0]) / 2 * shown.factor:.0e}".split("e")
+    place = max(0, (1 if first in "12" else 0) - int(exponent))
+    value, low, high = (f"{round(v * shown.factor, place) + 0.0:.{place}f}" for v in (size["estimate"], *ends))
+    name = "°" if shown.name == "deg" else _spaced(shown.name)
+    return f"{value}{name} (95 % sure: {low} to {high}{name})".replace("-", "−")
+
+
+def _spaced(unit: str) -> str:
+    """A unit as it stands behind a number."""
+    return "" if unit == "1" else f" {unit.replace('deg', '°').replace('.', ' ').replace('2', '²')}"
 
 
 def probability_words(p: float) -> str:

@@ -76,7 +76,7 @@ def widened(ends: tuple[float, float], value: float, allowed: float, record: Par
     """An interval of an estimate that may be off by something else as well, normal with this standard deviation, within bounds:
     squares of half widths add."""
     lower, upper = (float(np.hypot(end - value, NORMAL * allowed)) for end in ends)
-    return max(value - lower, min(record.lower, ends[0])), min(value + upper, max(record.upper, ends[1]))
+    return max(value - lower, record.lower), min(value + upper, record.upper)
 
 
 def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], float]:

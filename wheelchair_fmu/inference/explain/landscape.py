@@ -1,8 +1,8 @@
 """The likelihood about the estimates, for drawing: by each size alone, and by the sizes of two rivals together.
 
 Everything else is where these sizes let it be. Heights are −2 log likelihood above the lowest, shrunk as intervals are widened
-for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84 and of two
-below 5.99.
+for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84; of two, where
+only the former two count, below 5.99.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 from ...errors import SimulationError
 from ...model.variant import effects_in
 from ..chance import value_beyond
-from ..estimation.fit import Fit, fit
+from ..estimation.fit import MOST, Fit, Problem, fit
 from ..estimation.interval import LEVEL, NORMAL, half_width, profile
 from ..estimation.statistics import finite
 from ..evidence.likelihood import Likelihood
@@ -25,6 +25,7 @@ from ..models.models import Models
 from ..parallel import parallel_map
 
 ALONG = np.linspace(-1.6, 1.6, 13)  # half widths of the interval, about an estimate
+STARTED = 2  # how often a start is moved
 ROUNDS = 3  # linearisations that lead to two sizes together
 ABOUT = np.linspace(-3.6, 3.6, 9)  # standard deviations along either axis of two sizes
 
@@ -47,21 +48,38 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
     if not own:
         return {"profiles": [], "pair": None}
     try:
-        found = fit(likelihood, names, values)
-        allowed = {p["name"]: p.get("unnamed") or 0.0 for p in told["final"]["parameters"]}
-        halves = {n: float(np.hypot(half_width(found, found.names.index(n)), NORMAL * allowed.get(n, 0.0))) for n in own}
-        profiles = [_profile(likelihood, found, n, half) for n, half in halves.items()]
-        return {"profiles": profiles, "pair": _pair(models, told, effects, found)}
+        found = _fitted(likelihood, names, values)
+        return {
+            "profiles": [_profile(likelihood, found, n, _interval(told, n)) for n in own],
+            "pair": _pair(models, told, effects, found),
+        }
     except SimulationError:
         return {"profiles": [], "pair": None}
 
 
-def _profile(likelihood: Likelihood, found: Fit, name: str, half: float) -> dict[str, Any]:
+def _fitted(likelihood: Likelihood, names: Sequence[str], values: Mapping[str, float], most: int = MOST) -> Fit:
+    """A fit of runs that start where their readings want them, as the search's do: where they start elsewhere, each wants
+    other values, and an interval by how runs differ comes out another one."""
+    problem = Problem(likelihood, names)
+    inside = problem.values(problem.inside(values))
+    here = likelihood.evidence(likelihood.campaign.fit, inside, names, tune_start=STARTED)
+    return fit(likelihood, names, inside, here, most=most)
+
+
+def _interval(told: Mapping[str, Any], name: str) -> Sequence[float] | None:
+    """That which the diagnosis has of an effect's parameter."""
+    _, effect, short = name.split(".")
+    return next((r["parameters"].get(short, {}).get("interval") for r in told["ranking"] if r["effect"] == effect), None)
+
+
+def _profile(likelihood: Likelihood, found: Fit, name: str, interval: Sequence[float] | None) -> dict[str, Any]:
     at, record = found.names.index(name), likelihood.records[name]
-    misfit = profile(likelihood, found, (at,))
+    half, misfit = half_width(found, at), profile(likelihood, found, (at,))
+    half = (interval[1] - interval[0]) / 2 if interval else half
     values = np.unique(np.clip(found.values[name] + half * ALONG, record.lower, record.upper))
     heights = np.array(parallel_map(lambda v: misfit((v,)), values)) - found.misfit
-    shrunk = _above(heights * _robust(found, at, half))
+    ends = [v for v in interval or () if record.lower < v < record.upper]
+    shrunk = _above(heights * (_to_level([misfit((v,)) - found.misfit for v in ends]) or _robust(found, at)))
     return {
         "parameter": name,
         "estimate": found.values[name],
@@ -71,14 +89,21 @@ def _profile(likelihood: Likelihood, found: Fit, name: str, half: float) -> dict
     }
 
 
+def _to_level(at_ends: Sequence[float]) -> float | None:
+    """What brings heights to the level where the diagnosis' interval ends: by how much runs differ is found from few of them,
+    and comes out another time a little otherwise. None where they have no height there to go by."""
+    seen = [h for h in at_ends if np.isfinite(h) and h > 0]
+    return value_beyond(1 - LEVEL, 1) / float(np.mean(seen)) if seen else None
+
+
 def _above(heights: np.ndarray) -> np.ndarray:
     """Heights from the lowest: a fit ends where slopes promise little more, which may be a little above it."""
     return heights - min(0.0, float(heights.min()))
 
 
-def _robust(found: Fit, at: int, half: float) -> float:
-    """Variance as slopes have it, beside that which an interval with this half width is made of."""
-    return float(found.covariance[at, at] / (half / NORMAL) ** 2)
+def _robust(found: Fit, at: int) -> float:
+    """Variance as slopes have it, beside that which intervals are made of."""
+    return float(found.covariance[at, at] / (half_width(found, at) / NORMAL) ** 2)
 
 
 def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base: Fit) -> dict[str, Any] | None:
@@ -89,11 +114,11 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         return None
     likelihood = models.likelihood((*effects_in(base.names), other))
     pair = (factory.parameters(one)[0], factory.parameters(other)[0])
-    found = fit(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
+    found = _fitted(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
     at = [found.names.index(n) for n in pair]
     records = [likelihood.records[n] for n in pair]
     best, scale = np.array([found.values[n] for n in pair]), np.array([r.smallest_interesting for r in records])
-    shrunk = min(_robust(found, i, half_width(found, i)) for i in at)
+    shrunk = min(_robust(found, i) for i in at)
     size, axes = np.linalg.eigh(found.covariance[np.ix_(at, at)] / np.outer(scale, scale) / shrunk)
     axes = scale[:, None] * axes * np.sqrt(size)
     misfit = profile(likelihood, found, at, corrections=1)

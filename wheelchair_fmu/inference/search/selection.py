@@ -154,11 +154,13 @@ class Selection:
         return found, last.candidates[0]
 
     def _passed(self, last: Round, count: int) -> Step:
-        """The step up to the model with the first so many effects of a round's."""
-        fewer = last.effects[:count]
+        """The step up to the model with the first so many effects of a round's, judged where each run starts and is pushed by
+        this model, as by anyone who simulates it: casters that swing may go another way than along what fits kept."""
+        fewer, campaign = last.effects[:count], self.models.campaign
         fit = last.fit if fewer == last.effects else self.models.fitted(fewer, last.fit.values)
-        held = self.models.heldout(self.models.likelihood(fewer), fit.values)
-        return Step.of(f"+{fewer[-1]}", fit.evidence, held, fit.values)
+        likelihood = self.models.likelihood(fewer)
+        fitted, held = (likelihood.evidence(runs, fit.values, tune_start=2) for runs in (campaign.fit, campaign.holdout))
+        return Step.of(f"+{fewer[-1]}", fitted, held, fit.values)
 
     def _step(self) -> Selection:
         """A step up to the model at hand, by the noise that shows now that its last effect is in."""

@@ -185,6 +185,33 @@ class App {
     this.gained(await Promise.all(this.campaign.runs.map((_, run) => this.pool.later({ run, values, aside: true, brief: true }).catch(() => null))));
   }
 
+  /** The shown run by the last step of the search, whole: on paper what was found is seen beside what was before. */
+  async foundThere() {
+    const { run } = this.shown, { values } = this.campaign.diagnosis.models.at(-1);
+    if (this.found?.run === run || !this.opensAtStart || same(values, this.start.values)) return;
+    const result = await this.pool.later({ run, values, aside: true }).catch(() => null);
+    if (result && this.shown.run === run) this.found = { run, result };
+  }
+
+  /** On paper, where nothing was set by hand, the curve of what was found beside that of before. */
+  onPaper() {
+    const { found, shown } = this, before = this.before();
+    if (found?.run !== shown.run || !before || !same(this.values, this.start.values) || !found.result.predicted?.[shown.channel]) return;
+    this.printed = found.result;
+    this.timeline.show(shown.channel, found.result, before, [], this.band(found.result, null));
+    this.explained();
+  }
+
+  offPaper() {
+    if (!this.printed) return;
+    this.printed = null;
+    this.explained();
+  }
+
+  explained() {
+    for (const id of ["overlay", "where"]) this.figures.all[id].said();
+  }
+
   /** The fall of the error in a sensor's own unit, on the card that says how sure it is. */
   fallen() {
     const { begins: from, models } = this.campaign.diagnosis, to = models.at(-1).step;
@@ -200,9 +227,10 @@ class App {
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
   gained(last) {
-    if (this.shown.chosen || last.includes(null)) return;
+    if (this.shown.chosen || last.includes(null)) return this.foundThere();
     const mean = (r, c) => r.squares[c] / r.counts[c], fall = (i, c) => (mean(this.opened[i], c) - mean(last[i], c)) * (c in last[i].squares ? 1 : 0);
     this.turnTo(fall, SEEN);
+    this.foundThere();
   }
 
   /** Turns to where the model parts most from the one that the search began with, unless the reader has chosen. */
@@ -279,6 +307,7 @@ class App {
     this.shown = shown;
     this.pick.show(shown);
     if (other) this.timeline.begin(this.campaign.runs[shown.run]);
+    if (other && this.opened) this.foundThere();
     if (other && !this.settled && this.results[shown.run]?.brief) this.set();
     this.want("run");
     if (this.settled) this.want("rested");
@@ -485,11 +514,13 @@ addEventListener("beforeprint", () => {
   document.documentElement.dataset.theme = "light"; // paper is white
   app.recolour();
   if (app.wished) app.paint();
+  if (app.timeline?.result) app.onPaper();
   for (const p of printed) p.remove();
   const { overlay, ...others } = app.figures.all;
   printed = papers(app.timeline?.result ? { overlay, ...others } : others, app.campaign.runs.length);
 });
 addEventListener("afterprint", () => {
+  app.offPaper();
   for (const p of printed.splice(0)) p.remove();
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;

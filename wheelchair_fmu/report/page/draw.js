@@ -121,16 +121,24 @@ export function broken(words, width, look, size = 12, weight = 400, most = Infin
 /** The first of these sizes at which no word is broken on lines of this width, or the last. */
 export const whole = (names, width, look, sizes) => sizes.find((size) => names.flatMap((t) => t.split(/\s+/)).every((w) => long(w, look, size) <= width)) ?? sizes.at(-1);
 
-/** A word as [{text, on}], with hyphens where it is too wide; `on` says that it goes on from the piece before. */
+/** A word as [{text, on}], parted at its own hyphens where it is too wide, and with more of them where that does not do; `on` says
+ *  that it goes on from the piece before. */
 function pieces(word, fits) {
   if (fits(word)) return [{ text: word, on: false }];
-  const letters = [...word], out = [];
-  let own = "";
-  for (const letter of letters) {
-    if (own.length > 1 && !fits(`${own}${letter}-`)) { out.push({ text: `${own}-`, on: out.length > 0 }); own = ""; }
-    own += letter;
+  const out = [];
+  let line = "";
+  const put = (t) => { if (t) out.push({ text: t, on: out.length > 0 }); };
+  for (const part of word.split(/(?<=-)(?=[^-])/)) {
+    if (fits(line + part)) { line += part; continue; }
+    put(line);
+    line = "";
+    for (const letter of part) {
+      if (line.length > 1 && !fits(`${line}${letter}-`)) { put(`${line}-`); line = ""; }
+      line += letter;
+    }
   }
-  return [...out, { text: own, on: true }];
+  put(line);
+  return out;
 }
 
 const cut = (words, fits) => {

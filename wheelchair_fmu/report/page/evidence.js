@@ -1,7 +1,7 @@
 // The evidence table, ties and the next experiment, from the diagnosis.
 
 import { byId, csv, h, save, symbols } from "page/dom";
-import { chance, inUnit, rms, significant, withError } from "page/numbers";
+import { chance, inUnit, rms, significant, uncertain } from "page/numbers";
 import { capital, channelOf, listed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
@@ -19,7 +19,7 @@ export function evidence(campaign) {
 }
 
 function table(ranking, records, campaign) {
-  const heads = [["Effect"], ["Size ± standard error"], ["Matters from"], ["Chance that it matters", 1], ["Would be seen", 1], ["Hidden in the fit", 1],
+  const heads = [["Effect"], ["Size"], ["Matters from"], ["Chance that it matters", 1], ["Would be seen", 1], ["Hidden in the fit", 1],
     ["Held out, before → after", 1], ["Alike"], ["Verdict"]];
   const body = h("tbody", {}, ranking.map((row, i) => line(campaign, row, records.get(row.effect), i >= FIRST)));
   const more = h("button", { type: "button", class: "quiet", "aria-expanded": "false" }, `show all ${ranking.length} effects`);
@@ -43,7 +43,7 @@ function line(campaign, row, record, later) {
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
     h("th", { scope: "row" }, capital(record.title), h("small", {}, h("code", {}, row.effect))),
-    h("td", { "data-head": "Size ± standard error" }, parameters.map(([p, v]) => own(withError(v.estimate, v.se, p), p))),
+    h("td", { "data-head": "Size" }, parameters.map(([p, v]) => own(uncertain(v, p), p))),
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
     h("td", { class: "number", "data-head": "Chance that it matters" }, chance(row.probability)),
     h("td", { class: "number", "data-head": "Would be seen" }, `${Math.round(100 * row.power)} %`),
@@ -58,11 +58,11 @@ function together(groups, campaign) {
   const sizes = new Map(campaign.effects.flatMap((e) => e.parameters.map((p) => [p.name, p]))), named = (ids) => listed(ids.map((e) => titleOf(campaign, e)));
   const cell = (head, inner) => h("td", { "data-head": head }, inner);
   const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
-    cell("Size ± standard error", Object.entries(g.parameters).map(([n, v]) => h("div", {}, withError(v.estimate, v.se, sizes.get(n))))),
+    cell("Size", Object.entries(g.parameters).map(([n, v]) => h("div", {}, uncertain(v, sizes.get(n))))),
     cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Verdict", became(g, campaign))));
   return h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Effects that were fitted together" },
     h("table", { class: "evidence several" }, h("caption", {}, "Effects that were fitted together, as one acts through the other and each alone may show nothing"),
-      h("thead", {}, h("tr", {}, ["Effects", "Size ± standard error", "Beside", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+      h("thead", {}, h("tr", {}, ["Effects", "Size", "Beside", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
 }
 
 /** What was kept of a group. */

@@ -8,7 +8,7 @@ import { Heat, QUIET, heat } from "page/heat";
 import { crossings, profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { UNSEEN, beside, between, degrees, display, inUnit, rms, significant, toPlace, unitText, withError } from "page/numbers";
+import { UNSEEN, beside, between, degrees, display, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
 import { staircase } from "page/staircase";
 import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
@@ -83,7 +83,7 @@ export class Figures {
       if (!own || !p.delta) return null;
       const [low, high] = own.interval ?? [own.estimate - 1.96 * (own.se ?? 0), own.estimate + 1.96 * (own.se ?? 0)];
       return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
-        note: withError(own.estimate, own.se, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
+        note: uncertain(own, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
@@ -94,13 +94,14 @@ export class Figures {
   }
 
   calibrated() {
-    const { calibration } = this.campaign.diagnosis, records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
+    const { calibration, final } = this.campaign.diagnosis, intervals = new Map((final?.parameters ?? []).map((p) => [p.name, p.interval])), records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
-      const off = (v.value - v.prior) / v.prior_sd, by = (1.96 * (v.se ?? 0)) / v.prior_sd, record = records.get(name) ?? { unit: "1" };
+      const off = (v.value - v.prior) / v.prior_sd, record = records.get(name) ?? { unit: "1" }, interval = intervals.get(name) ?? null;
+      const [below, above] = (interval ?? [v.value - 1.96 * (v.se ?? 0), v.value + 1.96 * (v.se ?? 0)]).map((end) => (end - v.prior) / v.prior_sd);
       const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
-      const words = record.meaning ?? name, [low, high] = [Math.max(off - by, at(v.lower, -Infinity)), Math.min(off + by, at(v.upper, Infinity))];
-      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: withError(v.value, v.se, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
+      const words = record.meaning ?? name, [low, high] = [Math.max(below, at(v.lower, -Infinity)), Math.min(above, at(v.upper, Infinity))];
+      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: uncertain({ estimate: v.value, se: v.se, interval }, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
         parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
@@ -140,8 +141,7 @@ export class Figures {
   sure(curve) {
     const { record, name } = this.sizeOf(curve.parameter), ends = crossings(curve.values, curve.heights, curve.level);
     if (!ends.every(Number.isFinite)) return `${name}: ${inUnit(curve.estimate, record, 4)}.`;
-    const { unit, factor } = display(record), told = toPlace(curve.estimate * factor, ((ends[1] - ends[0]) * factor) / 4);
-    return `${name}: ${told}${unit === "deg" ? "" : " "}${unitText(unit)}, from ${between(...ends, record)}.`.replace(" ,", ",");
+    return `${name}: ${withInterval(curve.estimate, ends, record)}.`;
   }
 
   joined(joint) {
@@ -192,8 +192,8 @@ export class Figures {
         return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high, "error [sd]": result.errors[c] };
       },
       caption: () => {
-        const result = app.results[app.shown.run];
-        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right, by the noise of sensor and pushes${app.forces ? ", by forces that nobody recorded" : ""}${app.doubt() ? " and by how uncertain its fitted values are" : ", with its values as they are set"}.` : "";
+        const result = app.printed ?? app.results[app.shown.run], was = app.printed ? `, ${rms(byChannel(app.before())[app.shown.channel])} before (dashed)` : "";
+        return result ? `${capital(channelOf(app.shown.channel))} of ${runOf(campaign.runs[app.shown.run])}. Its error is ${rms(byChannel(result)[app.shown.channel])} times the noise${was}; 95 of 100 errors of a perfect model lie within twice the noise. The band about the model holds 95 of 100 readings if it is right, by the noise of sensor and pushes${app.forces ? ", by forces that nobody recorded" : ""}${!app.printed && app.doubt() ? " and by how uncertain its fitted values are" : app.printed ? ", with the values that the search found" : ", with its values as they are set"}.` : "";
       },
     };
   }
@@ -202,7 +202,7 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => `Error of each run and channel in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
+      caption: () => `Error of each run and channel${this.app.printed ? ", before what was found was put in," : ""} in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
     };
   }
 

@@ -2,6 +2,7 @@
 // was given.
 
 import { broken, canvas, line, long, svg, symbolic, text, ticked, ticks } from "page/draw";
+import { UNSEEN } from "page/numbers";
 import { capital } from "page/words";
 
 const ROW = 24, CLIP = 12;
@@ -12,7 +13,7 @@ function places(width, look, rows) {
   const left = narrow ? 12 : Math.min(0.48 * width, 14 + Math.max(...rows.map((r) => long(r.name, look, 12, weight(r))))), right = narrow ? 12 : noted + 20;
   let y = 24;
   const all = rows.map((r) => {
-    const name = broken(r.name, narrow ? width - 2 * left - Math.max(long(r.note, look, 11), long(r.under ?? "", look, 11)) - 10 : left - 12, look, 12, weight(r), 2), high = (narrow ? 2 * ROW : ROW) + (name.length > 1 || r.under ? (narrow ? 14 : 10) : 0), top = y;
+    const name = broken(r.name, narrow ? width - 2 * left - Math.max(long(r.note, look, 11), long(r.under ?? "", look, 11)) - 10 : left - 12, look, 12, weight(r), narrow ? 3 : 2), lines = Math.max(name.length, r.under ? 2 : 1), high = (narrow ? 2 * ROW + 14 * (lines - 1) : ROW + 10 * (lines > 1)), top = y;
     y += high;
     return { name, top, high, middle: narrow ? top + high - 14 : top + high / 2 };
   });
@@ -26,7 +27,7 @@ export const fitting = (high) => Math.floor((high - 70) / (ROW + 3));
  *  that a value could not leave; the band from −`band` to `band` is what the words `shaded` say. */
 export function forest(width, look, rows, unit, shaded, band = 1) {
   const { narrow, left, right, all, end } = places(width, look, rows);
-  const strong = rows.filter((r) => r.strong).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
+  const strong = rows.filter((r) => r.strong && r.note !== UNSEEN).flatMap((r) => [r.low, r.high, ...(r.bounds ?? [])]), ends = rows.flatMap((r) => [r.low, r.high]).filter((v) => Math.abs(v) < CLIP);
   const [low, most] = [Math.min(-1.5 * band, ...strong, ...ends), Math.max(1.5 * band, ...strong, ...ends)].map((v) => v * 1.06);
   const across = (v) => left + ((width - left - right) * (v - low)) / (most - low), drawn = [];
   const strips = narrow ? all.map(({ middle }) => [middle - 9, middle + 9]) : [[24, end]], marks = ticked(ticks(low, most, Math.max(4, (width - left - right) / 70))); // no line runs through words

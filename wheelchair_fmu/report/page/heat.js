@@ -7,6 +7,7 @@ import { rms, significant } from "page/numbers";
 export const QUIET = 1.1; // whitened RMS without colour
 const LOUD = 6; // and with all of it
 const NOTE = 10; // size of a cell's second line: six points where a figure is 85 mm wide
+const UPRIGHT = 84; // px: how high heads stand where they are too many to lie
 const STRONGEST = 55; // per cent of colour, on which text in ink still stands out
 
 /** How much colour an error has, in per cent. */
@@ -74,9 +75,15 @@ export class Heat {
 /** The same as a drawing. */
 export function heat(width, look, heads, rows) {
   const called = (r) => (r.note ? `${r.name} (${r.note})` : r.name), words = heads.flatMap((t) => t.split(/\s+/)), longest = Math.max(0, ...words.map((w) => long(w, look, 10))) + 4;
-  const left = Math.max(0.18 * width, Math.min(0.3 * width, 14 + Math.max(...rows.map((r) => long(called(r), look))), width - longest * heads.length)), wide = (width - left) / heads.length, drawn = [];
-  const size = whole(heads, wide - 4, look, [11, 10]), named = heads.map((t) => broken(t, wide - 4, look, size, 400, 7)), top = 8 + 13 * Math.max(1, ...named.map((n) => n.length));
-  named.forEach((lines, j) => lines.forEach((t, k) => drawn.push(text(left + wide * (j + 0.5), 12 + 13 * k, t, look.ink, "middle", { "font-size": size }))));
+  const named = 14 + Math.max(...rows.map((r) => long(called(r), look))), upright = width - longest * heads.length < Math.min(0.24 * width, named); // where heads beside one another would leave no room for names
+  const left = upright ? Math.min(0.38 * width, named) : Math.max(0.18 * width, Math.min(0.3 * width, named, width - longest * heads.length)), wide = (width - left) / heads.length, drawn = [];
+  const size = upright ? 10 : whole(heads, wide - 4, look, [11, 10]), lines = heads.map((t) => broken(t, upright ? UPRIGHT : wide - 4, look, size, 400, upright ? 2 : 7));
+  const top = 8 + (upright ? Math.max(...lines.flat().map((t) => long(t, look, size))) : 13 * Math.max(1, ...lines.map((n) => n.length)));
+  lines.forEach((own, j) => own.forEach((t, k) => {
+    const middle = left + wide * (j + 0.5);
+    drawn.push(upright ? text(0, 0, t, look.ink, "start", { transform: `translate(${middle + 4 + 12 * (k - (own.length - 1) / 2)} ${top - 4}) rotate(-90)`, "font-size": size })
+      : text(middle, 12 + 13 * k, t, look.ink, "middle", { "font-size": size }));
+  }));
   let y = top;
   for (const row of rows) {
     const name = broken(called(row), left - 12, look, 12, 400, 3), notes = row.cells.map((c) => (c.note ? broken(c.note, wide - 6, look, NOTE, 400, 2) : [])), noted = Math.max(...notes.map((n) => n.length));

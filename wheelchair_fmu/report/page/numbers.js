@@ -46,6 +46,20 @@ export function withError(estimate, se, record) {
   return `${unsigned(minus(value.toFixed(Math.min(place, 8))))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
 }
 
+/** "1.606 (1.582 to 1.631) N": an estimate in its 95 % interval. */
+export function withInterval(estimate, ends, record) {
+  const { unit, factor } = display(record), suffix = unitText(unit), half = ((ends[1] - ends[0]) / 2) * factor;
+  if (!(half > 0)) return withError(estimate, null, record);
+  if (estimate !== 0 && half > 200 * Math.abs(estimate * factor)) return UNSEEN;
+  const [first, exponent] = half.toExponential(0).split("e").map(Number), place = Math.min(8, Math.max(0, (first < 3 ? 1 : 0) - exponent));
+  const [value, low, high] = [estimate, ...ends].map((v) => unsigned(minus((v * factor).toFixed(place))));
+  return `${value} (${low} to ${high})${suffix === "°" || !suffix ? "" : " "}${suffix}`;
+}
+
+/** An estimate {estimate, se, interval} with what it is uncertain by: its interval, where there is one, allows for runs that
+ *  differ by more than their noise; a standard error does not. */
+export const uncertain = (v, record) => (v.interval ? withInterval(v.estimate, v.interval, record) : withError(v.estimate, v.se, record));
+
 /** A size, or zero where a fit has left next to nothing of it. */
 export const settled = (value, record) => (Math.abs(value) < 1e-6 * (record.delta || Math.abs(record.default ?? 0)) ? 0 : value);
 

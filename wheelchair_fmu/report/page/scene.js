@@ -6,6 +6,7 @@ import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
+const LOW = 226; // px high on a phone, so that the chair, the player and the curves are on one screen
 
 export class Scene {
   constructor(place, campaign) {
@@ -30,7 +31,7 @@ export class Scene {
   }
 
   fit() {
-    const width = Math.max(260, this.room()[0]), height = Math.round(Math.min(536, Math.max(316, width * 1.45 - 84))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.room()[0]), height = innerWidth < 861 ? LOW : Math.round(Math.min(536, Math.max(316, width * 1.45 - 84))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
     const lying = xs[1] - xs[0] > ys[1] - ys[0];

@@ -10,6 +10,7 @@ import { capital, channelOf, runOf } from "page/words";
 
 const SLIGHT = 1.5; // error of a channel, noise = 1: below that, its curves hardly part to the eye
 const LEAST = 0.6; // of an axis of mean errors either side of zero, so that what is next to nothing looks it
+const SEEN = 0.015; // fall of the error, noise = 1, that one would call a fall
 const HALF = 0.25; // s either side of a mean
 
 /** Means of a series over half a second. */
@@ -105,7 +106,7 @@ export class Story {
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
     this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.parting = !this.isIn() && same(this.last.values, begins.values); this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
-    this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), h("span", {}, " times the noise"));
+    this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), this.of = h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
   }
@@ -137,9 +138,16 @@ export class Story {
     this.toggle.setAttribute("aria-pressed", this.isIn());
   }
 
+  /** Which error the button moves: on runs held out, but where that does not come down and the one on fitted runs does. */
+  shows(from, to) {
+    if (!Number.isFinite(this.app.now?.heldout)) return "fit";
+    return to.heldout >= from.heldout && from.fit - to.fit > SEEN ? "fit" : "heldout";
+  }
+
   drawPut(rested) {
-    const key = Number.isFinite(this.app.now?.heldout) ? "heldout" : "fit", { models, ladder, begins } = this.campaign.diagnosis, start = ladder.find((s) => s.step === begins);
+    const { models, ladder, begins } = this.campaign.diagnosis, start = ladder.find((s) => s.step === begins), key = this.shows(start, ladder.at(-1));
     this.pressed();
+    this.of.textContent = ` times the noise${key === "fit" && Number.isFinite(this.app.now?.heldout) ? ", on the fitted runs" : ""}`;
     this.before.textContent = rms(start?.[key]);
     this.after.textContent = rms(this.app.now?.[key]);
     this.change.hidden = same(this.app.values, models.find((m) => m.step === begins).values);

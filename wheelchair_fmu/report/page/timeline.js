@@ -9,6 +9,7 @@ const AXIS = 62; // px left of every chart, so that their times stand above one 
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const DENSE = 1.5; // px between two points of a smooth curve
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
+const NARROW = matchMedia("(max-width: 860px)");
 
 /** A series as the charts take it: null where there is no sample. */
 const gapped = (values) => (values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values);
@@ -41,7 +42,10 @@ export class Timeline {
     this.playing = false;
     this.charts = [h("div", { class: "chart" }), h("div", { class: "chart" })];
     place.append(h("div", { class: "curves" }, this.key = h("p", { class: "key" }), this.charts), this.player());
-    beside.append(this.readings = h("table", { class: "readings" }));
+    this.readings = h("table", { class: "readings" });
+    const placed = () => (NARROW.matches ? place : beside).append(this.readings); // on a phone nothing stands between the chair and the curves
+    placed();
+    NARROW.addEventListener("change", placed);
     this.colours();
     this.plots = [];
     this.drawn = new Map(); // by series that do not change: as charts take them
@@ -145,7 +149,7 @@ export class Timeline {
   };
 
   size(index) {
-    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 210) : index ? 230 : 400 };
+    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 196) : index ? 230 : 400 };
   }
 
   /** Where 95 % of readings lie if the model is right; the scale is that of the curves. */
