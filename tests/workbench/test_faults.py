@@ -49,4 +49,12 @@ def test_a_campaign_has_the_name_of_the_folder_it_comes_from(tmp_path) -> None:
     session.draft("hall in may")
     assert session.name == "hall in may"
     session.draft("other")
-    assert session.name == "hall in may"
+    assert session.name == session.label == "hall in may"
+
+
+def test_work_without_a_name_is_known_again_by_its_files(tmp_path) -> None:
+    session = Session.begin(tmp_path)
+    assert session.label == "campaign"
+    for name in ("b.csv", "a.csv", "c.csv"):
+        (session.campaign / name).write_bytes(BAD)
+    assert session.label == "a.csv and 2 more"

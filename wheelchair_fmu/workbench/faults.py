@@ -26,6 +26,8 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"name it 'time \[s\]', .*", f"choose under “{COLUMNS}” which column is the time"),
     (r"write what the sensors' data sheets say in \[noise\]", f"where you know better, say so under “{NOISE}”"),
     (r"write \[noise\] .*, or remove the channel", f"write it under “{NOISE}”, or make its column “not used”"),
+    (r"record some seconds without hands .*", "record some seconds without hands on the rims"),
+    (r"write \[rider\] m = .*", "give the mass of the rider alone above, and read the files again"),
     (r"write u0 .*", f"write the speed at the start under “{RUNS}”"),
     (r"correct u0, or .*", f"correct the speed at the start under “{RUNS}”, or the unit of the speeds"),
     (

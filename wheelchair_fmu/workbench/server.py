@@ -224,7 +224,7 @@ class Workbench:
             "report": report.stat().st_mtime_ns if report.exists() else None,
             "job": self.jobs.told(session.id),
             "earlier": [
-                {"id": s.id, "name": s.name, "at": s.looked_at}
+                {"id": s.id, "name": s.label, "at": s.looked_at}
                 for s in Session.latest(self.root, EARLIER)
                 if s.id != session.id
             ],

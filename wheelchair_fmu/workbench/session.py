@@ -115,6 +115,14 @@ class Session:
         return "".join(c for c in name if c.isprintable()) if isinstance(name, str) else UNNAMED
 
     @property
+    def label(self) -> str:
+        """By what one knows it again: its name, or else its first file."""
+        files = self.files()
+        if self.name != UNNAMED or not files:
+            return self.name
+        return f"{files[0]} and {len(files) - 1} more" if len(files) > 1 else files[0]
+
+    @property
     def there(self) -> bool:
         return self.folder.is_dir()
 

@@ -76,7 +76,7 @@ function pushed(bench, run, i, name, files, errors) {
 /** The columns of all files, or of each device's, with what every one of them holds. */
 export function columns(bench) {
   const { campaign, headers, channels } = bench.state, devices = Array.isArray(campaign.recording) ? campaign.recording : null;
-  const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
+  const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.meaning}${bracket(c.unit)} · ${c.name}`])) };
   const tables = devices ? devices.map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }))
     : [{ name: "", files: null, of: (content) => (content.columns ??= {}), explicit: false }];
   const needed = bench.state.faults.some((f) => f.severity === "error" && (f.column || f.what.includes("Columns and their units"))); // which are mended here

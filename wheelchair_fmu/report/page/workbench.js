@@ -380,7 +380,7 @@ class Workbench {
   async lookAgain() {
     if (document.visibilityState !== "visible" || !this.state || this.state.job?.state === "running") return;
     const seen = await ask("state").catch(() => null), essence = (s) => JSON.stringify([s.campaign, s.files, s.history, s.report, s.job?.state]);
-    if (seen && essence(seen) !== essence(this.state)) await this.take(() => seen);
+    if (seen && essence(seen) !== essence(this.state)) await this.take(() => ask("state")); // anew: meanwhile a job may have begun
   }
 
   listenToExpression(form) {
