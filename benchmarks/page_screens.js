@@ -2,6 +2,11 @@
 () => {
   const wrong = new Set(), shown = (e) => e.checkVisibility() && e.getClientRects().length && !e.closest(".unseen, [hidden]");
   if (document.documentElement.scrollWidth > innerWidth) wrong.add(`${document.documentElement.scrollWidth} px wide`);
+  const letters = (t) => { // where its letters are: Firefox's box has the space between two lines too
+    const { left, right, top, bottom } = t.getBoundingClientRect(), { a, b, c, d } = t.getScreenCTM(), size = 1.17 * parseFloat(getComputedStyle(t).fontSize);
+    const [x, y] = Math.abs(b) > Math.abs(a) ? [Math.max(0, right - left - size * Math.hypot(c, d)) / 2, 0] : [0, Math.max(0, bottom - top - size * Math.hypot(c, d)) / 2];
+    return { left: left + x, right: right - x, top: top + y, bottom: bottom - y, height: bottom - top - 2 * y };
+  };
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const words = texts.currentNode.textContent.trim(), e = texts.currentNode.parentElement;
@@ -23,7 +28,7 @@
   }
   for (const svg of document.querySelectorAll("svg")) {
     if (!shown(svg) || svg.parentElement.closest("svg")) continue;
-    const frame = svg.getBoundingClientRect(), all = [...svg.querySelectorAll("text")].filter((t) => t.textContent.trim() && shown(t)).map((t) => ({ words: t.textContent, box: t.getBoundingClientRect(), size: parseFloat(getComputedStyle(t).fontSize) * frame.width / (svg.viewBox.baseVal.width || frame.width), turned: /rotate/.test(t.getAttribute("transform") ?? "") }));
+    const frame = svg.getBoundingClientRect(), all = [...svg.querySelectorAll("text")].filter((t) => t.textContent.trim() && shown(t)).map((t) => ({ words: t.textContent, box: letters(t), size: parseFloat(getComputedStyle(t).fontSize) * frame.width / (svg.viewBox.baseVal.width || frame.width), turned: /rotate/.test(t.getAttribute("transform") ?? "") }));
     all.forEach((one, i) => {
       const { box, words } = one;
       if (box.left < frame.left - 1 || box.right > frame.right + 1 || box.top < frame.top - 1 || box.bottom > frame.bottom + 1) wrong.add(`outside its drawing: ${words}`);

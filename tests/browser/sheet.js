@@ -1,7 +1,12 @@
 // What is wrong with the words of a figure that stands alone in an SVG file: outside of it, over one another, or too small to read.
 () => {
+  const letters = (t) => { // where its letters are: Firefox's box has the space between two lines too
+    const { left, right, top, bottom } = t.getBoundingClientRect(), { a, b, c, d } = t.getScreenCTM(), size = 1.17 * parseFloat(getComputedStyle(t).fontSize);
+    const [x, y] = Math.abs(b) > Math.abs(a) ? [Math.max(0, right - left - size * Math.hypot(c, d)) / 2, 0] : [0, Math.max(0, bottom - top - size * Math.hypot(c, d)) / 2];
+    return { left: left + x, right: right - x, top: top + y, bottom: bottom - y, height: bottom - top - 2 * y };
+  };
   const sheet = document.documentElement, whole = sheet.getBoundingClientRect(), unit = whole.width / sheet.viewBox.baseVal.width, points = ((parseFloat(sheet.getAttribute("width")) / 25.4) * 72) / sheet.viewBox.baseVal.width;
-  const all = [...sheet.querySelectorAll("text")].filter((t) => t.textContent.trim()).map((t) => ({ words: t.textContent, size: parseFloat(getComputedStyle(t).fontSize) * points, box: t.getBoundingClientRect(), within: t.ownerSVGElement }));
+  const all = [...sheet.querySelectorAll("text")].filter((t) => t.textContent.trim()).map((t) => ({ words: t.textContent, size: parseFloat(getComputedStyle(t).fontSize) * points, box: letters(t), within: t.ownerSVGElement }));
   const wrong = [], drawing = ({ x, y, width, height }) => {
     const [left, top] = [whole.left + unit * x.baseVal.value, whole.top + unit * y.baseVal.value];
     return { left, top, right: left + unit * width.baseVal.value, bottom: top + unit * height.baseVal.value };

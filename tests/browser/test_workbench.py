@@ -73,11 +73,16 @@ def test_from_an_empty_start_to_an_improved_fmu(page: Any, tmp_path: Path) -> No
     report.wait_for_selector("#status[data-state=exact]")
     report.close()
     page.click("text=add it: one rear wheel that rolls harder")
+    assert page.is_visible("#dock")  # at once, and wherever one looks
     done(page, "add")
+    assert re.search(r"Added: one rear wheel.* falls from [\d.]+ to [\d.]+ times the noise", page.inner_text("#progress"))
+    page.click("#see")
+    assert page.is_hidden("#dock")
     assert re.search(r"as given [\d.]+ → calibrated [\d.]+ → now [\d.]+", page.inner_text("#history li[aria-current]"))
     offered = page.locator("#effect option").evaluate_all("options => options.map(o => o.value)")
     assert "rolling_resistance_asymmetry" not in offered  # it is in
     page.wait_for_selector("#old-report:visible")  # the report does not know the effect yet
+    assert "diagnose again" in page.inner_text("#export-why")
     assert page.locator("#outcome [data-add=rolling_resistance_asymmetry]").count() == 0
     file = tmp_path / "Better.fmu"
     file.write_bytes(handed_out(page, lambda: page.click("#export-fmu"))[1])
@@ -101,11 +106,74 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     take_in(page, bad)
     faults = page.inner_text("#faults")
     assert "faults to mend" in faults and "find out above" in faults
-    assert "unit 'furlong' measures a length" in faults
+    assert "Unit 'furlong' measures a length" in faults
     assert "'two' is not a number" in faults
-    assert page.is_disabled("#diagnose")
+    assert page.is_disabled("#diagnose") and "mend above" in page.inner_text("#why")
+    assert "[columns]" not in faults and "constant =" not in faults  # of which nothing is in the page
+    beside = page.locator("#forms tr", has=page.locator("th", has_text="yaw_rate")).locator(".wrong")
+    assert "measures a length" in beside.inner_text()
     typed(page.locator('[aria-label="unit of yaw_rate [furlong]"]'), "deg/s")
     page.wait_for_function("() => !document.getElementById('faults').innerText.includes('measures a length')")
+    assert beside.inner_text() == ""
+
+
+def test_a_run_without_recorded_pushes_is_mended_where_it_stands(page: Any, tmp_path: Path) -> None:
+    """And of a file of many columns, those that nothing is taken from are folded."""
+    time = np.arange(0, 5, 0.02)
+    more = {f"channel {i}": time for i in range(30)}
+    columns = {"time [s]": time, "wheel_speed_l [m/s]": 1 - 0.1 * time, "wheel_speed_r [m/s]": 1 - 0.1 * time, **more}
+    text = (
+        ",".join(columns) + "\n" + "\n".join(",".join(map("{:.4f}".format, row)) for row in zip(*columns.values(), strict=True))
+    )
+    (tmp_path / "coast.csv").write_text(text)
+    take_in(page, tmp_path / "coast.csv")
+    rows = page.locator("#forms .columns tbody tr")
+    assert rows.count() == 33 and sum(row.is_visible() for row in rows.all()) == 3
+    assert "The push on the left wheel is missing" in page.inner_text("#forms .runs .wrong")
+    page.select_option('[aria-label="pushes in coast.csv"]', "none")
+    page.wait_for_function("() => workbench.state.campaign.run[0].constant?.F_rr === 0")
+    assert page.inner_text("#forms .runs .wrong") == "" and "push" not in page.inner_text("#faults")
+
+
+def test_what_is_refused_is_said_beside_what_was_used(page: Any) -> None:
+    page.wait_for_function("() => window.workbench?.state")
+    for name, words in {"id": "brake", "title": "a brake", "expression": "-q * u"}.items():
+        page.fill(f"#own [name={name}]", words)
+    size = (
+        "value => { document.querySelector('#own [name=size]').value = value; }"  # not every browser's driver empties it first
+    )
+    page.evaluate(size, "200")
+    page.click("#own button[type=submit]")
+    page.wait_for_selector("#own #error:visible")
+    assert "“greatest q” above that" in page.inner_text("#error")
+    page.evaluate(size, "0.5")
+    page.click("#own button[type=submit]")
+    page.wait_for_selector("#error", state="hidden")
+    page.wait_for_function("() => document.getElementById('tried').textContent.includes('once there are recordings')")
+
+
+def test_a_workbench_that_has_ended_says_how_to_go_on(page: Any) -> None:
+    page.wait_for_function("() => window.workbench?.state")
+    page.route("**/sample", lambda route: route.abort())
+    page.click("#sample")
+    page.wait_for_selector("#dock #error:visible")
+    assert "your work is kept" in page.inner_text("#error")
+    page.unroute("**/sample")
+    page.click("#sample")
+    page.wait_for_function("() => window.workbench?.state?.files.length === 10")
+    assert page.is_hidden("#error") and page.is_hidden("#dock")
+
+
+def test_what_another_tab_has_changed_is_seen_on_coming_back(page: Any) -> None:
+    take_in(page, *recordings())
+    other = page.context.new_page()
+    other.goto(page.url)
+    other.click("summary >> text=Noise of the sensors")
+    typed(other.locator("label", has_text="yaw_rate").locator("input").last, "0.5 deg/s")
+    other.wait_for_function("() => workbench.state.campaign.noise?.yaw_rate")
+    other.close()
+    page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
+    page.wait_for_function("() => workbench.state.campaign.noise?.yaw_rate === '0.5 deg/s'")
 
 
 def test_files_of_loggers_are_asked_about_in_words_and_lengths(page: Any, tmp_path: Path) -> None:
@@ -116,6 +184,8 @@ def test_files_of_loggers_are_asked_about_in_words_and_lengths(page: Any, tmp_pa
         lab.rim(tmp_path / f"run{i:02d}_SWL.csv", ride, 0.7, "l", rng)
         lab.rim(tmp_path / f"run{i:02d}_SWR.csv", ride, 0.2, "r", rng, mirrored=True)
     take_in(page, *sorted(tmp_path.iterdir()))
+    assert "Which column is what is not known yet" in page.inner_text("#faults")
+    assert page.is_hidden("#forms") and "push on" not in page.inner_text("#faults")  # no faults of what was not asked yet
     assert (
         page.is_visible("#lab svg") and page.locator("[aria-label^='unit of']:visible").count() == 0
     )  # no table of columns to mend
@@ -171,6 +241,9 @@ def test_the_sample_is_there_to_try(page: Any) -> None:
     with page.context.expect_page() as opened:
         page.click("#preview")
     opened.value.wait_for_selector("text=Nothing odd was found")
+    opened.value.set_viewport_size({"width": 390, "height": 844})
+    assert opened.value.evaluate("document.documentElement.scrollWidth") <= 390
+    assert opened.value.locator("svg").first.evaluate("e => e.getBoundingClientRect().width") > 800  # and scrolls, to be read
     assert opened.value.locator("svg").count() >= 1
     opened.value.close()
 
@@ -205,9 +278,33 @@ def test_two_tabs_are_two_pieces_of_work(page: Any, address: str) -> None:
     assert other.locator("#earlier a").count() >= 1
 
 
+def test_what_was_asked_on_coming_back_does_not_hide_what_was_done_meanwhile(page: Any) -> None:
+    """The state of an empty start is answered after the sample was taken in."""
+    page.wait_for_function("() => window.workbench?.state")
+    page.evaluate("""() => {
+        const ask = window.fetch;
+        let first = true;
+        window.fetch = async (...asked) => {
+            const answer = await ask(...asked);
+            if (!first || !String(asked[0]).endsWith("/state")) return answer;
+            first = false;
+            await new Promise((resolve) => { window.release = resolve; });
+            setTimeout(() => workbench.take(() => Promise.resolve(workbench.state)).then(() => { window.all = true; }), 500);
+            return answer;
+        };
+        document.dispatchEvent(new Event("visibilitychange"));
+    }""")
+    page.wait_for_function("() => window.release")
+    page.click("#sample")
+    page.wait_for_function("() => workbench.state.files.length === 10")
+    page.evaluate("release()")
+    page.wait_for_function("() => window.all")
+    assert page.evaluate("workbench.state.files.length") == 10
+
+
 def test_noise_and_priors_are_a_form_whose_changes_can_be_undone(page: Any) -> None:
     take_in(page, *recordings())
-    page.click("text=Noise of the sensors")
+    page.click("summary >> text=Noise of the sensors")
     field = page.locator("label", has_text="yaw_rate").locator("input").last
     assert "rad/s" in field.get_attribute("placeholder")
     typed(field, "0.5 deg/s")
@@ -256,6 +353,10 @@ def test_it_fits_and_shuts_nobody_out(
     page.reload()
     page.wait_for_selector("#outcome .card")
     page.evaluate("for (const d of document.querySelectorAll('details')) d.open = true")
+    page.evaluate("""workbench.poll = () => null, workbench.showJob({kind: "diagnose", state: "running", seconds: 9, steps: 4,
+        lines: ["calibrating", "refitting camber_misalignment"], commands: [], usual: null, result: null})""")
+    said = page.inner_text("#progress")
+    assert re.fullmatch(r"Refitting with rear .* · step 4 of about \d+ · 9 s so far · about \d+ s left", said), said
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     unnamed = page.evaluate("""[...document.querySelectorAll('button, input, select, a')].filter(e =>
         !(e.innerText?.trim() || e.getAttribute('aria-label') || e.labels?.length)).map(e => e.outerHTML)""")

@@ -212,7 +212,7 @@ def test_an_effect_of_ones_own_joins_the_catalogue(client):
         ({"id": "x y"}, "is no name for an effect"),
         ({"id": "toe_misalignment"}, "already"),
         ({"title": 'a"""b'}, "plain words"),
-        ({"size": -1}, "sizes must go"),
+        ({"size": -1}, "“q matters from” above 0"),
         ({"size": "much"}, "not a number"),
         ({"expression": "q * foo"}, "'foo'"),
         ({"expression": "-q * u / sqrt(u * u)"}, "effect other, finite at standstill:"),

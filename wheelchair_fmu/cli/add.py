@@ -41,18 +41,27 @@ def add(
     with working("calibrating", lines=progress) as say:
         better = add_effect(measured, chair, effect, fixed, say)
     files = write_improved(output, better.variant, better.ladder)
+    estimates = {
+        name: value_text(better.fit.values[name], se, better.records[name].unit)
+        for name, se in standard_errors(better.fit).items()
+    }
     if as_json:
         steps = [step.as_json() for step in better.ladder]
-        values, physical = dict(better.variant.values), better.ladder[-1].physical
-        print_json(
-            {"ladder": steps, "physical": physical, "values": values, "variant": str(output), "notes": list(better.notes)}
-        )
+        content = {
+            "ladder": steps,
+            "physical": better.ladder[-1].physical,
+            "values": dict(better.variant.values),
+            "estimates": estimates,
+            "variant": str(output),
+            "notes": list(better.notes),
+        }
+        print_json(content)
         return
     for note in better.notes:
         console().print(f"note: {note}")
     console().print(staircase_table(better.ladder))
     console().print(physical_staircase(better.ladder))
-    for name, se in standard_errors(better.fit).items():
-        console().print(f"{name} = {value_text(better.fit.values[name], se, better.records[name].unit)}")
+    for name, said in estimates.items():
+        console().print(f"{name} = {said}")
     for file in files:
         announce(file)

@@ -27,7 +27,8 @@ POINTS = 1500  # of a curve; more is drawn as the range of each of so many piece
 ABREAST = 8  # runs in one picture
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:110rem;padding:0 1rem}
 body{color:#1a1a1a;background:#fff}
-h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a5200}svg{max-width:100%;height:auto}
+h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a5200}
+.picture{overflow-x:auto}svg{max-width:100%;min-width:52rem;height:auto}
 @media(prefers-color-scheme:dark){body{background:#16181c;color:#e8e8e8}.error{color:#ff9d9d}.warning{color:#ffd28a}
 svg{background:#fff}}"""
 
@@ -78,13 +79,15 @@ def figures(runs: Sequence[Run]) -> list[Figure]:
 
 def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str]]) -> str:
     """The pictures and all faults (severity, text) as one HTML file that needs nothing else."""
-    pictures = "".join(_svg(figure) for figure in drawn)
+    region = '<div class="picture" tabindex="0" role="region" aria-label="Every signal of every run">'  # wide on a phone
+    pictures = "".join(f"{region}{_svg(figure)}</div>" for figure in drawn)
     said = "".join(f'<li class="{html.escape(kind)}">{told}</li>' for kind, told in _by_cause(faults))
     listed = f"<h2>What is odd</h2><ul>{said}</ul>" if said else "<p>Nothing odd was found.</p>"
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
+    view = '<meta name="viewport" content="width=device-width,initial-scale=1">'
+    head = f'<meta charset="utf-8">{view}<title>{html.escape(title)}</title>'
     return (
-        f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>'
-        f"<p>{LEGEND if pictures else NOTHING}</p>{pictures}{listed}</body></html>\n"
+        f'<!doctype html><html lang="en"><head>{head}<style>{STYLE}</style></head><body><main><h1>{html.escape(title)}</h1>'
+        f"<p>{LEGEND if pictures else NOTHING}</p>{pictures}{listed}</main></body></html>\n"
     )
 
 

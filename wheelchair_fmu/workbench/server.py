@@ -37,6 +37,7 @@ from ..model.variant import Variant
 from ..model.wheelchair import assemble
 from ..report import preview
 from ..report.page import ASSETS, asset
+from . import faults
 from .bodies import Json, json_object, number
 from .guard import Guard
 from .intake import MOST_BYTES
@@ -185,7 +186,7 @@ class Workbench:
         def drawn() -> str:
             seen = session.seen(self.bounds)
             pictures = preview.figures(preview.seen(seen.runs))
-            return preview.page(session.name, pictures, [(f.severity, str(f)) for f in seen.faults])
+            return preview.page(session.name, pictures, [(f.severity, faults.told(f)["text"]) for f in seen.faults])
 
         policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
         return HTMLResponse(
@@ -203,14 +204,14 @@ class Workbench:
     def told(self, session: Session) -> dict[str, Any]:
         report = session.folder / "report.html"
         own, catalogue, columns = session.own_effects(), session.catalogue(), session.columns()
-        faults, noise = session.judged(known_parameters({**bundled(), **own}) if own else self.bounds)
+        found, noise = session.judged(known_parameters({**bundled(), **own}) if own else self.bounds)
         return {
             "campaign": session.content(),
             "files": session.files(),
             "headers": {header: column["files"] for header, column in columns.items()},
             "times": [header for header, column in columns.items() if column["time"]],
             "signals": {header: column["signal"] for header, column in columns.items()},
-            "faults": faults,
+            "faults": found,
             "channels": channel_list(),
             "noise": noise,
             "parameters": self.parameters,
@@ -223,7 +224,7 @@ class Workbench:
             "report": report.stat().st_mtime_ns if report.exists() else None,
             "job": self.jobs.told(session.id),
             "earlier": [
-                {"id": s.id, "name": s.name, "at": s.looked_at}
+                {"id": s.id, "name": s.label, "at": s.looked_at}
                 for s in Session.latest(self.root, EARLIER)
                 if s.id != session.id
             ],
@@ -236,12 +237,13 @@ class Workbench:
             files = [field for field in form.getlist("files") if isinstance(field, UploadFile)]
             if not files:
                 raise UsageError("the field 'files' holds no file")
-            return await self.change(session, lambda: self._take_in(session, files))
+            name = form.get("name")
+            return await self.change(session, lambda: self._take_in(session, files, name if isinstance(name, str) else ""))
 
-    def _take_in(self, session: Session, files: list[UploadFile]) -> None:
+    def _take_in(self, session: Session, files: list[UploadFile], name: str) -> None:
         for file in files:
             session.put(file.filename or "", file.file, self.most_upload)
-        session.draft()
+        session.draft(name)
 
     async def take_sample(self, request: Request, session: Session) -> Response:
         return await self.change(session, session.try_sample)
@@ -280,14 +282,17 @@ class Workbench:
             raise unknown("parameter", strange[:40], self.bounds)
 
         def after(outputs: list[str]) -> None:
-            values = printed_json(outputs[0])["values"]
-            chair = session.variant()
+            told = printed_json(outputs[0])
+            chair, values = session.variant(), told["values"]
             found = {**chair.values, **session.known(), **{n: values[n] for n in names}}
             with self.locks.held(session):
-                session.keep(replace(chair, values=found), "calibrated")
+                ladder = [{"step": "calibrated", "fit": told["rms"]["fit"], "heldout": told["rms"]["holdout"]}]
+                session.keep(replace(chair, values=found), "calibrated", ladder)
+            job.result = {"ladder": ladder}
 
         words = ["compare", "campaign", "--calibrate", ",".join(names), "--json", *self._with(session)]
-        return Job("calibrate", [words], after)
+        job = Job("calibrate", [words], after)
+        return job
 
     def _import(self, session: Session, asked: dict[str, Any]) -> Job:
         """Find out which file is which run and device, and what its columns are; the campaign.toml that was there can be had
@@ -296,8 +301,9 @@ class Workbench:
 
         def after(outputs: list[str]) -> None:
             with self.locks.held(session):
-                session.read_anew()
+                session.read_anew(name)
 
+        name = session.name
         session.note_campaign()
         words = ["import", "campaign", "-o", "campaign", "--yes", "--force"]
         return Job("import", [[*words, *(word for name, size in sizes for word in (name, f"{size:g}"))]], after)
@@ -320,7 +326,7 @@ class Workbench:
         effect = self._effect(session, asked)
 
         def after(outputs: list[str]) -> None:
-            job.result = {"effect": effect, "ladder": printed_json(outputs[0])["ladder"]}
+            job.result = _added(effect, outputs[0])
 
         words = ["add", effect, "campaign", "-o", "tried.toml", "--json", "--progress", *self._with(session)]
         job = Job("try", [words], after)
@@ -331,11 +337,14 @@ class Workbench:
         target = session.folder / "better.toml"
 
         def after(outputs: list[str]) -> None:
+            found = _added(effect, outputs[0])
             with self.locks.held(session):
-                session.keep(target, f"+ {effect}", printed_json(outputs[0])["ladder"])
+                session.keep(target, f"+ {effect}", found["ladder"])
+            job.result = found
 
         words = ["add", effect, "campaign", "-o", "better.toml", "--json", "--progress", *self._with(session)]
-        return Job("add", [words], after)
+        job = Job("add", [words], after)
+        return job
 
     async def cancel_job(self, request: Request, session: Session) -> Response:
         return await self.change(session, partial(self.jobs.cancel, session.id))
@@ -360,14 +369,19 @@ class Workbench:
         asked = await json_object(request)
         id, title = str(asked.get("id", "")), " ".join(str(asked.get("title", "")).split())
         if not EFFECT.fullmatch(id):
-            raise UsageError(f"{cut(id)} is no name for an effect; use small letters, digits and underscores, like my_drag")
+            raise UsageError(
+                f"{cut(id)} is no name for an effect; use small letters, digits and underscores, a letter first, like my_drag"
+            )
         if id in bundled():
             raise UsageError(f"there is an effect {id!r} already; choose another name")
         if not title.isprintable() or set(title) & set('"\\{}') or not 0 < len(title) <= LONGEST_TITLE:
             raise UsageError("say in a few plain words what the effect is")
         size, lower, upper = (number(asked, key) for key in ("size", "lower", "upper"))
         if not lower <= 0 < size < upper:
-            raise UsageError(f"the sizes must go lower ≤ 0 < of interest < upper, not {lower:g}, {size:g}, {upper:g}")
+            raise UsageError(
+                "“least q” must be at most 0, “q matters from” above 0, and “greatest q” above that; "
+                f"they are {lower:g}, {size:g} and {upper:g}"
+            )
         expression, to = str(asked.get("expression", "")), str(asked.get("to", ""))
         unit = await run_in_threadpool(unit_of_q, expression, to)
         source = effect_file(id, title, to, unit, expression, size=size, lower=lower, upper=upper, source="own")
@@ -392,6 +406,12 @@ class Workbench:
         with TemporaryDirectory() as folder:
             content = build(session.variant(), Path(folder) / name).read_bytes()
         return Response(content, media_type="application/octet-stream", headers=_attached(name))
+
+
+def _added(effect: str, printed: str) -> dict[str, Any]:
+    """What `wheelchair add` found, as far as the page tells it."""
+    told = printed_json(printed)
+    return {"effect": effect, "ladder": told["ladder"], "estimates": told["estimates"]}
 
 
 def _download(file: Path, name: str) -> Response:

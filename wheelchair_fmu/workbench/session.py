@@ -40,6 +40,7 @@ from ..model.variant import Variant, programs_in, variant_text
 from ..resources import EXAMPLES
 from ..writing import written
 from .bodies import refuse_unusual, too_deep
+from .faults import told
 from .history import broken, recovered
 from .intake import MOST_BYTES, SUFFIXES, refuse_bomb, safe_path
 
@@ -49,6 +50,7 @@ SCRATCH = 1  # the same, for what holds no recordings
 DAY = 86400.0  # s
 NAME = re.compile(r"[0-9a-f]{12}")
 SAMPLE = "sample-campaign"
+UNNAMED, LONGEST_NAME = "campaign", 120  # of a campaign
 THUMB = 120  # values of a signal that is drawn beside its column
 FIRST_HOLDOUT = "holdout"  # a file whose name says so is held out
 
@@ -110,7 +112,15 @@ class Session:
     def name(self) -> str:
         about = (self.content() or {}).get("campaign")
         name = about.get("name") if isinstance(about, Mapping) else None
-        return "".join(c for c in name if c.isprintable()) if isinstance(name, str) else "campaign"
+        return "".join(c for c in name if c.isprintable()) if isinstance(name, str) else UNNAMED
+
+    @property
+    def label(self) -> str:
+        """By what one knows it again: its name, or else its first file."""
+        files = self.files()
+        if self.name != UNNAMED or not files:
+            return self.name
+        return f"{files[0]} and {len(files) - 1} more" if len(files) > 1 else files[0]
 
     @property
     def there(self) -> bool:
@@ -131,8 +141,9 @@ class Session:
         except OSError as error:
             raise UsageError(f"{name!r} cannot be kept: {error.strerror}") from None
 
-    def draft(self) -> None:
-        """A run for each recording that has none yet; columns as their headers say, where they do.
+    def draft(self, name: str = "") -> None:
+        """A run for each recording that has none yet; columns as their headers say, where they do; `name`, of the folder that
+        they come from, where the campaign has none.
 
         Where campaign.toml is no TOML, or has something else in the place of a table, its fault is shown, and nothing is
         written over it.
@@ -140,7 +151,9 @@ class Session:
         content = self.content()
         if content is None or not isinstance(content.setdefault("campaign", {}), dict):
             return
-        content["campaign"].setdefault("name", "campaign")
+        if name.isprintable() and name and content["campaign"].get("name") in (None, UNNAMED):
+            content["campaign"]["name"] = name[:LONGEST_NAME]
+        content["campaign"].setdefault("name", UNNAMED)
         content["campaign"].setdefault("axes", "SAE-J670")
         runs, columns = content.setdefault("run", []), content.setdefault("columns", {})
         if not isinstance(runs, list) or not isinstance(columns, dict):
@@ -229,13 +242,13 @@ class Session:
         as estimated, where nothing is wrong with the recordings."""
         strange = self._toml()[1]
         own = [text for text in (*self.own_faults(), broken(self.folder), strange) if text]
-        found: list[dict[str, Any]] = [{"text": text, "severity": "error"} for text in own]
+        found: list[dict[str, Any]] = [{"text": text, "what": text, "where": "", "severity": "error"} for text in own]
         content = self.content()
         if strange or (content is not None and not self.files() and not content.get("run")):  # nothing was given yet
             return found, {}
         seen = self.seen(known)
         campaign, faults = seen.campaign, seen.faults
-        found += [{"text": str(f), "severity": f.severity, "column": f.column} for f in faults]
+        found += map(told, faults)
         return found, campaign.noise if campaign else {}
 
     def seen(self, known: Mapping[str, tuple[float, float]]) -> Judged:
@@ -314,8 +327,11 @@ class Session:
         steps = self._steps_so_far()
         self._write_history(len(steps) - 1, steps)
 
-    def read_anew(self) -> None:
-        """One step more, with a campaign.toml that something else has written."""
+    def read_anew(self, name: str) -> None:
+        """One step more, with a campaign.toml that something else has written, which keeps the campaign's `name`."""
+        content = self.content()
+        if content and isinstance(content.get("campaign"), dict):
+            self.write_content({**content, "campaign": {**content["campaign"], "name": name}})
         history = self.history()
         steps = history["steps"][: history["at"] + 1]
         self._append(steps, "files read anew", self.variant_file.name, None)

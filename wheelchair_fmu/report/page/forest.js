@@ -39,8 +39,9 @@ export function forest(width, look, rows, unit, shaded, band = 1) {
   const half = long(shaded, look, 11) / 2 + 2;
   drawn.push(text(Math.max(half, Math.min(width - half, across(0))), 14, shaded, look.faint, "middle", { "font-size": 11 }));
   rows.forEach((r, i) => drawn.push(written(r, all[i], narrow, left, width - right, look), ...drawnRow(r, all[i].middle, across, [low, most], look)));
-  drawn.push(text((left + width - right) / 2, end + 32, unit, look.ink, "middle"));
-  return canvas(width, end + 40, drawn);
+  const middle = (left + width - right) / 2, title = broken(unit, 2 * Math.min(middle, width - middle) - 16, look);
+  title.forEach((t, i) => drawn.push(text(middle, end + 32 + 14 * i, t, look.ink, "middle")));
+  return canvas(width, end + 26 + 14 * title.length, drawn);
 }
 
 /** A row's name and number. */

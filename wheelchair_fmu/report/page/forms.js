@@ -7,15 +7,18 @@ import { capital, channelOf } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
 const ROLLING = /^(F_r|wheel_)/; // channels that may be logged as torques or as turning
+const SAID = 2; // faults that are told in one place
 const FEW = 6; // runs that are shown without asking where something is wrong
+const MANY = 12; // columns that nothing is taken from, above which they are folded
 const WIDE = 110, HIGH = 30; // px of a signal beside its column
+const PUSHES = ["F_rl", "F_rr"];
 
-const table = (heads, rows) => {
+const table = (kind, heads, rows) => {
   for (const row of rows) [...row.children].forEach((cell, i) => { cell.dataset.head = heads[i]; }); // for narrow screens
-  return made(heads, rows);
+  return made(kind, heads, rows);
 };
 
-const made = (heads, rows) => h("div", { class: "wide" }, h("table", {}, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
+const made = (kind, heads, rows) => h("div", { class: "wide" }, h("table", { class: kind }, h("thead", {}, h("tr", {}, heads.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
 
 const select = (label, options, value, changed) => {
   const made = h("select", { "aria-label": label, onchange: () => changed(made.value) }, Object.entries(options).map(([v, words]) => h("option", { value: v }, words)));
@@ -28,49 +31,75 @@ const text = (label, value, changed, more = {}) => {
   return made;
 };
 
+/** What is wrong with a run or a column, where it is mended: filled by `mark`. */
+const wrong = (of) => h("small", { class: "wrong", ...of });
+
+/** Put what is wrong with a run or a column beside it. */
+export function mark(faults) {
+  for (const place of document.querySelectorAll("#forms .wrong")) {
+    const { column } = place.dataset, files = place.dataset.files.split("\n");
+    const of = faults.filter((f) => f.severity === "error" && files.includes(f.file) && (f.column ?? undefined) === column), said = [...new Set(of.map((f) => f.what))];
+    place.textContent = said.slice(0, SAID).map((what) => `${capital(what)}.`).join(" ") + (said.length > SAID ? ` And ${said.length - SAID} more.` : "");
+  }
+}
+
 export function runs(bench) {
-  const { campaign } = bench.state, list = Array.isArray(campaign.run) ? campaign.run : [];
+  const { campaign, faults } = bench.state, list = Array.isArray(campaign.run) ? campaign.run : [], errors = faults.filter((f) => f.severity === "error");
   const rows = list.map((run, i) => {
     const files = run.files ? Object.values(run.files) : [run.file ?? "?"], name = run.name ?? files[0];
-    return h("tr", {}, h("th", { scope: "row" }, name, files.length > 1 || files[0] !== name ? h("small", {}, files.join(", ")) : null),
+    return h("tr", {}, h("th", { scope: "row" }, name, files.length > 1 || files[0] !== name ? h("small", {}, files.join(", ")) : null, wrong({ "data-files": files.join("\n") })),
       h("td", {}, select(`role of ${name}`, ROLES, run.role, (role) => bench.save((c) => { c.run[i].role = role; }))),
       h("td", {}, text(`manoeuvre of ${name}`, run.manoeuvre, (words) => bench.save((c) => { c.run[i].manoeuvre = words; }))),
+      h("td", {}, pushed(bench, run, i, name, files, errors)),
       h("td", {}, text(`speed at the start of ${name} [m/s]`, run.u0, (value) => bench.save((c) => { put(c.run[i], "u0", value); }), { size: 6, inputmode: "decimal" })),
       h("td", {}, h("button", { type: "button", class: "quiet", "aria-label": `remove ${name}`, onclick: () => bench.remove(files) }, "remove")));
   });
   const axes = select("axes", { "SAE-J670": "y to the right (SAE J670)", "ISO-8855": "y to the left (ISO 8855)" }, campaign.campaign?.axes, (value) => bench.save((c) => { c.campaign.axes = value; }));
-  const kept = list.filter((run) => run.role === "holdout").length, wrong = bench.state.faults.some((f) => f.severity === "error");
-  return h("details", { open: wrong && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
+  const kept = list.filter((run) => run.role === "holdout").length;
+  return h("details", { open: errors.some((f) => f.file && !f.column) && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
     h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes)),
-    table(["run", "role", "manoeuvre", "speed at the start, about [m/s]", "take it out"], rows));
+    table("runs", ["run", "role", "manoeuvre", "pushes", "speed at the start, about [m/s]", "take it out"], rows));
+}
+
+/** Whether somebody pushed: where no file tells, it has to be said. */
+function pushed(bench, run, i, name, files, errors) {
+  const still = PUSHES.every((force) => run.constant?.[force] === 0), missing = errors.some((f) => files.includes(f.file) && f.what.startsWith("the push on"));
+  if (!still && !missing) return "as recorded";
+  return select(`pushes in ${name}`, { "": "as recorded", none: "nobody pushed" }, still ? "none" : "", (value) => bench.save((c) => {
+    const constant = Object.fromEntries(Object.entries(c.run[i].constant ?? {}).filter(([force]) => !PUSHES.includes(force)));
+    if (value) for (const force of PUSHES) constant[force] = 0;
+    if (Object.keys(constant).length) c.run[i].constant = constant;
+    else delete c.run[i].constant;
+  }));
 }
 
 /** The columns of all files, or of each device's, with what every one of them holds. */
 export function columns(bench) {
   const { campaign, headers, channels } = bench.state, devices = Array.isArray(campaign.recording) ? campaign.recording : null;
-  const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.name} [${unitText(c.unit) || "1"}] ${c.meaning}`])) };
+  const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.meaning}${bracket(c.unit)} · ${c.name}`])) };
   const tables = devices ? devices.map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }))
     : [{ name: "", files: null, of: (content) => (content.columns ??= {}), explicit: false }];
-  const needed = bench.state.faults.some((f) => f.severity === "error" && f.column); // which are mended here
+  const needed = bench.state.faults.some((f) => f.severity === "error" && (f.column || f.what.includes("Columns and their units"))); // which are mended here
   return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
     const given = (devices ? devices.find((d) => d.device === one.name).columns : campaign.columns) ?? {};
     const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
-    const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => (!devices || "used" in row.dataset) === there));
-    return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, used.length ? table(heads, used) : null,
-      rest.length ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}column${rest.length > 1 ? "s" : ""}${record.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing needs"}`), table(heads, rest)) : null);
+    const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => "used" in row.dataset === there)), all = !devices && rest.length <= MANY;
+    return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, all || used.length ? table("columns", heads, all ? rows : used) : null,
+      rest.length && !all ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}column${rest.length > 1 ? "s" : ""}${record?.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing is taken from"}`), table("columns", heads, rest)) : null);
   }));
 }
 
 /** A device's name and where it sits. */
 function device(bench, i) {
-  const { device: name, at, columns = {} } = bench.state.campaign.recording[i];
-  if (!("a_x" in columns || "a_y" in columns)) return h("p", {}, h("b", {}, name)); // of which it makes no difference
+  const { device: name, at, columns = {} } = bench.state.campaign.recording[i], [first, ...more] = filesOf(bench.state.campaign, name);
+  const title = h("h3", {}, name, first && first !== name ? h("small", {}, more.length ? `${first} and ${more.length} more` : first) : null);
+  if (!("a_x" in columns || "a_y" in columns)) return title; // of which it makes no difference
   const change = (words) => bench.save((c) => {
     const place = words.split(/[,;\s]+/).filter(Boolean).map(Number);
     if (place.length) c.recording[i].at = place;
     else delete c.recording[i].at;
   });
-  return h("p", { class: "row" }, h("b", {}, name), h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" })));
+  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" }))));
 }
 
 /** The files of a device, in all runs. */
@@ -88,7 +117,7 @@ function columnRow(bench, header, place, given, options, record) {
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f));
-  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`)), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
+  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */
@@ -98,8 +127,11 @@ function signal(values) {
   const [low, high] = extent(there), down = (v) => 2 + (HIGH - 4) * (1 - (v - low) / (high - low || 1));
   return h("span", { class: "signal" }, svg("svg", { width: WIDE, height: HIGH, viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" },
     low < 0 && high > 0 ? svg("path", { d: `M0 ${down(0)}H${WIDE}`, stroke: "var(--line)" }) : null, course(there.map((_, i) => (i * WIDE) / there.length), there.map(down), "var(--model)", { "stroke-width": 1.2 })),
-  h("small", {}, `${significant(low, 3)} to ${significant(high, 3)}`));
+  h("small", {}, low === high ? `always ${significant(low, 3)}` : `${shown(low)} to ${shown(high)}`));
 }
+
+/** Three digits, also of what is rounded up to the next power of ten. */
+const shown = (value) => significant(Number(value.toPrecision(3)), 3);
 
 /** Writes into the columns of a campaign or device that `header` is `channel`; what its header says by itself needs no entry. */
 function map(content, place, header, bare, own, channel, unit, radius) {
@@ -122,7 +154,7 @@ export function noise(bench) {
     const { bare, own } = parted(header), entry = Object.entries(mapped).find(([, v]) => (v.column ?? v) === header);
     columnUnit[entry?.[0] ?? bare] = entry?.[1].unit ?? own;
   }
-  const fields = channels.filter((c) => c.name in columnUnit && c.name !== "time").map((c) => {
+  const fields = channels.filter((c) => (c.name in columnUnit || c.name in found) && c.name !== "time").map((c) => {
     const seen = found[c.name];
     return field(c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
       seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());

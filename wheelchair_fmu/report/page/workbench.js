@@ -1,16 +1,20 @@
 // The workbench: forms over a session that the server keeps. Nothing lives only in this page.
 
-import { byId, h, save, symbols } from "page/dom";
-import { chair, columns, noise, priors, runs } from "page/forms";
+import { byId, h, save, symbols, write } from "page/dom";
+import { chair, columns, mark, noise, priors, runs } from "page/forms";
 import { rms, unitText } from "page/numbers";
 import { capital, listed } from "page/words";
 
 const POLL = 400; // ms between looks at a running job
 const TYPED = 300; // ms without a key after which an expression is checked
 const LATEST = 3; // pieces of earlier work that are in sight
-const PLACE = /^(?:run )?(?<where>.+?): (?<what>.+)$/; // of a fault's sentence
-const FIRST = { diagnose: "of ten short runs it takes about a minute", add: "it takes some seconds", try: "it takes some seconds" };
-const DONE = { import: "the files were read together", calibrate: "calibrated", diagnose: "diagnosed", add: "added and refitted", try: "tried" };
+const LOST = 2000; // ms between looks where the last one had no answer
+const SLOW = 250; // ms after which it is said that an answer is waited for
+const STEPS = { diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen
+const FEW_STEPS = 3; // before which nobody can tell how long the rest takes
+const GONE = "The workbench does not answer. Is it still running? Start it again by “wheelchair workbench” and open the address that it prints: your work is kept.";
+const TYPING = "q is the size that is estimated. A number may have its unit behind it, as in -q * tanh(u / 3 [km/h]).";
+const MOSTLY = ["F_x", "F_y", "M_z"]; // what an effect of one's own adds to, as a rule
 
 /** What no file tells of a chair, where campaign.toml has it as it was given. */
 const SIZES = {
@@ -42,16 +46,24 @@ async function ask(path, options = {}) {
 
 const send = (method, path, content) => ask(path, { method, body: JSON.stringify(content), headers: { "content-type": "application/json" } });
 
-/** What goes wrong is said at the top, and stands until something goes right. */
+const told = byId("error");
+let touched = null; // what the reader last used
+for (const kind of ["click", "change", "drop"]) document.addEventListener(kind, ({ target }) => { touched = target; }, true);
+
+/** What goes wrong is said beside what was used, and stands until something goes right. */
 async function tried(act) {
   try {
     const result = await act();
-    byId("error").hidden = true;
+    told.hidden = true;
     return result;
   } catch (error) {
-    byId("error").textContent = error instanceof Refused ? error.message : `the workbench does not answer (${error.message}); is it still running?`;
-    byId("error").hidden = false;
-    byId("error").scrollIntoView({ block: "nearest" });
+    const lost = !(error instanceof Refused), near = lost ? null : touched?.closest?.("main p, #drop, main .grid, #forms > details, main table");
+    if (lost) byId("dock").prepend(told);
+    else if (near) (near.closest(".wide") ?? near).after(told);
+    byId("dock").hidden &&= !lost;
+    write(told, lost ? GONE : capital(error.message));
+    told.hidden = false;
+    told.scrollIntoView({ block: "nearest" });
     return null;
   }
 }
@@ -66,10 +78,17 @@ class Workbench {
 
   /** Ask the server for something that answers with the new state, and show it all. One after the other: an answer that was
    *  overtaken on its way would show an older state over a newer one. */
-  take(act) {
-    const mine = this.before.then(() => this.taken(act));
+  take(act, doing = "Looking at the recordings …") {
+    const late = setTimeout(() => this.waiting(doing), SLOW), mine = this.before.then(() => this.taken(act)).finally(() => { clearTimeout(late); this.waiting(""); });
     this.before = mine.catch(() => null);
     return mine;
+  }
+
+  /** That an answer is waited for, where it is not there at once. */
+  waiting(doing) {
+    this.doing = doing;
+    document.body.toggleAttribute("aria-busy", Boolean(doing));
+    if (this.state) this.showDock(this.state.job);
   }
 
   async taken(act) {
@@ -82,8 +101,8 @@ class Workbench {
   show(state) {
     this.state = state;
     byId("name").textContent = state.files.length ? state.campaign?.campaign?.name ?? "" : "";
+    this.showForms();
     this.showFaults();
-    byId("forms").replaceChildren(...(state.campaign && state.files.length ? [runs(this), columns(this), noise(this), chair(this), priors(this)] : []));
     this.showHistory();
     this.showEffects();
     this.showJob(state.job);
@@ -92,12 +111,36 @@ class Workbench {
     byId("earlier").replaceChildren(...(earlier.length ? ["Earlier work: ", ...earlier] : []), older.length ? h("details", {}, h("summary", {}, `${older.length} older`), h("span", { class: "tools wide-tools" }, older)) : "");
   }
 
+  /** Forms anew; what the reader opened or closed stays so, unless something else is to be seen now. */
+  showForms() {
+    const { campaign, files } = this.state, before = new Map([...byId("forms").children].map((d) => [d.dataset.form, d]));
+    const forms = campaign && files.length ? Object.entries({ runs, columns, noise, chair, priors }).map(([name, of]) => [name, of(this)]) : [];
+    for (const [name, form] of forms) {
+      const was = before.get(name);
+      Object.assign(form.dataset, { form: name, first: form.open });
+      if (was?.dataset.first === form.dataset.first) form.open = was.open;
+    }
+    byId("forms").replaceChildren(...forms.map(([, form]) => form));
+  }
+
+  /** Are these files as loggers write them, of which no column is known but for the time? */
+  get unread() {
+    const { campaign, headers, channels } = this.state, known = new Set(channels.map((c) => c.name).filter((name) => name !== "time"));
+    return Boolean(campaign) && !Array.isArray(campaign.recording) && !Object.keys(campaign.columns ?? {}).some((name) => known.has(name)) && !Object.keys(headers).some((header) => known.has(header.replace(/\s*\[.*\]\s*$/, "")));
+  }
+
   showFaults() {
     const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), remarks = faults.filter((f) => f.severity !== "error");
-    const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), by = raw ? ": find out above what is in these files, or mend them by hand" : "";
+    const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), by = raw ? ": find out above what is in these files, or mend them by hand." : ".", unread = files.length > 0 && errors.length > 0 && this.unread;
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
-    byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
+    if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
+      h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
+    else byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
       remarks.length ? h("details", {}, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}`), causes(remarks)) : "");
+    byId("forms").hidden = unread && !this.byHand;
+    mark(faults);
+    byId("there").hidden = !files.length;
+    byId("there").textContent = `${files.length} ${files.length > 1 ? "files are" : "file is"} here; more can be added.`;
     byId("lab").hidden = !files.length || (!errors.length && raw);
     byId("lab").firstElementChild.textContent = raw ? "What is in these files?" : "Read the files again, with other sizes";
     if (this.asked !== (this.asked = errors.length > 0)) byId("lab").open = this.asked; // else as the reader left it
@@ -105,7 +148,7 @@ class Workbench {
     sizeField("person").placeholder = campaign?.rider?.m ?? ""; // it may be assumed: who does not give it has it assumed again
     byId("import").setAttribute("aria-pressed", errors.length > 0);
     byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
-    byId("preview-link").hidden = !files.length;
+    byId("preview-link").hidden = !files.length || unread;
     byId("preview").href = `${this.here}/preview`;
     this.ready = files.length > 0 && !errors.length;
     const assumed = Object.entries(PLACES).filter(([name]) => campaign?.chair?.[name] === undefined).map(([, words]) => words);
@@ -117,8 +160,10 @@ class Workbench {
   enable() {
     const busy = this.state.job?.state === "running", { at, steps } = this.state.history;
     for (const id of ["calibrate", "diagnose", "add"]) byId(id).disabled = busy || !this.ready;
+    byId("add").disabled ||= !byId("effect").value;
+    write(byId("why"), this.ready ? "" : this.state.files.length ? (this.unread ? "This can begin once it is known which column is what." : "This can begin once nothing is left to mend above.") : "This can begin once there are recordings.");
     for (const id of ["import", "sample"]) byId(id).disabled = busy;
-    for (const b of document.querySelectorAll("[data-add]")) b.disabled = busy || !this.ready;
+    for (const b of document.querySelectorAll("[data-add], [data-again]")) b.disabled = busy || !this.ready;
     const own = byId("own").querySelector("[type=submit]");
     own.disabled = busy;
     own.textContent = this.ready ? "put it into the catalogue and try it" : "put it into the catalogue";
@@ -146,64 +191,100 @@ class Workbench {
     byId("history").replaceChildren(...models.map((model) => h("li", { "aria-current": model === now ? "step" : null, class: model.i > at ? "undone" : null },
       capital(this.labelOf(model.step)), model.step.ladder ? h("small", {}, fall(model.step.ladder)) : null)));
     byId("export-report").disabled = !this.state.report;
+    write(byId("export-why"), !this.state.report ? "A report can be taken away after a diagnosis." : this.state.outcome?.fresh ? "" : "The report is of the model before the last change; diagnose again for one of this model.");
   }
 
   /** The likeliest effects of the last diagnosis come first. */
   showEffects() {
     const { effects, words, outcome } = this.state, select = byId("effect"), chosen = select.value, order = new Map((outcome?.order ?? []).map((id, i) => [id, i]));
     const there = new Set(this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label)), all = effects.filter((e) => !there.has(`+ ${e.id}`)).sort((a, b) => (order.get(a.id) ?? 1e9) - (order.get(b.id) ?? 1e9));
-    select.replaceChildren(...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
+    select.replaceChildren(...(order.size ? [] : [h("option", { value: "" }, "choose one, or diagnose first")]), ...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
     if (this.ranked === (outcome?.order ?? []).join() && all.some((e) => e.id === chosen)) select.value = chosen;
     this.ranked = (outcome?.order ?? []).join();
     if (byId("readable").childElementCount) return;
     byId("readable").append(...words.readable.map((q) => h("option", { value: q.name })));
-    byId("own").elements.to.append(...words.targets.map((q) => h("option", { value: q.name, title: q.meaning }, `${q.name} [${unitText(q.unit) || "1"}]`)));
+    const group = (label, some) => h("optgroup", { label }, some.map((q) => h("option", { value: q.name }, `${q.name} [${unitText(q.unit) || "1"}] ${q.meaning}`)));
+    byId("own").elements.to.append(group("forces and moment on the chair", words.targets.filter((q) => MOSTLY.includes(q.name))), group("any other quantity", words.targets.filter((q) => !MOSTLY.includes(q.name))));
     byId("own").elements.to.value = "F_x";
     byId("words").append(...words.readable.map((q) => h("div", {}, h("code", {}, q.name), ` [${unitText(q.unit) || "1"}] ${q.meaning}`)));
   }
 
   showJob(job) {
     this.state.job = job;
-    byId("job").hidden = byId("progress").hidden = !job;
+    byId("job").hidden = !job;
+    if (job?.state === "running") this.watched = true; // what ended before this page was opened is no news
     if (job) {
       const box = byId("job").querySelector("[role=log]"), low = box.scrollTop + box.clientHeight > box.scrollHeight - 40;
       box.replaceChildren(...job.commands.map((c) => h("div", { class: "command" }, `$ ${c}`)), ...job.lines.map((l) => h("div", {}, l)));
       if (low) box.scrollTop = box.scrollHeight;
-      this.showProgress(job);
+      this.showTried(job);
     }
+    this.showDock(job);
     this.enable();
     clearTimeout(this.polling);
-    if (job?.state === "running") this.polling = setTimeout(() => this.poll(), POLL);
+    if (job?.state === "running") this.polling = setTimeout(() => this.poll(), told.parentElement === byId("dock") && !told.hidden ? LOST : POLL);
   }
 
-  /** How far it has come; how long it will take is said where one of its kind has been seen. */
-  showProgress(job) {
-    const [bar, words] = byId("progress").children, { usual, steps, seconds } = job, running = job.state === "running";
-    byId("progress").dataset.state = job.state;
-    bar.hidden = !running;
-    if (usual) bar.value = Math.min(0.98, seconds / usual.seconds);
-    else bar.removeAttribute("value");
-    const left = usual && usual.seconds > seconds ? `about ${whole(usual.seconds - seconds)} left` : usual ? "longer than the last time" : FIRST[job.kind] ?? "";
-    words.textContent = running ? [capital(job.lines.at(-1) ?? "starting"), `step ${Math.max(1, steps)}${usual ? ` of about ${Math.max(usual.steps, steps)}` : ""}`, `${whole(seconds)} so far`, left].filter(Boolean).join(" · ")
-      : job.state === "done" ? `${capital(DONE[job.kind] ?? job.kind)}, in ${whole(seconds)}.` : job.state === "cancelled" ? "Cancelled; nothing was changed." : `Failed: ${job.lines.at(-1) ?? "nothing was said"}`;
-    const said = running ? job.lines.at(-1) ?? "starting" : words.textContent;
-    if (byId("said").textContent !== said) byId("said").textContent = said;
-    const trying = job.kind === "try", { at } = this.state.history;
+  /** What is going on, always in sight; what came of it, until it is put away. */
+  showDock(job) {
+    const running = job?.state === "running", waits = Boolean(this.doing) && !running, news = job && !running && (this.watched || job.state === "failed") && this.away !== ended(job);
+    const dock = byId("dock"), [bar, words] = byId("progress").children, kept = !told.hidden && told.parentElement === dock;
+    dock.hidden = !running && !waits && !news && !kept;
+    dock.dataset.state = running || waits ? "running" : job?.state ?? "";
+    bar.hidden = kept || (!running && !waits);
+    bar.removeAttribute("value");
+    write(words, kept ? "" : running ? this.progressed(job, bar) : waits ? this.doing : news ? this.came(job) : "");
+    byId("cancel").hidden = !running;
+    byId("shut").hidden = running || waits;
+    const to = news && job.state === "done" ? SEE[job.kind] : null;
+    byId("see").hidden = !to;
+    if (to) [byId("see").href, byId("see").textContent] = to;
+    write(byId("said"), running ? this.plain(job.lines.at(-1) ?? "starting") : words.textContent);
+    document.title = [running ? `${capital(job.kind)} …` : "", byId("name").textContent, "wheelchair workbench"].filter(Boolean).join(" – ");
+  }
+
+  /** Which step it is, of how many, and how long the rest takes: as the last one of its kind did, or else as its steps so far. */
+  progressed({ kind, lines, steps, seconds, usual }, bar) {
+    const many = usual?.steps ?? STEPS[kind], length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = many && (length ? seconds >= length : steps > many);
+    if (length) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
+    return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : length ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
+  }
+
+  /** What came of a job, in a sentence. */
+  came(job) {
+    if (job.state === "cancelled") return "Cancelled; nothing was changed.";
+    if (job.state === "failed") return `Failed: ${this.plain(job.lines.at(-1) ?? "nothing was said")}`;
+    const { effect, ladder } = job.result ?? {}, took = `in ${whole(job.seconds)}`;
+    if (job.kind === "import") return `The files were read together, ${took}.`;
+    if (job.kind === "diagnose") return `Diagnosed, ${took}.`;
+    if (job.kind === "calibrate") return `Calibrated, ${took}${ladder ? `: ${errorOf(ladder.at(-1))}` : ""}.`;
+    return `${job.kind === "add" ? "Added" : "Tried"}: ${this.titleOf(effect)}, ${took}. ${capital(changed(ladder))}`;
+  }
+
+  /** What a command says, with effects by their titles. */
+  plain(line) {
+    const titles = new Map(this.state.effects.map((e) => [e.id, e.title]));
+    return line.replace(/^refitting (?!with )/, "refitting with ").replace(/\w+/g, (word) => titles.get(word) ?? word);
+  }
+
+  showTried(job) {
+    const trying = job.kind === "try", { at } = this.state.history, running = job.state === "running";
     if (trying && running) this.triedAt = at; // what was tried is told of this model alone
     const found = trying && job.state === "done" && this.triedAt === at ? job.result : null;
     byId("tried").replaceChildren(...(found ? this.triedWords(found) : [trying && running ? "It is being fitted …" : ""]));
   }
 
-  /** What an effect that was tried does to the error, and the way to keep it. */
-  triedWords({ effect, ladder }) {
-    const [before, after] = [ladder.at(-2), ladder.at(-1)].map((s) => s.heldout ?? s.fit), where = ladder.at(-1).heldout === null ? "the fitted runs" : "runs held out", falls = before - after;
-    const says = falls > 0.005 ? `falls from ${rms(before)} to ${rms(after)}` : falls < -0.005 ? `rises from ${rms(before)} to ${rms(after)}` : `stays at ${rms(after)}`;
-    return [`With ${this.titleOf(effect)}, the error on ${where} ${says} times the noise. `, h("button", { type: "button", "data-add": effect, onclick: () => this.job("add", { effect }) }, "keep it in the model")];
+  /** What an effect that was tried does to the error, how large it comes out, and the way to keep it. */
+  triedWords({ effect, ladder, estimates }) {
+    const sizes = Object.entries(estimates ?? {}).filter(([name]) => name.startsWith(`effect.${effect}.`)).map(([name, size]) => `its size ${name.split(".").at(-1)} comes out as ${size}`);
+    return [`With ${this.titleOf(effect)}, ${changed(ladder)} ${sizes.length ? `${capital(listed(sizes))}. ` : ""}`, h("button", { type: "button", "data-add": effect, onclick: () => this.job("add", { effect }) }, "keep it in the model")];
   }
 
   async poll() {
     const job = await tried(() => ask("job"));
     if (job?.state === "running" || !job) return this.showJob(job ?? this.state.job);
+    this.watched = true;
     await this.take(() => ask("state"));
   }
 
@@ -214,11 +295,11 @@ class Workbench {
     if (!done) return;
     const inModel = this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label), add = outcome.effects.filter((e) => !inModel.includes(`+ ${e}`));
     box.replaceChildren(
-      outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This verdict and its report are from before the last change. Diagnose again for what is missing now."),
+      outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This verdict and its report are from before the last change. ", h("button", { type: "button", "data-again": true, onclick: () => this.job("diagnose") }, "diagnose again"), " for what is missing now."),
       h("h3", {}, outcome.sentence),
       h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, symbols(l)))))),
       h("p", { class: "tools wide-tools" }, add.map((e) => h("button", { type: "button", class: "step", "aria-pressed": "true", "data-add": e, onclick: () => this.job("add", { effect: e }) }, `add it: ${this.titleOf(e)}`)),
-        h("a", { class: "button", id: "report", href: `${this.here}/report?${report}`, target: "_blank", rel: "noopener" }, "open the report, in which the model runs ↗")));
+        h("a", { class: "button", id: "report", href: `${this.here}/report?${report}`, target: "_blank", rel: "noopener" }, outcome.fresh ? "open the report, in which the model runs ↗" : "open the report from before ↗")));
     this.enable();
   }
 
@@ -231,12 +312,19 @@ class Workbench {
     this.state = { ...state, job: this.state.job };
     this.showFaults();
     this.showHistory();
+    this.showEffects();
     this.showOutcome();
     byId("name").textContent = state.campaign.campaign?.name ?? "";
   }
 
-  job(kind, more = {}) {
-    return this.take(() => send("POST", "jobs", { kind, ...more }));
+  /** Begin a job. It shows at once; where it is refused, all is as it was. */
+  async job(kind, more = {}) {
+    const was = this.state.job;
+    this.away = null;
+    this.showJob({ kind, state: "running", lines: [], commands: [], steps: 0, seconds: 0, usual: null, result: null });
+    const state = await this.take(() => send("POST", "jobs", { kind, ...more }));
+    if (!state) this.showJob(was);
+    return state;
   }
 
   /** Take the files of a run out, one after the other. */
@@ -261,7 +349,7 @@ class Workbench {
 
   listen() {
     const drop = byId("drop"), sizes = () => Object.fromEntries(Object.keys(SIZES).map((n) => [n, sizeField(n).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
-    byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {})));
+    byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {}), "Taking in the sample …"));
     byId("import").addEventListener("click", () => this.job("import", sizes()));
     for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled, for a minute or less …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
       byId(`export-${id}`).addEventListener("click", () => this.export(name, making));
@@ -271,6 +359,10 @@ class Workbench {
     drop.addEventListener("drop", async (event) => { event.preventDefault(); drop.classList.remove("over"); this.upload(await dropped(event.dataTransfer)); });
     byId("calibrate").addEventListener("click", () => this.job("calibrate"));
     byId("diagnose").addEventListener("click", () => this.job("diagnose"));
+    byId("effect").addEventListener("change", () => this.enable());
+    byId("shut").addEventListener("click", () => this.putAway());
+    byId("see").addEventListener("click", () => this.putAway());
+    document.addEventListener("visibilitychange", () => this.lookAgain());
     byId("add").addEventListener("click", () => this.job("add", { effect: byId("effect").value }));
     byId("cancel").addEventListener("click", () => this.take(() => ask("jobs", { method: "DELETE" })));
     byId("undo").addEventListener("click", () => this.take(() => send("POST", "history", { by: -1 })));
@@ -278,14 +370,32 @@ class Workbench {
     this.listenToExpression(byId("own"));
   }
 
+  putAway() {
+    this.away = ended(this.state.job);
+    if (told.parentElement === byId("dock")) told.hidden = true;
+    this.showDock(this.state.job);
+  }
+
+  /** Another tab may have changed this work meanwhile. */
+  async lookAgain() {
+    if (document.visibilityState !== "visible" || !this.state || this.state.job?.state === "running") return;
+    const seen = await ask("state").catch(() => null), essence = (s) => JSON.stringify([s.campaign, s.files, s.history, s.report, s.job?.state]);
+    if (seen && essence(seen) !== essence(this.state)) await this.take(() => ask("state")); // anew: meanwhile a job may have begun
+  }
+
   listenToExpression(form) {
     const unit = byId("unit");
+    unit.textContent = TYPING;
     const check = async () => {
-      if (!form.elements.expression.value.trim()) return;
+      if (!form.elements.expression.value.trim()) {
+        delete unit.dataset.state;
+        unit.textContent = TYPING;
+        return;
+      }
       const found = await tried(() => send("POST", "expression", { expression: form.elements.expression.value, to: form.elements.to.value }));
       if (!found) return;
       unit.dataset.state = found.unit ? "good" : "bad";
-      unit.textContent = found.unit ? `the units fit where q is in ${unitText(found.unit) || "plain numbers"}` : found.why;
+      unit.textContent = found.unit ? `The units fit where q is ${unitText(found.unit) ? `in ${unitText(found.unit)}` : "a plain number"}.` : capital(found.why);
       byId("unit-name").textContent = found.unit ? unitText(found.unit) : "";
     };
     const soon = () => { clearTimeout(this.typing); this.typing = setTimeout(check, TYPED); };
@@ -295,8 +405,10 @@ class Workbench {
       event.preventDefault();
       const text = (name) => form.elements[name].value.trim(), number = (name) => form.elements[name].valueAsNumber;
       const content = { id: text("id"), title: text("title"), to: text("to"), expression: text("expression"), size: number("size"), lower: number("lower"), upper: number("upper") };
-      byId("tried").replaceChildren();
-      if (!(await this.take(() => send("POST", "effects", content)))) return;
+      byId("tried").textContent = "It is put into the catalogue …";
+      const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
+      byId("tried").textContent = there && !this.ready ? "It is in the catalogue, and can be tried once there are recordings that can be read." : "";
+      if (!there) return;
       byId("effect").value = content.id;
       if (this.ready) this.job("try", { effect: content.id });
     });
@@ -306,10 +418,11 @@ class Workbench {
     if (!files.length) return null;
     const most = this.state?.most_upload, all = files.reduce((sum, [, file]) => sum + file.size, 0);
     if (all > most) return tried(() => { throw new Refused(`${Math.ceil(all / 1e6)} MB at once is too much for the workbench, which takes ${most / 1e6} MB; add fewer at a time`); });
-    const toml = files.find(([path]) => path.endsWith("campaign.toml")), first = toml ?? files[0];
+    const toml = files.find(([path]) => path.endsWith("campaign.toml")), first = toml ?? files[0], count = files.length;
     const base = first[0].slice(0, first[0].lastIndexOf("/") + 1), form = new FormData();
     for (const [path, file] of files) if (!file.name.startsWith(".")) form.append("files", file, path.startsWith(base) ? path.slice(base.length) : path);
-    return this.take(() => ask("files", { method: "POST", body: form }));
+    form.append("name", base.split("/").at(-2) ?? "");
+    return this.take(() => ask("files", { method: "POST", body: form }), `Taking in ${count} ${count > 1 ? "files" : "file"} …`);
   }
 }
 
@@ -317,26 +430,43 @@ const sizeField = (name) => byId("lab").querySelector(`[name=${name}]`);
 const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
 const whole = (seconds) => (seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 
+/** Where to look once it has ended: [address, words]. */
+const SEE = { import: ["#measurements-title", "see what is in them"], diagnose: ["#outcome", "read the verdict"], calibrate: ["#history", "see the models"], add: ["#history", "see the models"], try: ["#tried", "see what it does"] };
+
+/** Which end of which job it is, so that it can be put away. */
+const ended = (job) => job && `${job.kind} ${job.state} ${job.seconds}`;
+
 /** Faults by their cause: what is wrong alike in many places is said once, with the places behind it. */
-const causes = (faults) => h("ul", {}, [...byCause(faults)].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? fault.text
-  : h("details", {}, h("summary", {}, h("b", {}, `in ${places.length} places: `), what), h("small", {}, places.join("; "))))));
+const causes = (faults) => h("ul", {}, [...byCause(faults)].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? [capital(what), places[0] ? h("small", {}, places[0]) : null]
+  : h("details", {}, h("summary", {}, capital(what), h("small", {}, `in ${places.length} places`)), h("small", {}, places.join("; "))))));
 
 /** {what is wrong: {fault, places}} */
 function byCause(faults) {
   const found = new Map();
   for (const fault of faults) {
-    const { where, what } = fault.text.match(PLACE)?.groups ?? { where: "", what: fault.text };
-    if (!found.has(what)) found.set(what, { fault, places: [] });
-    found.get(what).places.push(where);
+    if (!found.has(fault.what)) found.set(fault.what, { fault, places: [] });
+    found.get(fault.what).places.push(fault.where);
   }
   return found;
 }
 
+const onWhich = (held) => `error on ${held ? "runs held out" : "fitted runs"}`;
+
+/** One error of a ladder: "the error on runs held out is 1.01 times the noise". */
+const errorOf = (step) => `the ${onWhich(step.heldout !== null)} is ${rms(step.heldout ?? step.fit)} times the noise`;
+
+/** What the last step of a ladder did to the error. */
+function changed(ladder) {
+  const held = ladder.at(-1).heldout !== null, [before, after] = [ladder.at(-2), ladder.at(-1)].map((s) => (held ? s.heldout : s.fit)), falls = before - after;
+  const says = falls > 0.005 ? `falls from ${rms(before)} to ${rms(after)}` : falls < -0.005 ? `rises from ${rms(before)} to ${rms(after)}` : `stays at ${rms(after)}`;
+  return `the ${onWhich(held)} ${says} times the noise.`;
+}
+
 /** The error as it came down, with what each figure is of. */
 function fall(ladder) {
-  const held = ladder.every((s) => s.heldout !== null), told = (s) => rms(held ? s.heldout : s.fit), [first, ...more] = ladder;
-  const steps = more.map((s, i) => `${s.step === "calibrated" ? "calibrated " : i === more.length - 1 ? "now " : ""}${told(s)}`);
-  return `error on ${held ? "runs held out" : "fitted runs"}: as given ${told(first)}${steps.length ? ` → ${steps.join(" → ")}` : ""}; 1.00 is noise alone`;
+  const held = ladder.every((s) => s.heldout !== null), names = { nominal: "as given ", calibrated: "calibrated " };
+  const steps = ladder.map((s, i) => `${names[s.step] ?? (i === ladder.length - 1 ? "now " : "")}${rms(held ? s.heldout : s.fit)}`);
+  return `${onWhich(held)}: ${steps.join(" → ")}; 1.00 is noise alone`;
 }
 
 /** Every file of what was dropped, folders too, as [path, file]. */

@@ -1,0 +1,60 @@
+"""Faults as the page says them."""
+
+from __future__ import annotations
+
+import pytest
+
+from wheelchair_fmu.faults import Fault, run_fault
+from wheelchair_fmu.workbench.faults import CURES, told
+from wheelchair_fmu.workbench.session import Session
+
+PLACES = ("[columns]", "[noise]", "[[run", "constant =", " = {")  # of campaign.toml, which the page shows to nobody
+BAD = b"Time,F_rl [N],speed,gyro_z\n" + b"\n".join(b"%.2f,1,2,3" % (i / 50) for i in range(40))
+
+
+def test_a_cure_names_the_form_in_which_it_is_done() -> None:
+    fault = run_fault(
+        "a.csv", "no push force F_rl", "add a column 'F_rl [N]', name it in [columns], or write constant = ...", 1
+    )
+    assert told(fault)["text"] == (
+        "a.csv: the push on the left wheel is missing; choose its column under “Columns and their units”, "
+        "or say under “Runs” that nobody pushed"
+    )
+    assert told(fault)["file"] == "a.csv" and told(fault)["column"] is None
+    note = Fault("campaign.toml", None, None, "all is well", "nothing is to be done")
+    assert told(note)["text"] == "all is well"
+    strange = Fault("campaign.toml", 3, None, "odd", "make it even")
+    assert told(strange)["text"] == "campaign.toml line 3: odd; make it even"
+
+
+def test_faults_of_a_loggers_file_name_no_place_of_a_file_that_nobody_sees(tmp_path) -> None:
+    session = Session.begin(tmp_path)
+    (session.campaign / "odd.csv").write_bytes(BAD)
+    (session.campaign / "empty.csv").write_bytes(b"")
+    (session.campaign / "binary.csv").write_bytes(bytes(range(256)) * 4)
+    session.draft()
+    found, _ = session.judged({})
+    assert len(found) > 5
+    for fault in found:
+        assert not any(place in fault["text"] for place in PLACES), fault["text"]
+
+
+@pytest.mark.parametrize("words", [words for _, words in CURES])
+def test_a_cure_in_the_pages_words_is_a_plain_clause(words) -> None:
+    assert words == words.strip() and not words.endswith(".") and "_" not in words
+
+
+def test_a_campaign_has_the_name_of_the_folder_it_comes_from(tmp_path) -> None:
+    session = Session.begin(tmp_path)
+    session.draft("hall in may")
+    assert session.name == "hall in may"
+    session.draft("other")
+    assert session.name == session.label == "hall in may"
+
+
+def test_work_without_a_name_is_known_again_by_its_files(tmp_path) -> None:
+    session = Session.begin(tmp_path)
+    assert session.label == "campaign"
+    for name in ("b.csv", "a.csv", "c.csv"):
+        (session.campaign / name).write_bytes(BAD)
+    assert session.label == "a.csv and 2 more"
