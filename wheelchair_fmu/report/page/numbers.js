@@ -46,7 +46,7 @@ export function withError(estimate, se, record) {
   return `${unsigned(minus(value.toFixed(Math.min(place, 8))))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
 }
 
-/** "1.606 (1.582 to 1.631) N": an estimate in its 95 % interval. */
+/** "1.61 (1.48 to 1.73) N": an estimate in its 95 % interval. */
 export function withInterval(estimate, ends, record) {
   const { unit, factor } = display(record), suffix = unitText(unit), half = ((ends[1] - ends[0]) / 2) * factor;
   if (!(half > 0)) return withError(estimate, null, record);

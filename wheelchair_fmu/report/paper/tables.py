@@ -21,19 +21,17 @@ def estimates(case: Case) -> pd.DataFrame:
 
 
 _COLUMNS = (
-    *("parameter", "kind", "meaning", "unit", "estimate", "se", "lower_95", "upper_95", "interval"),
+    *("parameter", "kind", "meaning", "unit", "estimate", "se", "unnamed", "lower_95", "upper_95", "interval"),
     *("at_bound", "prior", "prior_sd", "smallest_interesting"),
 )
 
 
-_NUMBERS = ("estimate", "se", "prior", "prior_sd", "smallest_interesting")
+_NUMBERS = ("estimate", "se", "unnamed", "prior", "prior_sd", "smallest_interesting")  # of a record, where it has them
 
 
 def _estimate(case: Case, p: Mapping[str, Any]) -> dict[str, Any]:
     lower, upper, how = interval(p)
-    numbers = {
-        key: nan if p[key] is None else p[key] for key in ("estimate", "se", "prior", "prior_sd", "smallest_interesting")
-    }
+    numbers = {key: nan if p.get(key) is None else p[key] for key in _NUMBERS}
     return {
         **{key: p[key] for key in ("meaning", "unit", "at_bound")},
         **numbers,
