@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from functools import cache
+from pathlib import Path
+
 import pytest
 
+import wheelchair_fmu
 from wheelchair_fmu.faults import Fault, run_fault
 from wheelchair_fmu.workbench.faults import CURES, told
 from wheelchair_fmu.workbench.session import Session
@@ -37,6 +42,19 @@ def test_faults_of_a_loggers_file_name_no_place_of_a_file_that_nobody_sees(tmp_p
     assert len(found) > 5
     for fault in found:
         assert not any(place in fault["text"] for place in PLACES), fault["text"]
+
+
+@cache
+def sources() -> str:
+    """All that may say a cure, but for the page's own words of them."""
+    files = Path(wheelchair_fmu.__file__).parent.rglob("*.py")
+    return "\n".join(f.read_text(encoding="utf-8") for f in files if f.parent.name != "workbench").replace('\\"', '"')
+
+
+@pytest.mark.parametrize("pattern", [pattern for pattern, _ in CURES])
+def test_what_the_page_says_in_other_words_is_a_cure_that_there_is(pattern) -> None:
+    begins = re.sub(r"\\(.)", r"\1", pattern.partition(".*")[0].partition("F_r")[0]).rstrip(" '")
+    assert len(begins) > 3 and begins in sources(), begins
 
 
 @pytest.mark.parametrize("words", [words for _, words in CURES])
