@@ -190,8 +190,8 @@ def test_drag_hidden_in_straight_runs_is_named_or_tied(tmp_path):
 
 
 def test_intervals_hold_what_was_hidden(sampled):
-    """By profile likelihood, as wide as half widths and the allowance for what was not named have it (this effect is linear), and
-    by bootstrap, about as wide as robust standard errors have it."""
+    """By profile likelihood, as wide as half widths and the allowance for what was not named have it (this effect is linear),
+    and by bootstrap, about as wide as robust standard errors have it."""
     resampled = bootstrap(sampled, 1000)
     again = bootstrap(sampled, 1000)
     assert resampled == again

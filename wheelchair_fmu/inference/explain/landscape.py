@@ -1,8 +1,8 @@
 """The likelihood about the estimates, for drawing: by each size alone, and by the sizes of two rivals together.
 
 Everything else is where these sizes let it be. Heights are −2 log likelihood above the lowest, shrunk as intervals are widened
-for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84; of two, where
-only the former two count, below 5.99.
+for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84; of two,
+where only the former two count, below 5.99.
 """
 
 from __future__ import annotations
