@@ -6,6 +6,7 @@ from typing import Any
 
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..model.generic import told_at
 from ..quantities import Parameter
 from .told import (
     Told,
@@ -91,7 +92,7 @@ def _outside(t: Told) -> tuple[str, list[str]]:
         delta = record.smallest_interesting if isinstance(record, Parameter) else None
         times = f", {times_words(abs(found['estimate']) / delta)} the size that would matter" if delta else ""
         return "A force or torque that no effect in the catalogue describes", [
-            f"What helps most is {record.meaning}: {size}{times}."
+            f"What helps most is {record.meaning}: {size}{told_at(found['term'])}{times}."
         ]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]
