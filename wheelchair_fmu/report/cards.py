@@ -27,6 +27,8 @@ from .told import (
 )
 from .words import listed, probability_words, spoken, strained
 
+ORDER = ("first", "second", "third", "fourth")
+MATTERS = {"mark": 1.0, "words": "would matter"}
 EXPLAINED = 1.05  # whitened RMS error that is 1.0 to the digit that one would say
 
 
@@ -44,9 +46,13 @@ def cards(t: Told) -> list[dict[str, Any]]:
 
 
 def _size_gauge(t: Told) -> dict[str, Any]:
-    if len(t.found) != 1 or t.verdict not in ("missing", "small"):
+    """How large each of what was found is; of several, in the order of the sentences."""
+    if t.verdict not in ("missing", "small", "tie") or not 0 < len(t.found) <= len(ORDER):
         return {}
-    return {"gauge": {"bars": [("size", t.multiple(t.found[0]))], "mark": 1.0, "words": "would matter"}}
+    groups = grouped(t.found, t.diagnosis["ties"]) if t.verdict == "tie" else [(e,) for e in t.found]
+    each = [e for group in sorted(groups, key=lambda group: len(group) > 1) for e in group]
+    labels = ORDER if len(each) > 1 else ("size",)
+    return {"gauge": {"bars": [(label, t.multiple(e)) for label, e in zip(labels, each, strict=False)], **MATTERS}}
 
 
 def _fall_gauge(t: Told) -> dict[str, Any]:
