@@ -80,7 +80,7 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return _outside(t)
     if t.verdict == "adequate":
         return "Nothing is missing", [_explained(t)]
-    return "Nothing was found", ["The model explains these runs, but they could not have shown many of the effects."]
+    return "Nothing was found", ["The model explains these runs, but there are many effects that they could not have shown."]
 
 
 def _explained(t: Told) -> str:

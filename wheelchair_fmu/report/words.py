@@ -151,7 +151,7 @@ def particulars(
     said = [_size(e, rows[e], records, titles) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
     said += _proposal(diagnosis.get("leftover") or {}, records)
     said.append(_fall(diagnosis["ladder"]))
-    said += (diagnosis.get("disturbance") or {}).get("words", ())
+    said += map(printed, (diagnosis.get("disturbance") or {}).get("words", ()))
     following = diagnosis.get("next_experiment")
     if following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
