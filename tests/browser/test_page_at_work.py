@@ -378,6 +378,8 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     reader = Reader(browser, report_of(SAMPLE, tmp_path / "report.html", tmp_path / "told.json"))
     assert reader.page.locator(".card").count() == 3
     assert reader.page.is_visible("#missing") == (verdict == "outside")
+    if verdict == "outside":  # its caption has a number
+        assert "it is 1.00 ± 0.20 N at a speed of 2.0 m/s." in reader.page.text_content("#missing .caption")
     assert reader.page.locator("#ties #joint svg").count() == (verdict == "tie")
     assert reader.page.locator(".several tbody tr").count() == (verdict == "missing")
     assert "[object" not in reader.page.text_content("main")
@@ -388,6 +390,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
             reader.page.click(f".tab >> nth={i}")
             assert reader.page.locator(".screen:visible h3").inner_text()
             assert reader.page.evaluate(FAULTS) == [], (width, i)
+    assert reader.page.is_visible("#link")  # on a phone as well
     assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
     reader.close()
 

@@ -365,6 +365,7 @@ def test_every_figure_can_be_published(open_report, figure, tmp_path):
             if kind == "PNG":
                 with Image.open(file) as picture:
                     assert picture.width == round(mm / 25.4 * 400)
+                    assert picture.info["dpi"] == pytest.approx((400, 400), abs=0.01)  # what sets text takes its width from it
                     assert picture.convert("RGB").getpixel((2, 2)) == (255, 255, 255)
             if kind == "PDF":
                 width = float(re.search(rb"MediaBox \[0 0 ([\d.]+)", content)[1])  # type: ignore[index]

@@ -90,7 +90,10 @@ def test_of_several_sizes_cards_tell_what_is_seen():
     lean["difference"] = {**lean["sum"], "estimate": 0.0001, "se": 0.05}
     rows = [{**r, "parameters": lean} if r["effect"] == LEAN else r for r in SAMPLE["ranking"]]
     lines = tale(told("missing", [LEAN], ranking=rows)).cards[0]["lines"]
-    assert len(lines) == 2 and "1.43 ± 0.03°" in lines[0]
+    assert len(lines) == 2 and "1.43 ± 0.03°" in lines[0] and lines[1].startswith("That is ")
+    floor = {name: {**lean["sum"], "estimate": size} for name, size in (("sum", 0.025), ("difference", 0.04))}
+    rows = [{**r, "parameters": floor} if r["effect"] == LEAN else r for r in SAMPLE["ranking"]]
+    assert tale(told("missing", [LEAN], ranking=rows)).cards[0]["lines"][-1].startswith("The larger is 8 times the size")
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -137,8 +140,28 @@ def test_nothing_suffices_though_something_comes_near():
     """What an effect of the catalogue leaves stands beside what the missing force does."""
     lines = tale(CASES["outside"]).screens[3]["lines"]
     nearest = min((r for r in SAMPLE["ranking"] if r["heldout_after"]), key=lambda r: r["heldout_after"])
-    assert lines[1].startswith(TITLES[nearest["effect"]].capitalize()) and "comes nearest with 1.01, where" in lines[1]
+    assert lines[1].startswith(f"The nearest is {TITLES[nearest['effect']]} with 1.01, where")
     assert len(tale(CASES["outside, no term"]).screens[3]["lines"]) == 1
+
+
+def test_where_nothing_suffices_and_nothing_went_in_the_likeliest_is_tried():
+    """Errors that were found along other forces are not told, so sizes are, and nobody is told of a fall from 0.92 to 0.92."""
+    forces = tale(told("outside", ladder=[*SAMPLE["ladder"][:2], LED]))
+    _, guess, put, rivals, _ = forces.screens
+    first = next(r["effect"] for r in SAMPLE["ranking"] if r["values"])
+    assert put["effect"] == first and put["lines"][0].startswith(f"The likeliest is {TITLES[first]}")
+    assert len(rivals["bars"]) == 1 and "these are their sizes" in rivals["lines"][0]
+    assert {c["answer"] for c in guess["choices"]} == {"No: put in and fitted, it does not suffice."}
+
+
+def test_what_is_in_the_model_and_too_small_to_matter_is_told():
+    """The last step has it in as well, so its error is no work of what was found alone."""
+    slight = [{**r, "verdict": "small"} if r["effect"] == LEAN else r for r in SAMPLE["ranking"]]
+    ladder = [*SAMPLE["ladder"][:2], {**SAMPLE["ladder"][2], "step": f"+{LEAN}"}, SAMPLE["ladder"][2]]
+    screens = tale(told("missing", [DRAG], ranking=slight, ladder=ladder)).screens
+    assert "In the model as well, at a size too small to matter: rear wheels that lean." in screens[2]["lines"]
+    answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == LEAN)
+    assert answer.startswith("It is in the model, at ") and "The error" not in answer
 
 
 def test_centre_of_mass_is_written_in_full():
@@ -160,6 +183,8 @@ def test_small_effects_that_these_runs_cannot_tell_apart_are_one():
     two = tale(told("small", [DRAG, LEAN], ladder=[*SAMPLE["ladder"][:2], LED])).cards
     assert two[0]["lead"] == "One of two causes" and len(two[0]["lines"]) == 2
     assert "That one of them is there at all is more likely than 95 %" in two[1]["lines"][0]
+    bars = tale(told("small", [DRAG, LEAN], ladder=[*SAMPLE["ladder"][:2], LED])).screens[3]["bars"]
+    assert "all that was found together" not in [b["title"] for b in bars]  # nothing was put in
     one = tale(CASES["small, left out"]).cards[1]["lines"]
     assert one[0] == ("That it is there at all is more likely than 95 %, by the fitted runs and those kept back together.")
 
@@ -175,7 +200,7 @@ def test_an_effect_that_was_tried_beside_others_is_no_rival_of_theirs():
     assert answer == f"No: beside what was found it changes nothing, and the error stays at {top:.2f}."
     titles = [b["title"] for b in screens[3]["bars"]]
     assert TITLES[beside] not in titles and TITLES[LEAN] in titles
-    said = f"Put in beside it, {TITLES[beside]} brings the error down no further."
+    said = f"To put in {TITLES[beside]} beside it brings the error down no further."
     assert said in screens[3]["lines"] and said not in tale(CASES["missing"]).screens[3]["lines"]
 
 
@@ -194,6 +219,7 @@ def test_where_nothing_was_found_one_is_tried_that_says_why(verdict, wanted):
     """What these runs would have shown most plainly, or what they hide."""
     put = tale(told(verdict)).screens[2]
     known = [r for r in SAMPLE["ranking"] if (r["power"] >= 0.8) == (verdict == "adequate")]
+    known = [r for r in known if any(v["se"] for v in r["parameters"].values())]  # of others nothing is known
     plain = {
         r["effect"]: max((v["smallest_interesting"] / v["se"] for v in r["parameters"].values() if v["se"]), default=0)
         / (1 if verdict == "adequate" else max(1 - r["hidden_in_fit"], 1e-6) ** 0.5)
@@ -278,6 +304,16 @@ def test_effects_that_were_put_in_at_once_are_told_as_one():
         assert not any("at once" in line for line in tale(told("missing", [DRAG, LEAN], groups=groups)).cards[0]["lines"])
 
 
+def test_bars_of_several_sizes_are_in_the_order_of_the_sentences():
+    """What is sure comes before what is tied, as it does in the sentences."""
+    tie = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]])).cards[0]["gauge"]
+    sizes = {e: Told(SAMPLE, TITLES, RECORDS).multiple(e) for e in (DRAG, LEAN, "toe_misalignment")}
+    assert tie["bars"] == [("first", sizes[DRAG]), ("second", sizes[LEAN])]
+    beside = tale(told("tie", [DRAG, LEAN, "toe_misalignment"], [[DRAG, LEAN]])).cards[0]
+    assert [length for _, length in beside["gauge"]["bars"]] == [sizes[e] for e in ("toe_misalignment", DRAG, LEAN)]
+    assert beside["lines"][0].startswith("Rear wheels that do not point")
+
+
 def test_bars_show_the_size_and_the_fall_where_there_are_any():
     what, sure, do = tale(CASES["missing"]).cards
     assert what["gauge"]["bars"] == [("size", pytest.approx(4.0, abs=0.05))] and what["gauge"]["mark"] == 1.0
@@ -295,7 +331,8 @@ def test_where_no_error_falls_nobody_is_told_to_watch_one():
 
 def test_outside_names_the_term_that_helps_and_shows_its_error():
     screens = {s["kind"]: s for s in tale(CASES["outside"]).screens}
-    assert tale(CASES["outside"]).cards[0]["lines"][0].endswith("2.50 ± 0.14 N m, 12 times the size that would matter.")
+    size = tale(CASES["outside"]).cards[0]["lines"][0].partition(": ")[2]
+    assert size == "2.50 ± 0.14 N m with the casters at 90°, 12 times the size that would matter."
     assert "a torque on each caster" in screens["put"]["lines"][0]
     assert "a torque on each caster" in screens["rivals"]["bars"][-1]["title"]
     assert screens["rivals"]["bars"][-1]["error"] == SAMPLE["ladder"][-1]["heldout"]

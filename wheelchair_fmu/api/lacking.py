@@ -27,4 +27,4 @@ def missing(d: Diagnosis) -> dict[str, Any] | None:
         }
         for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
     ]
-    return {"words": term.words.split(" ", 1)[1].rsplit(" that", 1)[0], "unit": term.unit.name, "panels": panels}
+    return {"words": term.noun.split(" ", 1)[1], "unit": term.unit.name, "panels": panels}

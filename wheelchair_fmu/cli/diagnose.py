@@ -16,7 +16,7 @@ from ..campaign import windows
 from ..inference.decision.bootstrap import Bootstrap, bootstrap
 from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
-from ..model.generic import terms
+from ..model.generic import terms, told_at
 from ..report.saving import save
 from ..report.words import helpers, listed, outside, tied, to_measure, verdict_words
 from ..writing import written
@@ -32,7 +32,7 @@ SENTENCES = {
     "missing": "Missing: {effects}.",
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
-    "cannot_see": "Nothing was found, but these runs could not have shown many effects of interesting size.",
+    "cannot_see": "Nothing was found, but there are many effects of interesting size that these runs do not show.",
 }
 
 
@@ -93,7 +93,7 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
         term = terms()[d.proposal.effect]
         size = f"{d.proposal.estimate[0]:.3g} ± {d.proposal.se[0]:.2g} {term.unit.name}"
         lead = "The term that helps most, and does not suffice either" if insufficient(d.ladder) else "What would explain it"
-        out.print(f"{lead}: {term.words}, {size}.")
+        out.print(f"{lead}: {term.words}, {size}{told_at(d.proposal.effect)}.")
     out.print(staircase_table(d.ladder))
     out.print(physical_staircase(d.ladder))
     for words in d.unexplained.words if d.unexplained else ():

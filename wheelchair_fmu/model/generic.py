@@ -6,6 +6,7 @@ the mirror and is finite at standstill. `words` says it to a person.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..quantities import M_S2, N_M, ONE, RAD_S, N, Parameter, Unit
@@ -14,48 +15,50 @@ from .stage import Effect, adds, scales
 
 U, V, R = "u / 1 [m/s]", "v / 1 [m/s]", "psi_dot / 1 [rad/s]"
 LEFT_OR_RIGHT = "sum1(v_yf / magnitude(v_xf, 0.05 [m/s])) / 2"  # the casters' angle, roughly
-# name -> (words, expression); scaled so that the coefficient is a force at about 1 m/s and 1 rad/s
+# name -> (words, expression, where its size is told); scaled so that the coefficient is a force at about 1 m/s and 1 rad/s
+FAST, TURNING, STEEP, SIDEWAYS = "at 1 m/s", "at 57 °/s", "where it is largest", "at 1 m/s sideways"
+PUSHED, UNEVEN = "where both hands push with 40 N together", "where one hand pushes with 20 N more"
 ODD = {
-    "yaw": ("proportional to the yaw rate", R),
-    "yaw_dry": ("constant against the turn", "grip(psi_dot, psi_dot * psi_dot, 0.01 [rad/s])"),
-    "yaw_yaw": ("growing with the square of the yaw rate", f"{R} * magnitude({R}, 0.01)"),
-    "yaw_speed": ("proportional to yaw rate times speed", f"{R} * {U}"),
-    "side": ("proportional to the sideways speed", V),
-    "side_dry": ("constant against sideways motion", "direction(v, 0.01 [m/s])"),
-    "caster": ("proportional to the casters' angle", LEFT_OR_RIGHT),
-    "heading_sin": ("with the sine of the heading", "sin(psi)"),
-    "push_difference": ("proportional to the difference of the pushes", "(F_t[0] - F_t[1]) / 20 [N]"),
+    "yaw": ("proportional to the yaw rate", R, TURNING),
+    "yaw_dry": ("constant against the turn", "grip(psi_dot, psi_dot * psi_dot, 0.01 [rad/s])", ""),
+    "yaw_yaw": ("growing with the square of the yaw rate", f"{R} * magnitude({R}, 0.01)", TURNING),
+    "yaw_speed": ("proportional to yaw rate times speed", f"{R} * {U}", f"{FAST} and 57 °/s"),
+    "side": ("proportional to the sideways speed", V, SIDEWAYS),
+    "side_dry": ("constant against sideways motion", "direction(v, 0.01 [m/s])", ""),
+    "caster": ("proportional to the casters' angle", LEFT_OR_RIGHT, "with the casters at 45°"),
+    "heading_sin": ("with the sine of the heading", "sin(psi)", STEEP),
+    "push_difference": ("proportional to the difference of the pushes", "(F_t[0] - F_t[1]) / 20 [N]", UNEVEN),
 }
 ONE_SIDED = {
-    "constant": ("to one side while it rolls", "direction(u, 0.02 [m/s])"),
-    "speed": ("to one side, proportional to speed", U),
-    "speed_speed": ("to one side, with the square of the speed", f"{U} * magnitude({U}, 0.01)"),
-    "push": ("to one side, proportional to the push", "sum1(F_t) / 40 [N]"),
-    "heading_cos": ("with the cosine of the heading", "cos(psi)"),
-    "only_right": ("in right turns only", f"fmax({R}, 0)"),
-    "only_left": ("in left turns only", f"fmin({R}, 0)"),
+    "constant": ("to one side while it rolls", "direction(u, 0.02 [m/s])", ""),
+    "speed": ("to one side, proportional to speed", U, FAST),
+    "speed_speed": ("to one side, with the square of the speed", f"{U} * magnitude({U}, 0.01)", FAST),
+    "push": ("to one side, proportional to the push", "sum1(F_t) / 40 [N]", PUSHED),
+    "heading_cos": ("with the cosine of the heading", "cos(psi)", STEEP),
+    "only_right": ("in right turns only", f"fmax({R}, 0)", TURNING),
+    "only_left": ("in left turns only", f"fmin({R}, 0)", TURNING),
 }
 EVEN = {
-    "speed": ("proportional to speed", U),
-    "speed_speed": ("with the square of the speed", f"{U} * magnitude({U}, 0.01)"),
-    "constant": ("constant against the motion", "grip(u, u * u, drag_eps)"),
-    "turning": ("growing with the square of the yaw rate", f"{R} * {R} * direction(u, 0.02 [m/s])"),
-    "turning_right": ("in right turns only", f"fmax({R}, 0) * direction(u, 0.02 [m/s])"),
-    "turning_left": ("in left turns only", f"fmin({R}, 0) * direction(u, 0.02 [m/s])"),
-    "push": ("proportional to the push", "sum1(F_t) / 40 [N]"),
-    "push_small": ("of small pushes only", "sum1(direction(F_t, 3 [N]))"),
-    "heading_cos": ("with the cosine of the heading", "cos(psi)"),
-    "heading_sin": ("with the sine of the heading", "sin(psi)"),
+    "speed": ("proportional to speed", U, FAST),
+    "speed_speed": ("with the square of the speed", f"{U} * magnitude({U}, 0.01)", FAST),
+    "constant": ("constant against the motion", "grip(u, u * u, drag_eps)", ""),
+    "turning": ("growing with the square of the yaw rate", f"{R} * {R} * direction(u, 0.02 [m/s])", TURNING),
+    "turning_right": ("in right turns only", f"fmax({R}, 0) * direction(u, 0.02 [m/s])", TURNING),
+    "turning_left": ("in left turns only", f"fmin({R}, 0) * direction(u, 0.02 [m/s])", TURNING),
+    "push": ("proportional to the push", "sum1(F_t) / 40 [N]", PUSHED),
+    "push_small": ("of small pushes only", "sum1(direction(F_t, 3 [N]))", "for each hand that pushes"),
+    "heading_cos": ("with the cosine of the heading", "cos(psi)", STEEP),
+    "heading_sin": ("with the sine of the heading", "sin(psi)", STEEP),
 }
 CASTER = {
-    "spring": ("that pulls the casters straight", "-sin(delta)"),
-    "spring_dry": ("that pulls the casters straight, the same at any angle", "-direction(sin(delta), 0.02)"),
-    "one_sided": ("that turns both casters to one side", "1 + 0 * delta"),
+    "spring": ("that pulls the casters straight", "-sin(delta)", "with the casters at 90°"),
+    "spring_dry": ("that pulls the casters straight, the same at any angle", "-direction(sin(delta), 0.02)", ""),
+    "one_sided": ("that turns both casters to one side", "1 + 0 * delta", ""),
 }
 WHEEL = {
-    "speed": ("proportional to speed", f"magnitude({U}, 0.01)"),
-    "right": ("in right turns", "(1 + direction(psi_dot, 0.02 [rad/s])) / 2"),
-    "left": ("in left turns", "(1 - direction(psi_dot, 0.02 [rad/s])) / 2"),
+    "speed": ("proportional to speed", f"magnitude({U}, 0.01)", FAST),
+    "right": ("in right turns", "(1 + direction(psi_dot, 0.02 [rad/s])) / 2", ""),
+    "left": ("in left turns", "(1 - direction(psi_dot, 0.02 [rad/s])) / 2", ""),
 }
 READINGS = {
     "read_yaw_rate": (RAD_S, "yaw rate reading"),
@@ -67,14 +70,21 @@ SIZES = {N: 0.5, N_M: 0.2, RAD_S: 0.005, M_S2: 0.05, ONE: 0.02}
 
 @dataclass(frozen=True)
 class Term:
-    """One generic term: q times an expression, added to a quantity, or a scale error of it."""
+    """One generic term: q times an expression, added to a quantity, or a scale error of it. It is something, which goes with
+    what is going on somehow; its size is told `at` some motion, as runs may not have driven as far."""
 
     id: str
-    words: str
+    noun: str
+    how: str
+    at: str
     to: str
     unit: Unit
     expression: str
     factor: bool = False
+
+    @property
+    def words(self) -> str:
+        return f"{self.noun} {self.how}".rstrip()
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -123,20 +133,26 @@ def terms() -> dict[str, Term]:
         *_family("D_r", N, "a drag of the right rear wheel", _of_wheel("vertcat(0 * u, {})"), "_r"),
     ]
     for to, (unit, noun) in READINGS.items():
-        found.append(Term(f"generic_{to}_offset", f"an offset of the {noun}", to, unit, "q + 0 * psi_dot"))
-        found.append(Term(f"generic_{to}_scale", f"a scale error of the {noun}", to, ONE, "1 + q", factor=True))
+        found.append(Term(f"generic_{to}_offset", f"an offset of the {noun}", "", "", to, unit, "q + 0 * psi_dot"))
+        found.append(Term(f"generic_{to}_scale", f"a scale error of the {noun}", "", "", to, ONE, "1 + q", factor=True))
     return {term.id: term for term in found}
 
 
-def _family(to: str, unit: Unit, noun: str, bases: dict[str, tuple[str, str]], suffix: str = "") -> list[Term]:
+def _family(to: str, unit: Unit, noun: str, bases: Mapping[str, tuple[str, str, str]], suffix: str = "") -> list[Term]:
     return [
-        Term(f"generic_{to}_{key}{suffix}", f"{noun} {words}", to, unit, f"q * ({expression})")
-        for key, (words, expression) in bases.items()
+        Term(f"generic_{to}_{key}{suffix}", noun, how, at, to, unit, f"q * ({expression})")
+        for key, (how, expression, at) in bases.items()
     ]
 
 
-def _of_wheel(which: str) -> dict[str, tuple[str, str]]:
-    return {key: (words, which.format(expression)) for key, (words, expression) in WHEEL.items()}
+def _of_wheel(which: str) -> dict[str, tuple[str, str, str]]:
+    return {key: (how, which.format(expression), at) for key, (how, expression, at) in WHEEL.items()}
+
+
+def told_at(name: str) -> str:
+    """At which motion a term's size is told, ready to stand behind it; empty where it is the same at any."""
+    term = terms().get(name)
+    return f" {term.at}" if term and term.at else ""
 
 
 def library() -> dict[str, Effect]:

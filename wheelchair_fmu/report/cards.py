@@ -6,6 +6,7 @@ from typing import Any
 
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..model.generic import told_at
 from ..quantities import Parameter
 from .told import (
     Told,
@@ -26,6 +27,8 @@ from .told import (
 )
 from .words import listed, probability_words, spoken, strained
 
+ORDER = ("first", "second", "third", "fourth")
+MATTERS = {"mark": 1.0, "words": "would matter"}
 EXPLAINED = 1.05  # whitened RMS error that is 1.0 to the digit that one would say
 
 
@@ -43,9 +46,13 @@ def cards(t: Told) -> list[dict[str, Any]]:
 
 
 def _size_gauge(t: Told) -> dict[str, Any]:
-    if len(t.found) != 1 or t.verdict not in ("missing", "small"):
+    """How large each of what was found is; of several, in the order of the sentences."""
+    if t.verdict not in ("missing", "small", "tie") or not 0 < len(t.found) <= len(ORDER):
         return {}
-    return {"gauge": {"bars": [("size", t.multiple(t.found[0]))], "mark": 1.0, "words": "would matter"}}
+    groups = grouped(t.found, t.diagnosis["ties"]) if t.verdict == "tie" else [(e,) for e in t.found]
+    each = [e for group in sorted(groups, key=lambda group: len(group) > 1) for e in group]
+    labels = ORDER if len(each) > 1 else ("size",)
+    return {"gauge": {"bars": [(label, t.multiple(e)) for label, e in zip(labels, each, strict=False)], **MATTERS}}
 
 
 def _fall_gauge(t: Told) -> dict[str, Any]:
@@ -73,7 +80,7 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return _outside(t)
     if t.verdict == "adequate":
         return "Nothing is missing", [_explained(t)]
-    return "Nothing was found", ["The model explains these runs, but they could not have shown many of the effects."]
+    return "Nothing was found", ["The model explains these runs, but there are many effects that they could not have shown."]
 
 
 def _explained(t: Told) -> str:
@@ -91,7 +98,7 @@ def _outside(t: Told) -> tuple[str, list[str]]:
         delta = record.smallest_interesting if isinstance(record, Parameter) else None
         times = f", {times_words(abs(found['estimate']) / delta)} the size that would matter" if delta else ""
         return "A force or torque that no effect in the catalogue describes", [
-            f"What helps most is {record.meaning}: {size}{times}."
+            f"What helps most is {record.meaning}: {size}{told_at(found['term'])}{times}."
         ]
     bent = strained(t.diagnosis, t.records)
     helped = [sized(t, e) for e in t.found]

@@ -95,7 +95,12 @@ def _answer(t: Told, effect: str) -> str:
     if t.verdict in ("adequate", "cannot_see"):
         if row["power"] >= DEFAULT.power:
             return "These runs would have shown it at the smallest size that matters: it is not there, or smaller than that."
-        return f"These runs would show it at that size with a chance of {row['power']:.0%} only.".replace("%", " %")
+        chance = f"{row['power']:.0%}".replace("%", " %")
+        return f"At the smallest size that matters, these runs would show it with a chance of {chance} only."
+    if effect in t.slightly_in:
+        return (
+            f"It is in the model, at {multiple_words(t, effect)} the size that would matter: too little to be what is missing."
+        )
     comes = t.error(effect)
     error = "" if comes is None else f" The error comes to {comes:.2f}{_with(t, effect)}."
     if effect in t.found:
@@ -105,6 +110,8 @@ def _answer(t: Told, effect: str) -> str:
         return ("It may be: this or its rival." if tied else "Yes.") + error
     if any(effect == r["effect"] for r in near_rivals(t)):
         return f"Nearly: it would foretell the runs about as well, {why_not(t, [row])}.{error}"
+    if comes is None and t.verdict == "outside" and row["values"]:
+        return "No: put in and fitted, it does not suffice."
     if comes is None and t.without_forces is not None and row["values"]:
         return "No: with forces that nobody recorded among the noise, the runs speak less for it."
     if comes is None:
@@ -138,6 +145,8 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
     whose = t.runs
     if t.verdict in ("adequate", "cannot_see"):
         return _tried(t)
+    if t.verdict == "outside" and not t.found and not t.proposal:
+        return _likeliest(t)
     if t.verdict == "outside":
         verb = "falls" if t.falls else "goes"
         return {
@@ -164,14 +173,14 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
         beside = f"With {listed(sure, 'and')} in the model, and {rest}" if sure else ""
         return {
             "title": "Put them in and watch the error fall" if sure else "Put one in and watch the error fall",
-            "lines": [f"{beside or f'With {each}'}, the error on {whose} falls to {_comes(t)}."],
+            "lines": [f"{beside or f'With {each}'}, the error on {whose} falls to {_comes(t)}.", *_as_well(t)],
         }
     if t.slight:
         return {"title": f"Put {it(t)} in: hardly anything changes", "lines": [fall_words(t)]}
     watch = "and watch the error fall" if t.falls else "and look where the two curves part"
     return {
         "title": f"Put {it(t)} in {watch}",
-        "lines": [fall_words(t), *together_words(t), "1.00 is what the noise of the sensors leaves."],
+        "lines": [fall_words(t), *together_words(t), *_as_well(t), "1.00 is what the noise of the sensors leaves."],
     }
 
 
@@ -180,6 +189,7 @@ def _tried(t: Told) -> dict[str, Any]:
     have shown, or one that they could hardly show."""
     adequate = t.verdict == "adequate"
     known = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and (r["power"] >= DEFAULT.power) == adequate]
+    known = [r for r in known if any(v["se"] for v in r["parameters"].values())] or known  # of others nothing is known
     if not known:
         return {"title": "Put one in", "lines": ["Any effect can be tried below, at any size."]}
     row = max(known, key=_plain) if adequate else min(known, key=_plain_unfitted)
@@ -198,6 +208,21 @@ def _tried(t: Told) -> dict[str, Any]:
             [f"{what} the error hardly changes, and these runs could not have shown that."],
         )
     return {"title": title, "lines": lines, "effect": row["effect"]}
+
+
+def _likeliest(t: Told) -> dict[str, Any]:
+    """Where nothing was put in as nothing suffices: the likeliest effect of those that were fitted, or any."""
+    fitted = next((r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and r["values"]), None)
+    if fitted is None:
+        return {"title": "Put one in: none suffices", "lines": ["Any effect can be tried below, at any size."]}
+    lines = [f"The likeliest is {t.title(fitted)}, here at the size that fits best: it does not explain what is left."]
+    return {"title": "Put in the likeliest: it does not suffice", "lines": lines, "effect": fitted}
+
+
+def _as_well(t: Told) -> list[str]:
+    """What the last step has in it beside what was found."""
+    names = [t.title(e) for e in t.slightly_in]
+    return [f"In the model as well, at a size too small to matter: {listed(names, 'and')}."] if names else []
 
 
 def _plain(row: Mapping[str, Any]) -> float:
@@ -237,7 +262,9 @@ def _rivals(t: Told) -> dict[str, Any]:
         title, lines = (
             "Why nothing in the catalogue",
             [
-                "Each of the likeliest was put in and its size fitted; this is the error that each leaves.",
+                "Each of the likeliest was put in and its size fitted; this is the error that each leaves."
+                if len(bars(t)) > 1
+                else "Every effect of the catalogue was held against what the model leaves over; these are their sizes.",
                 *_nearest(t),
                 *_bent(t),
             ],
@@ -269,7 +296,7 @@ def _nearest(t: Told) -> list[str]:
     if not t.proposal or not known:
         return []
     best = min(known, key=lambda e: known[e])
-    return [f"{capital(t.title(best))} comes nearest with {known[best]:.2f}, where {_helping(t)} leaves {t.fall[1]:.2f}."]
+    return [f"The nearest is {t.title(best)} with {known[best]:.2f}, where {_helping(t)} leaves {t.fall[1]:.2f}."]
 
 
 def _beside_it(t: Told) -> list[str]:
@@ -280,7 +307,7 @@ def _beside_it(t: Told) -> list[str]:
         return []
     more = [f"{number(len(idle) - CHOICES).lower()} more"] if len(idle) > CHOICES else []
     which = listed([*(t.title(e) for e in idle[:CHOICES]), *more], "and")
-    return [f"Put in beside {it(t)}, {which} bring{'s' * (len(idle) == 1)} the error down no further."]
+    return [f"To put in {which} beside {it(t)} brings the error down no further."]
 
 
 def _bent(t: Told) -> list[str]:
@@ -309,7 +336,7 @@ def bars(t: Told) -> list[dict[str, Any]]:
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups
     ]
     before, after = t.fall
-    several = len(t.found) > 1 and t.verdict != "tie" and set(t.found) != set(t.partners(t.found[0]))
+    several = len(t.found) > 1 and t.verdict != "tie" and not t.slight and set(t.found) != set(t.partners(t.found[0]))
     whole = [{"title": "all that was found together", "error": after, "found": True}] if several else []
     term = [{"title": _helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []
     return [{"title": "the calibrated model alone", "error": before, "found": False}, *each, *whole, *term]

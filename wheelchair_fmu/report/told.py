@@ -11,7 +11,7 @@ from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect
-from .words import AGAIN, STILL, estimated, listed, probability_words, spoken, strained, title_of, to_measure
+from .words import AGAIN, STILL, estimated, listed, printed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -105,6 +105,12 @@ class Told:
     @property
     def proposal(self) -> Mapping[str, Any] | None:
         return (self.diagnosis.get("leftover") or {}).get("proposal")
+
+    @property
+    def slightly_in(self) -> list[str]:
+        """What the search put into the model beside what was found, and which is too small there to matter."""
+        steps = [s["step"].removeprefix("+") for s in self.diagnosis["ladder"] if s["step"].startswith("+")]
+        return [e for e in steps if e in self.rows and e not in self.found and self.rows[e]["verdict"] == "small"]
 
     def title(self, effect: str) -> str:
         return title_of(effect, self.titles)
@@ -259,7 +265,8 @@ def size_lines(t: Told, effect: str) -> list[str]:
     sizes = t.sizes(effect)
     seen = [size for size in sizes if _seen(size[1])] or sizes
     lines = [f"{capital(r.meaning)}: {estimated(v, r.unit)}." for _, v, r in seen]
-    return [*lines, f"That is {multiple_words(t, effect)} the size that would matter{_interest(t, effect)}."]
+    larger = "The larger" if len(seen) == 2 else "The largest" if len(seen) > 2 else "That"
+    return [*lines, f"{larger} is {multiple_words(t, effect)} the size that would matter{_interest(t, effect)}."]
 
 
 def _seen(size: Mapping[str, Any]) -> bool:
@@ -329,7 +336,7 @@ def actions(t: Told) -> list[str]:
         )
         return [*look, *also, *measure, f"Put {it(t)} into the model: wheelchair add {' '.join(found)}."]
     if t.verdict == "outside":
-        orders = [f"{o['words'][0].upper()}{o['words'][1:]}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
+        orders = [f"{printed(capital(o['words']))}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
         if strained(t.diagnosis, t.records) and not t.proposal:
             return [
                 *measure,
@@ -375,7 +382,7 @@ def _why_next(t: Told) -> str:
         more = "effects" if len(effects) > 1 else "effect"
         return f"it would show {number(len(effects)).lower()} {more} that these runs could not"
     if set(effects) <= set(t.diagnosis["effects"]):
-        return "it would tell them apart"
+        return "it would tell them apart" if set(effects) == set(t.found) else "it would tell the causes apart"
     return (
         f"it would tell {listed([t.title(e) for e in effects], 'and')} apart"
         if 1 < len(effects) <= NAMED

@@ -9,6 +9,7 @@ from typing import Any
 from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..model.generic import told_at
 from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
@@ -41,7 +42,7 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         "missing": f"Missing from the model: {_all_of(names)}.",
         "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
-        "cannot_see": "Nothing was found missing, but these runs could not have shown many effects of interesting size.",
+        "cannot_see": "Nothing was found missing, but there are many effects of interesting size that these runs do not show.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
@@ -85,6 +86,11 @@ def strained(diagnosis: Mapping[str, Any], records: Mapping[str, Quantity]) -> l
     """Calibrated values that came out as nobody would have measured them, in words."""
     bent = [name for name, v in (diagnosis.get("calibration") or {}).items() if v.get("beyond")]
     return [f"the {records[name].meaning}" if name in records else name for name in bent]
+
+
+def printed(text: str) -> str:
+    """Text of the search with its per cent as they are printed."""
+    return re.sub(r"(?<=\d)%", " %", text)
 
 
 def channel_words(channel: str) -> str:
@@ -145,7 +151,7 @@ def particulars(
     said = [_size(e, rows[e], records, titles) for e in diagnosis["effects"] if e in rows and rows[e]["verdict"] != "tie"]
     said += _proposal(diagnosis.get("leftover") or {}, records)
     said.append(_fall(diagnosis["ladder"]))
-    said += (diagnosis.get("disturbance") or {}).get("words", ())
+    said += map(printed, (diagnosis.get("disturbance") or {}).get("words", ()))
     following = diagnosis.get("next_experiment")
     if following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
@@ -165,7 +171,8 @@ def _proposal(leftover: Mapping[str, Any], records: Mapping[str, Quantity]) -> l
     record = records.get(f"effect.{found['term']}.q") if found else None
     if not found or record is None:
         return []
-    return [f"The term that helps most: {record.meaning}, {spoken(found['estimate'], found['se'], record.unit)}."]
+    size = f"{spoken(found['estimate'], found['se'], record.unit)}{told_at(found['term'])}"
+    return [f"The term that helps most: {record.meaning}, {size}."]
 
 
 def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:

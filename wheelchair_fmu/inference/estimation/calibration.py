@@ -58,6 +58,7 @@ class Calibrated:
                 f"{told}, {given}, where the search stops: the value given is wrong, or it stands in for what the model lacks"
             )
         if self.at_bound:
+            told = f"{self.record.name} comes out at {self.value:.3g}{unit}"  # as it may be far below what was known of it
             return f"{told}, at its bound: it stands in for what the model lacks, or the data say little of it"
         return f"{told}, {given}" if self.bent else ""
 

@@ -215,7 +215,7 @@ def _lone(of: str, found: Sequence[Missing], values: Sequence[np.ndarray]) -> Or
     if best is None or best[0] < LONE * whole or BRIEF * seconds < 2 * WINDOW:
         return None
     share, m, begins, ends = best[0] / whole, best[1], best[2], best[3]
-    words = f"{share:.0%} of the missing {of} is in run {m.run} from {begins:.1f} to {ends:.1f} s: something happened there"
+    words = f"{share:.0%} of the missing {of} is in {m.run} from {begins:.1f} to {ends:.1f} s: something happened there"
     return Order(of, "run", share, words)
 
 

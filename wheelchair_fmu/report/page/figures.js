@@ -156,11 +156,14 @@ export class Figures {
   }
 
   lacking(missing) {
-    const all = missing.panels.map((p) => { const { factor, unit } = degrees(p.unit); return { label: `${capital(p.variable)} [${unitText(unit) || "1"}]`, xs: p.knots.map((v) => v * factor), ys: p.estimate, ses: p.se }; });
+    const all = missing.panels.map((p) => { const { factor, unit } = degrees(p.unit); return { variable: p.variable, unit: unitText(unit), label: `${capital(p.variable)} [${unitText(unit) || "1"}]`, xs: p.knots.map((v) => v * factor), ys: p.estimate, ses: p.se }; });
+    const surely = all.flatMap((p) => p.xs.map((x, i) => ({ p, x, y: p.ys[i], se: p.ses[i] }))).filter((a) => Math.abs(a.y) > 1.96 * a.se);
+    const most = surely.length ? surely.reduce((a, b) => (Math.abs(b.y) > Math.abs(a.y) ? b : a)) : null, record = { unit: missing.unit };
+    const farthest = most ? ` Farthest from zero, of what is sure, it is ${withError(most.y, most.se, record)} at a ${most.p.variable} of ${beside(significant(most.x, 2), most.p.unit)}.` : "";
     return {
       draw: (width, look) => panels(width, look, all, unitText(missing.unit)),
       columns: () => ({ variable: all.flatMap((p) => p.xs.map(() => p.label)), at: all.flatMap((p) => p.xs), [`missing [${missing.unit}]`]: all.flatMap((p) => p.ys), se: all.flatMap((p) => p.ses) }),
-      caption: () => `${capital(missing.words)} as the runs would have it, a free function of one variable after another, with its 95 % band, as far as the runs tell it. A line that leaves zero shows what it goes with.`,
+      caption: () => `${capital(missing.words)} as the runs would have it at the motion they had, a free function of one variable after another, with its 95 % band, as far as the runs tell it. A line that leaves zero shows what it goes with.${farthest}`,
     };
   }
 

@@ -15,7 +15,7 @@ const set = (words, width, size, weight, high = 1.45) => Math.ceil(long(words, l
 
 /** Height that the verdict takes at the top of the first page. */
 function verdict() {
-  const card = (c, i) => [...c.children].reduce((sum, e) => sum + (e.matches(".gauge") ? 40 : e.matches(".lead") ? set(e.textContent, CARDS[i], 13, 620, 1.3) + 3 : e.matches("h2") ? 15 : set(e.textContent, CARDS[i], 10.5, 400, 1.42) + 2), 12);
+  const card = (c, i) => [...c.children].reduce((sum, e) => sum + (e.matches(".gauge") ? Math.max(40, 7 * e.children.length) : e.matches(".lead") ? set(e.textContent, CARDS[i], 13, 620, 1.3) + 3 : e.matches("h2") ? 15 : set(e.textContent, CARDS[i], 10.5, 400, 1.42) + 2), 12);
   return 16 + set(byId("sentence").textContent, 640, 20, 650, 1.25) + 10 + Math.max(0, ...[...document.querySelectorAll(".card")].map(card)) + 6;
 }
 

@@ -6,6 +6,7 @@ import { FONT, PRINT, PRINTED, broken, svg, text } from "page/draw";
 
 export const WIDTHS = { 85: 400, 170: 720 }; // mm, and the units of drawing that are as wide
 const DPI = 400;
+const HEADED = 33; // bytes of a PNG's signature and header, which come first
 // Letters that join, change places or stand on others, or run from right to left: a browser sets them, what writes PDF does not.
 const SHAPED = /[\p{M}\p{Script=Arabic}\p{Script=Hebrew}\p{Script=Syriac}\p{Script=Thaana}\p{Script=Nko}\p{Script=Thai}\p{Script=Lao}\p{Script=Devanagari}\p{Script=Bengali}\p{Script=Tamil}]/u;
 const MARGIN = 12, HEAD = 17, LINE = 14;
@@ -75,9 +76,25 @@ async function pdf(element, mm) {
   return made.output("blob");
 }
 
+/** A PNG that says how many dots stand on a metre, as a browser's do not: else what sets text takes 85 mm for 350. */
+async function dense(blob) {
+  const chunk = new DataView(new ArrayBuffer(21)), dots = Math.round(DPI / 0.0254);
+  chunk.setUint32(0, 9);
+  [..."pHYs"].forEach((c, i) => chunk.setUint8(4 + i, c.charCodeAt(0)));
+  [8, 12].forEach((at) => chunk.setUint32(at, dots));
+  chunk.setUint8(16, 1); // metres
+  let check = ~0;
+  for (const byte of new Uint8Array(chunk.buffer, 4, 13)) {
+    check ^= byte;
+    for (let bit = 0; bit < 8; bit++) check = (check >>> 1) ^ (0xedb88320 & -(check & 1));
+  }
+  chunk.setUint32(17, ~check >>> 0);
+  return new Blob([blob.slice(0, HEADED), chunk, blob.slice(HEADED)], { type: blob.type });
+}
+
 const FILES = {
   svg: async (element) => new Blob([written(withFonts(element))], { type: "image/svg+xml" }),
-  png: async (element, mm) => new Promise(async (done) => (await painted(element, mm)).toBlob(done, "image/png")),
+  png: async (element, mm) => { const canvas = await painted(element, mm); return dense(await new Promise((done) => canvas.toBlob(done, "image/png"))); },
   pdf,
 };
 

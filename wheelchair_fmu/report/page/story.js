@@ -101,10 +101,10 @@ export class Story {
   /** The button puts in the last step of the search; where nothing was added to the model, what was found and left out as it is
    *  small, at its size, or the effect that the screen tells of at the smallest that would matter. */
   putting() {
-    const { models, begins: step, ranking, effects } = this.campaign.diagnosis, begins = models.find((m) => m.step === step);
+    const { models, begins: step, ranking, effects, verdict } = this.campaign.diagnosis, begins = models.find((m) => m.step === step);
     const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), told = this.told("put").effect, first = known.find((r) => effects.includes(r.effect)) ?? known.find((r) => r.effect === told) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
-    this.with = !same(this.last.values, begins.values) ? this.last.values : effects.length && first?.values ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
+    this.with = !same(this.last.values, begins.values) ? this.last.values : first?.values && (effects.length || verdict === "outside") ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
     this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.parting = !this.isIn() && same(this.last.values, begins.values); this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), this.of = h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
