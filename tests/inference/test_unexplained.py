@@ -67,7 +67,7 @@ def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
 
     found = left_of(ridden(sample, np.random.default_rng(2), hand))
     assert {o.by for o in found.orders} == {"run"}
-    assert all("run slalom-slow from 2." in o.words or "run slalom-slow from 3." in o.words for o in found.orders)
+    assert all("is in slalom-slow from 2." in o.words or "is in slalom-slow from 3." in o.words for o in found.orders)
 
 
 def test_a_force_that_is_known_for_moments_only_is_not_said_to_be_in_one_run():

@@ -32,7 +32,7 @@ SENTENCES = {
     "missing": "Missing: {effects}.",
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
-    "cannot_see": "Nothing was found, but there are many effects of interesting size that these runs do not show.",
+    "cannot_see": "Nothing was found, but many effects could be of interesting size and these runs would not show it.",
 }
 
 

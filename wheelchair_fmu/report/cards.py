@@ -80,7 +80,9 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return _outside(t)
     if t.verdict == "adequate":
         return "Nothing is missing", [_explained(t)]
-    return "Nothing was found", ["The model explains these runs, but there are many effects that they could not have shown."]
+    return "Nothing was found", [
+        "The model explains these runs, but many effects could be large enough to matter and not show in them."
+    ]
 
 
 def _explained(t: Told) -> str:

@@ -42,7 +42,7 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         "missing": f"Missing from the model: {_all_of(names)}.",
         "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
-        "cannot_see": "Nothing was found missing, but there are many effects of interesting size that these runs do not show.",
+        "cannot_see": "Nothing was found, but many effects could be of interesting size and these runs would not show it.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
