@@ -79,7 +79,7 @@ def test_a_force_that_is_known_for_moments_only_is_not_said_to_be_in_one_run():
     glimpsed = [np.where((time > 5) & (time < 7) & (i == 1), v, np.nan) for i, v in enumerate(whole)]
     assert _lone("force", found, whole) is None and _lone("force", found, glimpsed) is None
     told = _lone("force", found, hit)
-    assert told is not None and "run b from 4." in told.words
+    assert told is not None and "is in b from 4." in told.words
 
 
 @pytest.mark.parametrize("seed", [3, 4])
