@@ -13,6 +13,7 @@ from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
 from ..inference.estimation.calibration import Calibrated, calibration
 from ..inference.estimation.fit import fit, start_value
+from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.residual.compare import Comparison, RunErrors, errors_of, together
 from ..model.variant import Variant
@@ -20,7 +21,6 @@ from ..model.wheelchair import REGIMES
 from ..studies import Fmu, fmu_of
 from ..studies.measured import run_campaign_run
 
-TUNING = 2  # how often the start of each run is moved to where its readings want it
 PIECE = 60.0  # s: a longer run is compared piece by piece
 AT_ONCE = cpu_count() or 1  # pieces whose filters are made together, while those before them go through the FMU
 

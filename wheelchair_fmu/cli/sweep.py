@@ -12,10 +12,10 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..api.comparing import TUNING
 from ..campaign import read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
+from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan

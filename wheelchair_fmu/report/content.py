@@ -16,7 +16,7 @@ from ..engine.tangent import EXTERNAL, differentiable, sensed
 from ..engine.wasm import evaluation, modules
 from ..inference.decision.verdict import FORCES as UNRECORDED
 from ..inference.estimation.statistics import finite
-from ..inference.evidence.initial_state import CASTERS, START, prior_start, start_sd, starts_of
+from ..inference.evidence.initial_state import CASTERS, START, TUNING, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
 from ..inference.evidence.noise_model import BODYS, NoiseModel, disturbance, noise_of, pushes_of
@@ -32,7 +32,6 @@ from ..quantities import N, Parameter, Unit
 from .words import in_full
 
 STARTS = (*START, *CASTERS)  # of which a model has those of its own states
-TUNING = 2  # how often a run's start is moved to where its readings want it, as in `wheelchair compare`
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
 FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
 

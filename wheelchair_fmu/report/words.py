@@ -195,19 +195,17 @@ def _fall(ladder: Sequence[Mapping[str, Any]]) -> str:
 
 def value_text(value: float, se: float | None, unit: Unit) -> str:
     """ "1.607 ± 0.008 N": the error to one or two digits, the value to the same place; angles in degrees."""
-    shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
-    name = "" if shown.name == "1" else f" {shown.name.replace('.', ' ').replace('2', '²')}"
+    shown = _shown(unit)
     value, se = value * shown.factor, se * shown.factor if se else None
     if not se or se <= 0:
-        return f"{value:.3g}{name}".replace("-", "−")
-    first, exponent = f"{se:.0e}".split("e")
-    place = max(0, (1 if first in "12" else 0) - int(exponent))
-    return f"{round(value, place) + 0.0:.{place}f} ± {se:.{place}f}{name}".replace("-", "−")  # + 0.0: a zero has no sign
+        return f"{value:.3g}{_behind(shown)}".replace("-", "−")
+    place = _place(se)
+    return f"{_to_place(value, place)} ± {se:.{place}f}{_behind(shown)}".replace("-", "−")
 
 
 def spoken(value: float, se: float | None, unit: Unit) -> str:
     """The same as it is printed: degrees by their sign."""
-    return re.sub(r" deg$", "°", re.sub(r" deg/s$", " °/s", value_text(value, se, unit)))
+    return _by_sign(value_text(value, se, unit))
 
 
 def estimated(size: Mapping[str, Any], unit: Unit) -> str:
@@ -216,17 +214,35 @@ def estimated(size: Mapping[str, Any], unit: Unit) -> str:
     ends = size.get("interval")
     if not ends or not ends[1] > ends[0]:
         return spoken(size["estimate"], size["se"], unit)
-    shown = next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
-    first, exponent = f"{(ends[1] - ends[0]) / 2 * shown.factor:.0e}".split("e")
-    place = max(0, (1 if first in "12" else 0) - int(exponent))
-    value, low, high = (f"{round(v * shown.factor, place) + 0.0:.{place}f}" for v in (size["estimate"], *ends))
-    name = "°" if shown.name == "deg" else _spaced(shown.name)
+    shown = _shown(unit)
+    place, name = _place((ends[1] - ends[0]) / 2 * shown.factor), _by_sign(_behind(shown))
+    value, low, high = (_to_place(v * shown.factor, place) for v in (size["estimate"], *ends))
     return f"{value}{name} (95 % sure: {low} to {high}{name})".replace("-", "−")
 
 
-def _spaced(unit: str) -> str:
+def _shown(unit: Unit) -> DisplayUnit:
+    """What a value is told in: angles in degrees, all else as it is."""
+    return next((d for d in unit.display if d.name.startswith("deg")), DisplayUnit(unit.name, 1.0))
+
+
+def _behind(shown: DisplayUnit) -> str:
     """A unit as it stands behind a number."""
-    return "" if unit == "1" else f" {unit.replace('deg', '°').replace('.', ' ').replace('2', '²')}"
+    return "" if shown.name == "1" else f" {shown.name.replace('.', ' ').replace('2', '²')}"
+
+
+def _by_sign(text: str) -> str:
+    """Degrees at the end of a text by their sign."""
+    return re.sub(r" deg$", "°", re.sub(r" deg/s$", " °/s", text))
+
+
+def _place(error: float) -> int:
+    """The decimal place to which an error has one or two digits."""
+    first, exponent = f"{error:.0e}".split("e")
+    return max(0, (1 if first in "12" else 0) - int(exponent))
+
+
+def _to_place(value: float, place: int) -> str:
+    return f"{round(value, place) + 0.0:.{place}f}"  # + 0.0: a zero has no sign
 
 
 def probability_words(p: float) -> str:

@@ -11,7 +11,7 @@ from ...campaign import Run
 from ...quantities import Parameter
 from ..estimation.calibration import at_bound
 from ..estimation.fit import Fit
-from ..estimation.interval import half_width, widened
+from ..estimation.interval import interval_by_errors
 from ..estimation.statistics import finite, sandwich
 from ..evidence.evidence import Evidence
 from .verdict import Diagnosis
@@ -63,8 +63,7 @@ def _interval(d: Diagnosis, found: Fit, record: Parameter, at: int) -> tuple[tup
     name = found.names[at]
     if name in d.intervals:
         return d.intervals[name], BY_ERRORS if d.models.factory.leads else BY_PROFILE
-    value, half = found.values[name], half_width(found, at)
-    return widened((value - half, value + half), value, d.allowance.get(name, 0.0), record), BY_ERRORS
+    return interval_by_errors(found, at, d.allowance.get(name, 0.0), record), BY_ERRORS
 
 
 def _parameter(

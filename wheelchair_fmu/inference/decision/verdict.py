@@ -18,7 +18,7 @@ from ...model.stage import Effect
 from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts
 from ..estimation.fit import Fit
-from ..estimation.interval import half_width, profile_interval, widened
+from ..estimation.interval import interval_by_errors, profile_interval, widened
 from ..estimation.statistics import correlation_time
 from ..estimation.unnamed import allowance
 from ..evidence.disturbance import Strength, acting, strength
@@ -307,11 +307,10 @@ def _intervals(
     likelihood, names = models.likelihood(included), [n for e in effects for n in models.factory.parameters(e)]
 
     def interval(name: str) -> tuple[float, float]:
-        value, half = found.values[name], half_width(found, found.names.index(name))
-        # Beside forces that nobody recorded no value was found by how likely the readings are.
-        by_errors = (value - half, value + half)
-        ends = by_errors if models.factory.leads else profile_interval(likelihood, found, name)
-        return widened(ends, value, allowed.get(name, 0.0), likelihood.records[name])
+        more, record = allowed.get(name, 0.0), likelihood.records[name]
+        if models.factory.leads:  # no value was found by how likely the readings are
+            return interval_by_errors(found, found.names.index(name), more, record)
+        return widened(profile_interval(likelihood, found, name), found.values[name], more, record)
 
     return {n: interval(n) for n in names if n in found.names}
 

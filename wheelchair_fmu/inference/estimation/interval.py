@@ -72,6 +72,12 @@ def half_width(found: Fit, at: int) -> float:
     return max(lasting, student(LEVEL, degrees_between_runs(found, at)) * float(np.sqrt(between_runs(found)[at, at])))
 
 
+def interval_by_errors(found: Fit, at: int, allowed: float, record: Parameter) -> tuple[float, float]:
+    """The interval (SI) of one fitted parameter by its standard errors, `widened`."""
+    value, half = found.values[found.names[at]], half_width(found, at)
+    return widened((value - half, value + half), value, allowed, record)
+
+
 def widened(ends: tuple[float, float], value: float, allowed: float, record: Parameter) -> tuple[float, float]:
     """An interval of an estimate that may be off by something else as well, normal with this standard deviation, within bounds:
     squares of half widths add."""

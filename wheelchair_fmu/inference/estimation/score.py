@@ -55,15 +55,15 @@ class Projector:
 
     def __call__(self, X: np.ndarray) -> np.ndarray:
         """What is left of the columns in the readings (N, k)."""
-        return X - self.Z @ self.imitated(X)
+        return X - self.Z @ self._imitated(X)
 
-    def with_strained(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same, and what is left of the columns in the further readings (m, k)."""
-        imitated = self.imitated(X)
-        return X - self.Z @ imitated, -self.slopes @ imitated
+    def with_strained(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same, what is left of the columns in the further readings (m, k), and by how much (m, k) the directions make up
+        for them."""
+        imitated = self._imitated(X)
+        return X - self.Z @ imitated, -self.slopes @ imitated, imitated
 
-    def imitated(self, X: np.ndarray) -> np.ndarray:
-        """By how much (m, k) the directions make up for the columns."""
+    def _imitated(self, X: np.ndarray) -> np.ndarray:
         return self._inverse @ (self.Z.T @ X)
 
 
@@ -121,8 +121,7 @@ def score(
 ) -> Score:
     """Score test of one effect: S (N, k), its smallest interesting sizes δ (k,), and which may only be positive."""
     r, scaled = evidence.r, S * delta
-    s, strained = off.with_strained(scaled)
-    imitated = off.imitated(scaled)
+    s, strained, imitated = off.with_strained(scaled)
     I = s.T @ s + strained.T @ strained  # noqa: E741
     size, axes = np.linalg.eigh(I)
     seen = size > max(SEEN, 1e-9 * size.max(initial=0))

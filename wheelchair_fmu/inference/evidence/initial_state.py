@@ -20,6 +20,7 @@ POSE_SD = 0.05
 CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to where it stands
 ROLLED = 0.1  # m/s; one that rolls faster had its casters behind it some trails ago, where nobody knows how far it has rolled
 TRAIL = 0.05  # m over which a caster that stood aside comes back by e, c δ' = −v δ: a usual trail
+TUNING = 2  # how often the start of each run is moved to where its readings want it
 
 
 def starts_of(names: Iterable[str]) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 from ...errors import SimulationError
 from ...model.variant import effects_in
 from ..chance import value_beyond
-from ..estimation.fit import MOST, Fit, Problem, fit
+from ..estimation.fit import Fit
 from ..estimation.interval import LEVEL, NORMAL, half_width, profile
 from ..estimation.statistics import finite
 from ..evidence.likelihood import Likelihood
@@ -25,7 +25,6 @@ from ..models.models import Models
 from ..parallel import parallel_map
 
 ALONG = np.linspace(-1.6, 1.6, 13)  # half widths of the interval, about an estimate
-STARTED = 2  # how often a start is moved
 ROUNDS = 3  # linearisations that lead to two sizes together
 ABOUT = np.linspace(-3.6, 3.6, 9)  # standard deviations along either axis of two sizes
 
@@ -48,22 +47,13 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
     if not own:
         return {"profiles": [], "pair": None}
     try:
-        found = _fitted(likelihood, names, values)
+        found = models.restarted(likelihood, names, values)
         return {
             "profiles": [_profile(likelihood, found, n, _interval(told, n)) for n in own],
             "pair": _pair(models, told, effects, found),
         }
     except SimulationError:
         return {"profiles": [], "pair": None}
-
-
-def _fitted(likelihood: Likelihood, names: Sequence[str], values: Mapping[str, float], most: int = MOST) -> Fit:
-    """A fit of runs that start where their readings want them, as the search's do: where they start elsewhere, each wants
-    other values, and an interval by how runs differ comes out another one."""
-    problem = Problem(likelihood, names)
-    inside = problem.values(problem.inside(values))
-    here = likelihood.evidence(likelihood.campaign.fit, inside, names, tune_start=STARTED)
-    return fit(likelihood, names, inside, here, most=most)
 
 
 def _interval(told: Mapping[str, Any], name: str) -> Sequence[float] | None:
@@ -74,8 +64,7 @@ def _interval(told: Mapping[str, Any], name: str) -> Sequence[float] | None:
 
 def _profile(likelihood: Likelihood, found: Fit, name: str, interval: Sequence[float] | None) -> dict[str, Any]:
     at, record = found.names.index(name), likelihood.records[name]
-    half, misfit = half_width(found, at), profile(likelihood, found, (at,))
-    half = (interval[1] - interval[0]) / 2 if interval else half
+    half, misfit = (interval[1] - interval[0]) / 2 if interval else half_width(found, at), profile(likelihood, found, (at,))
     values = np.unique(np.clip(found.values[name] + half * ALONG, record.lower, record.upper))
     heights = np.array(parallel_map(lambda v: misfit((v,)), values)) - found.misfit
     ends = [v for v in interval or () if record.lower < v < record.upper]
@@ -114,7 +103,7 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         return None
     likelihood = models.likelihood((*effects_in(base.names), other))
     pair = (factory.parameters(one)[0], factory.parameters(other)[0])
-    found = _fitted(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
+    found = models.restarted(likelihood, list(dict.fromkeys((*base.names, *pair))), base.values, most=ROUNDS)
     at = [found.names.index(n) for n in pair]
     records = [likelihood.records[n] for n in pair]
     best, scale = np.array([found.values[n] for n in pair]), np.array([r.smallest_interesting for r in records])

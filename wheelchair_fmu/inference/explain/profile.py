@@ -40,7 +40,7 @@ def profiles(models: Models, base: Fit, effects: tuple[str, ...], free: Mapping[
     for effect in free:
         own = factory.parameters(effect)
         columns = evidence.S[:, [k + names.index(n) for n in own]]
-        s, strained = off.with_strained(columns)
+        s, strained, _ = off.with_strained(columns)
         prior = prior_of(likelihood, own).sd
         known = strained.T @ strained + np.diag(prior**-2.0)
         inverse = np.linalg.inv(s.T @ s + known)

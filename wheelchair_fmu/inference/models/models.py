@@ -13,6 +13,7 @@ from ..estimation.inverse import inverse
 from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
+from ..evidence.initial_state import TUNING
 from ..evidence.likelihood import Likelihood, offsets_of
 from ..evidence.noise import QUIETER, by_run, noise_model_of, shown
 from ..policy import DEFAULT, SearchPolicy
@@ -126,7 +127,7 @@ class Models:
         nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=1)
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
         first = fit(likelihood, names, start, nominal)
-        found = self._restarted(likelihood, names, first.values, 1)
+        found = self.restarted(likelihood, names, first.values, 1)
         held = self.heldout(likelihood, found.values)
         setting = self.setting.started_as(likelihood)
         if self.factory.leads:
@@ -141,15 +142,18 @@ class Models:
         """A fit again from its own result, with every run started where this model wants it, and held out; with the models
         whose runs start there."""
         likelihood = self.likelihood(effects)
-        again = self._restarted(likelihood, self.names(effects), found.values, 2)
-        held = self.heldout(likelihood, again.values, tune_start=2)
+        again = self.restarted(likelihood, self.names(effects), found.values)
+        held = self.heldout(likelihood, again.values, tune_start=TUNING)
         return replace(self, setting=self.setting.started_as(likelihood)), Model(tuple(effects), again, held)
 
-    def _restarted(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int) -> Fit:
+    def restarted(
+        self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int = TUNING, **how: Any
+    ) -> Fit:
         """A fit from `start`, with every run started where the readings want it there, in so many steps."""
         problem = Problem(likelihood, names)
         values = problem.values(problem.inside(start))
-        return fit(likelihood, names, values, likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start))
+        here = likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start)
+        return fit(likelihood, names, values, here, **how)
 
     def with_noise_of(self, found: Fit, *, again: bool = False) -> Models | None:
         """The models with the noise that this fit's residuals show; None where it is no other than before. `again`: now that an

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from ...errors import SimulationError
 from ..estimation.fit import Fit
+from ..evidence.initial_state import TUNING
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..residual.staircase import Step
@@ -159,7 +160,7 @@ class Selection:
         fewer, campaign = last.effects[:count], self.models.campaign
         fit = last.fit if fewer == last.effects else self.models.fitted(fewer, last.fit.values)
         likelihood = self.models.likelihood(fewer)
-        fitted, held = (likelihood.evidence(runs, fit.values, tune_start=2) for runs in (campaign.fit, campaign.holdout))
+        fitted, held = (likelihood.evidence(runs, fit.values, tune_start=TUNING) for runs in (campaign.fit, campaign.holdout))
         return Step.of(f"+{fewer[-1]}", fitted, held, fit.values)
 
     def _step(self) -> Selection:

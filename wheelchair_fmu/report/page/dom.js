@@ -1,5 +1,8 @@
 // Elements, without a framework: text is always text, never markup.
 
+/** Is the page one column, as on a phone? */
+export const NARROW = matchMedia("(max-width: 860px)");
+
 /** h("td", {class: "number"}, "1.0") */
 export function h(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);

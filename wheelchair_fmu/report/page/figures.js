@@ -8,7 +8,7 @@ import { Heat, QUIET, heat } from "page/heat";
 import { crossings, profiles, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { UNSEEN, beside, between, degrees, display, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
+import { UNSEEN, beside, between, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
 import { staircase } from "page/staircase";
 import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
@@ -81,7 +81,7 @@ export class Figures {
     const rows = diagnosis.ranking.filter((r) => records.has(r.effect)).flatMap((r) => records.get(r.effect).parameters.map((p) => {
       const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
       if (!own || !p.delta) return null;
-      const [low, high] = own.interval ?? [own.estimate - 1.96 * (own.se ?? 0), own.estimate + 1.96 * (own.se ?? 0)];
+      const [low, high] = endsOf(own);
       return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
         note: uncertain(own, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
@@ -97,11 +97,11 @@ export class Figures {
     const { calibration, final } = this.campaign.diagnosis, intervals = new Map((final?.parameters ?? []).map((p) => [p.name, p.interval])), records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
-      const off = (v.value - v.prior) / v.prior_sd, record = records.get(name) ?? { unit: "1" }, interval = intervals.get(name) ?? null;
-      const [below, above] = (interval ?? [v.value - 1.96 * (v.se ?? 0), v.value + 1.96 * (v.se ?? 0)]).map((end) => (end - v.prior) / v.prior_sd);
+      const off = (v.value - v.prior) / v.prior_sd, record = records.get(name) ?? { unit: "1" }, own = { estimate: v.value, se: v.se, interval: intervals.get(name) };
+      const [below, above] = endsOf(own).map((end) => (end - v.prior) / v.prior_sd);
       const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
       const words = record.meaning ?? name, [low, high] = [Math.max(below, at(v.lower, -Infinity)), Math.min(above, at(v.upper, Infinity))];
-      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: uncertain({ estimate: v.value, se: v.se, interval }, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
+      return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: uncertain(own, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
         parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {

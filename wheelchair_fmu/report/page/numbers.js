@@ -41,9 +41,8 @@ export function withError(estimate, se, record) {
   const [value, error] = [estimate * factor, se === null ? null : se * factor];
   if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
   if (value !== 0 && error > 100 * Math.abs(value)) return UNSEEN;
-  const [first, exponent] = error.toExponential(0).split("e").map(Number);
-  const place = Math.max(0, (first < 3 ? 1 : 0) - exponent);
-  return `${unsigned(minus(value.toFixed(Math.min(place, 8))))} ± ${error.toFixed(Math.min(place, 8))}${space}${suffix}`;
+  const place = placeOf(error);
+  return `${unsigned(minus(value.toFixed(place)))} ± ${error.toFixed(place)}${space}${suffix}`;
 }
 
 /** "1.61 (1.48 to 1.73) N": an estimate in its 95 % interval. */
@@ -51,10 +50,18 @@ export function withInterval(estimate, ends, record) {
   const { unit, factor } = display(record), suffix = unitText(unit), half = ((ends[1] - ends[0]) / 2) * factor;
   if (!(half > 0)) return withError(estimate, null, record);
   if (estimate !== 0 && half > 200 * Math.abs(estimate * factor)) return UNSEEN;
-  const [first, exponent] = half.toExponential(0).split("e").map(Number), place = Math.min(8, Math.max(0, (first < 3 ? 1 : 0) - exponent));
-  const [value, low, high] = [estimate, ...ends].map((v) => unsigned(minus((v * factor).toFixed(place))));
-  return `${value} (${low} to ${high})${suffix === "°" || !suffix ? "" : " "}${suffix}`;
+  const [value, low, high] = [estimate, ...ends].map((v) => unsigned(minus((v * factor).toFixed(placeOf(half)))));
+  return beside(`${value} (${low} to ${high})`, suffix);
 }
+
+/** The decimal place to which an error has two digits at most. */
+function placeOf(error) {
+  const [first, exponent] = error.toExponential(0).split("e").map(Number);
+  return Math.min(8, Math.max(0, (first < 3 ? 1 : 0) - exponent));
+}
+
+/** The ends of an interval of 95 %: the diagnosis' own, or else by the standard error. */
+export const endsOf = ({ estimate, se, interval }) => interval ?? [estimate - 1.96 * (se ?? 0), estimate + 1.96 * (se ?? 0)];
 
 /** An estimate {estimate, se, interval} with what it is uncertain by: its interval, where there is one, allows for runs that
  *  differ by more than their noise; a standard error does not. */

@@ -1,7 +1,7 @@
 // The chair from above on a canvas: the whole path, and close by the model's chair with the measured one as a ghost, its wheels
 // and casters turning, and arrows of what pushes it.
 
-import { h, sized, write } from "page/dom";
+import { NARROW, h, sized, write } from "page/dom";
 import { extent, round, tick } from "page/draw";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
@@ -31,7 +31,7 @@ export class Scene {
   }
 
   fit() {
-    const width = Math.max(260, this.room()[0]), height = innerWidth < 861 ? LOW : Math.round(Math.min(536, Math.max(316, width * 1.45 - 84))), scale = devicePixelRatio || 1;
+    const width = Math.max(260, this.room()[0]), height = NARROW.matches ? LOW : Math.round(Math.min(536, Math.max(316, width * 1.45 - 84))), scale = devicePixelRatio || 1;
     const { model, measured, before } = this.motion, every = [model, measured, before].filter(Boolean);
     const [xs, ys] = ["x", "y"].map((c) => extent(...every.map((p) => p[c])));
     const lying = xs[1] - xs[0] > ys[1] - ys[0];

@@ -1,6 +1,6 @@
 // One time for everything that is drawn against it: two charts by uPlot, the scene, and a row of readings for every channel.
 
-import { h, write } from "page/dom";
+import { NARROW, h, write } from "page/dom";
 import { look, present, ticked } from "page/draw";
 import { beside, display, toPlace, unitText } from "page/numbers";
 import { channelOf } from "page/words";
@@ -9,7 +9,6 @@ const AXIS = 62; // px left of every chart, so that their times stand above one 
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const DENSE = 1.5; // px between two points of a smooth curve
 const STILL = matchMedia("(prefers-reduced-motion: reduce)");
-const NARROW = matchMedia("(max-width: 860px)");
 
 /** A series as the charts take it: null where there is no sample. */
 const gapped = (values) => (values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values);
@@ -149,7 +148,7 @@ export class Timeline {
   };
 
   size(index) {
-    return { width: Math.max(240, this.charts[0].clientWidth), height: innerWidth < 861 ? (index ? 150 : 196) : index ? 230 : 400 };
+    return { width: Math.max(240, this.charts[0].clientWidth), height: NARROW.matches ? (index ? 150 : 196) : index ? 230 : 400 };
   }
 
   /** Where 95 % of readings lie if the model is right; the scale is that of the curves. */

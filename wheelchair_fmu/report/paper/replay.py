@@ -10,11 +10,12 @@ import numpy as np
 from ...campaign import moving
 from ...errors import Failure, SimulationError
 from ...inference.evidence.evidence import Evidence
+from ...inference.evidence.initial_state import TUNING
 from ...inference.evidence.likelihood import Likelihood
 from ...inference.models.factory import ModelFactory
 from ...inference.models.setting import Setting
 from ...model.generic import library
-from ..content import TUNING, in_time, noise_told, used
+from ..content import in_time, noise_told, used
 from .case import Case
 
 NEAR = 0.02  # share by which an error may differ from what the diagnosis has
