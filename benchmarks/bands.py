@@ -15,12 +15,14 @@ Counts = dict[str, tuple[int, int]]  # by channel, how many samples lie in their
 def inside(d: Diagnosis) -> Counts:
     """A band is as wide as noise, with forces that nobody recorded, and doubt of the fitted values have it."""
     found, likelihood = d.top, d.models.likelihood(d.included)
-    held = d.models.heldout(likelihood, found.values).runs
+    held = likelihood.evidence(d.models.campaign.holdout, found.values, tune_start=1).runs
     covariance, moved = sandwich(found), []
     for name, se in zip(found.names, np.sqrt(np.diag(covariance)), strict=True):
         record = likelihood.records[name]
         step = se if found.values[name] + se <= record.upper else -se
-        there = d.models.heldout(likelihood, {**found.values, name: found.values[name] + step}).runs
+        there = likelihood.evidence(
+            d.models.campaign.holdout, {**found.values, name: found.values[name] + step}, tune_start=1
+        ).runs
         moved.append([(b.predicted - a.predicted) / step for a, b in zip(held, there, strict=True)])
     counts: Counts = {}
     for i, e in enumerate(held):

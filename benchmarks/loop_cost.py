@@ -3,7 +3,8 @@
 Compiled code is cached. The peer refits the calibrated values and one effect by `least_squares` on all fitted runs, each driven
 by `fmpy.simulate_fmu` (FMU unpacked once, one instance that is reset, only the outputs that were measured, no estimate of the
 start); it is timed for some effects of the default FMU, and would take as long for each of the others. It is given all cores,
-an effect on each.
+an effect on each, and as many linearisations as our own fits: with differences through an integrator that chooses its steps,
+it goes on for an hour.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from threadpoolctl import threadpool_limits
 
 from wheelchair_fmu.campaign import CHANNELS, Campaign, read
 from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.estimation.fit import MOST
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.search.beginning import begin
@@ -83,6 +85,7 @@ class _Peer:
             start,
             x_scale=scale,
             bounds=([self.records[n].lower for n in names], [self.records[n].upper for n in names]),
+            max_nfev=MOST,
         )
         return perf_counter() - start_time
 

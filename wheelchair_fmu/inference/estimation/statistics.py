@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ..chance import student
-from ..evidence.evidence import Evidence, block_length
+from ..evidence.evidence import Evidence, RunEvidence, blocks_of
 from ..policy import DEFAULT, SearchPolicy
 from .fit import Fit
 from .inverse import inverse
@@ -155,7 +155,7 @@ def margin(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:
 
 
 def held_out_gain(before: Evidence, after: Evidence) -> tuple[float, float, float]:
-    """Fall of the summed squared innovations on held-out runs, with a 95 % interval by how far blocks of time differ."""
+    """Fall of −2 log likelihood on held-out runs, with a 95 % interval by how far blocks of time differ."""
     blocks = difference_blocks(before, after)
     n, fall = len(blocks), float(blocks.sum())
     if not n:
@@ -171,10 +171,14 @@ def resampled_totals(blocks: np.ndarray) -> np.ndarray:
 
 
 def difference_blocks(one: Evidence, other: Evidence) -> np.ndarray:
-    """Summed differences of squared innovations, by blocks of time."""
-    out = []
-    for a, b in zip(one.runs, other.runs, strict=True):
-        d = np.nansum(a.r**2 - b.r**2, axis=1)
-        length = block_length(a.run)
-        out += [d[i : i + length].sum() for i in range(0, len(d), length)]
-    return np.array(out)
+    """How much less likely one model makes runs than the other, in −2 log likelihood, by blocks of time: summed squared
+    innovations of fitted runs; of those that were held out see `foretelling`."""
+    pairs = zip(one.runs, other.runs, strict=True)
+    return np.concatenate([_of_blocks(a) - _of_blocks(b) for a, b in pairs] or [np.empty(0)])
+
+
+def _of_blocks(e: RunEvidence) -> np.ndarray:
+    """−2 log likelihood (m,) of each block of a run."""
+    if e.foretelling is not None:
+        return e.foretelling
+    return np.array([np.nansum(e.r[rows] ** 2) for rows in blocks_of(e.run)])

@@ -44,6 +44,7 @@ class RunEvidence:
     added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
     driven: np.ndarray | None = None  # (n, nz) readings simulated with them
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
+    foretelling: np.ndarray | None = None  # (m,) of a run that was held out, −2 log of how likely each block of it was
 
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
@@ -198,3 +199,9 @@ def followed(e: RunEvidence) -> np.ndarray:
 def block_length(run: Run) -> int:
     """Samples in a block."""
     return max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
+
+
+def blocks_of(run: Run) -> list[slice]:
+    """Where each block of a run is; the last is what is left."""
+    length = block_length(run)
+    return [slice(i, i + length) for i in range(0, len(run.time), length)]

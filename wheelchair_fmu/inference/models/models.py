@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from ...campaign import Campaign
 from ...model.stage import Effect
-from ..estimation.fit import Fit, Problem, fit, start_value
+from ..estimation.fit import Fit, Problem, fit, sizes_an_effect, start_value
+from ..estimation.foretelling import foretold_by
 from ..estimation.inverse import inverse
 from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
@@ -94,7 +97,7 @@ class Models:
         """`fitted`, and held out."""
         hypothesis, found = Hypothesis(tuple(effects), without), self.fitted(effects, start, without)
         if hypothesis not in self._heldout:
-            self._heldout[hypothesis] = self.heldout(self.likelihood(effects), found.values)
+            self._heldout[hypothesis] = self.heldout(self.likelihood(effects), found)
         return Model(hypothesis.effects, found, self._heldout[hypothesis])
 
     def rival_of(self, effect: str, base: Model) -> Model:
@@ -102,9 +105,13 @@ class Models:
         same = self.doubles.get(effect)
         return self.model(base.effects, base.fit.values, same) if same else base
 
-    def heldout(self, likelihood: Likelihood, values: Mapping[str, float], tune_start: int = 1) -> Evidence:
-        """Evidence of the held-out runs; only where each starts is estimated on them, in so many steps."""
-        return likelihood.evidence(self.campaign.holdout, values, (), tune_start=tune_start)
+    def heldout(self, likelihood: Likelihood, found: Fit, tune_start: int = 1) -> Evidence:
+        """Evidence of the held-out runs, as a fit foretells them; only where each starts is estimated on them, in so many
+        steps."""
+        held = likelihood.evidence(self.campaign.holdout, found.values, found.names, tune_start=tune_start)
+        records = [likelihood.records[n] for n in found.names]
+        sizes = [self.policy.large * r.delta if sizes_an_effect(r) else np.inf for r in records]
+        return foretold_by(found, held, np.array(sizes) ** -2.0)
 
     def weight(self, found: Fit, effect: str) -> float:
         """How far an effect's estimate is from what a model without it has, by its covariance: about as much as −2 log
@@ -128,7 +135,7 @@ class Models:
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
         first = fit(likelihood, names, start, nominal)
         found = self.restarted(likelihood, names, first.values, 1)
-        held = self.heldout(likelihood, found.values)
+        held = self.heldout(likelihood, found)
         setting = self.setting.started_as(likelihood)
         if self.factory.leads:
             setting = replace(setting, begun=dict(found.values))
@@ -143,7 +150,7 @@ class Models:
         whose runs start there."""
         likelihood = self.likelihood(effects)
         again = self.restarted(likelihood, self.names(effects), found.values)
-        held = self.heldout(likelihood, again.values, tune_start=TUNING)
+        held = self.heldout(likelihood, again, tune_start=TUNING)
         return replace(self, setting=self.setting.started_as(likelihood)), Model(tuple(effects), again, held)
 
     def restarted(

@@ -61,7 +61,7 @@ def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
     for effect in every[len(known) :]:
         others = tuple(e for e in every if e != effect)
         fewer = now.fit if others == known else models.fitted(others, found.values)
-        without = Model(others, fewer, models.heldout(models.likelihood(others), fewer.values))
+        without = Model(others, fewer, models.heldout(models.likelihood(others), fewer))
         with_it = replace(top, fit=models.compared(top.fit, effect, fewer))
         judged = judge(models, without, with_it, effect, w.parameters(effect), len(now.scores))
         rounds.append(Round(others, fewer, without.heldout, now.scores, (judged,), contested=contested, policy=models.policy))
@@ -72,7 +72,7 @@ def _held_out(models: Models, effects: tuple[str, ...], found: Fit) -> Model:
     """A fit with its runs started where readings want them, to first order, and held out."""
     likelihood = models.likelihood(effects)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-    return Model(effects, found, models.heldout(likelihood, found.values))
+    return Model(effects, found, models.heldout(likelihood, found))
 
 
 def kin(w: ModelFactory) -> list[tuple[str, ...]]:

@@ -54,7 +54,7 @@ def candidate(
     if found.evidence.rms > RISEN * base.fit.evidence.rms:
         return None  # no fit: the model without the effect is one with it
     try:
-        held = likelihood.restarted(likelihood.evidence(models.campaign.holdout, found.values), found.values)
+        held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
     except SimulationError:
         return None  # a model that cannot be simulated on what was held out foretells nothing of it
     return judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
