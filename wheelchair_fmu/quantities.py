@@ -34,6 +34,11 @@ class Unit:
     display: tuple[DisplayUnit, ...] = ()
     quantity: str = ""  # what is measured in it
 
+    @property
+    def behind(self) -> str:
+        """How it stands behind a number: of a plain number, nothing does."""
+        return "" if self.name == "1" else f" {self.name}"
+
     def scale(self, kg: float, m: float, s: float) -> float:
         """Factor by which a number grows when the units of mass, length, time shrink by kg, m, s."""
         return float(kg) ** self.kg * float(m) ** self.m * float(s) ** self.s

@@ -38,6 +38,7 @@ def test_what_is_written_is_read(tmp_path):
         ),
         ('[values]\n"wheel.I" = 0.2', 'choose wheel = "spinning" in the [laws]'),
         ('[values]\n"chair.m" = -1.0', "chair.m = -1.0 is outside its bounds"),
+        ('[values]\n"tyre.pressure_F" = 3', "tyre.pressure_F = 3 is outside its bounds -2 to 2; give a value between them"),
     ],
 )
 def test_a_fault_is_told_with_the_file(tmp_path, text, says):

@@ -57,8 +57,7 @@ def section(effect: Effect) -> str:
 
 def _constant(c: Parameter) -> str:
     known = f" ± {c.known_to:g}" if c.adjusted else ""
-    unit = "" if c.unit.name == "1" else f" {c.unit.name}"
-    return f"`{c.name.rpartition('.')[2]}` = {c.default:g}{known}{unit}, {c.meaning} ({c.source})"
+    return f"`{c.name.rpartition('.')[2]}` = {c.default:g}{known}{c.unit.behind}, {c.meaning} ({c.source})"
 
 
 def drawings() -> dict[str, str]:

@@ -62,7 +62,7 @@ def renamed(
         given = [_number(n, values[n]) if n in values else float(b) for n, b in zip(names, before, strict=True)]
         new = {p.name: float(v) for p, v in zip(instead, weights @ given, strict=True)}
         found |= new
-        told = " and ".join(f"{p.name} = {new[p.name]:.6g} {p.unit.name}" for p in instead)
+        told = " and ".join(f"{p.name} = {new[p.name]:.6g}{p.unit.behind}" for p in instead)
         by = [n for n in names if n in values]
         notes.append(f"{' and '.join(by)}: former name{'s' if len(by) > 1 else ''}, read as {told}")
     return found, notes

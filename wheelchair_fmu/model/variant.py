@@ -140,11 +140,13 @@ def number(records: Mapping[str, Parameter], name: str, value: float | str) -> f
     try:
         result = float(value)
     except (TypeError, ValueError):
-        raise UsageError(f"{name} = {value!r} is not a number; give a number in {record.unit.name}") from None
+        raise UsageError(
+            f"{name} = {value!r} is not a number; give a number{record.unit.behind and f' in{record.unit.behind}'}"
+        ) from None
     if not math.isfinite(result) or not record.lower <= result <= record.upper:
         raise UsageError(
-            f"{name} = {value} is outside its bounds {record.lower:g} to {record.upper:g} "
-            f"{record.unit.name}; give a value between them"
+            f"{name} = {value} is outside its bounds {record.lower:g} to "
+            f"{record.upper:g}{record.unit.behind}; give a value between them"
         )
     return result
 

@@ -48,7 +48,7 @@ class Calibrated:
     @property
     def words(self) -> str:
         """What there is to say of it; empty where it is as it was given."""
-        unit = "" if self.record.unit.name == "1" else f" {self.record.unit.name}"
+        unit = self.record.unit.behind
         value, prior, sd = _to_the_same_place(self.value, self.prior, self.prior_sd)
         told = f"{self.record.name} comes out at {value}{unit}"
         known = f"usual {prior} ± {sd}{unit}" if self.record.adjusted else f"{prior} ± {sd}{unit} given"
