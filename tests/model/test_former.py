@@ -77,7 +77,7 @@ def test_a_variant_file_with_former_names_is_read(tmp_path):
     file.write_text(
         f'[laws]\neffects = ["push_force_gain"]\n[values]\n"{GAIN}.r" = 0.04\n"{GAIN}.l" = 0.02\n', encoding="utf-8"
     )
-    with pytest.warns(FormerName, match=rf"{GAIN}.mean = 0.03 1 and {GAIN}.difference = 0.02 1"):
+    with pytest.warns(FormerName, match=rf"{GAIN}.mean = 0.03 and {GAIN}.difference = 0.02"):
         assert read_variant(file).values == pytest.approx({f"{GAIN}.mean": 0.03, f"{GAIN}.difference": 0.02})
 
 
