@@ -17,10 +17,15 @@ T_R, B = 0.55, 0.2
 Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  # of a run and its results without: F, M (n,)
 
 
-def wandering(rng: np.random.Generator, time: np.ndarray, sd: float, lasting: float = FORGOTTEN) -> np.ndarray:
-    """A first-order Gauss–Markov process (n,) that is forgotten over so many seconds."""
-    out, level = np.empty(len(time)), sd * rng.standard_normal()
-    for i, gap in enumerate(np.diff(time, prepend=time[0])):
+def rolled(run: Run, without: Mapping[str, np.ndarray]) -> np.ndarray:
+    """How far (n,) a run's chair has rolled, by its results."""
+    return np.cumsum(np.abs(without["chair.u"]) * np.diff(run.time, prepend=run.time[0]))
+
+
+def wandering(rng: np.random.Generator, at: np.ndarray, sd: float, lasting: float = FORGOTTEN) -> np.ndarray:
+    """A first-order Gauss–Markov process (n,) that is forgotten over so many seconds, at times in s, or metres of a way."""
+    out, level = np.empty(len(at)), sd * rng.standard_normal()
+    for i, gap in enumerate(np.diff(at, prepend=at[0])):
         keeps = np.exp(-gap / lasting)
         level = keeps * level + np.sqrt(1 - keeps**2) * sd * rng.standard_normal()
         out[i] = level

@@ -16,13 +16,15 @@ from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import BODYS, FORCED, HANDS, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, B, floor, pushing, ridden, swinging, wandering
+from .forces import T_R, B, floor, pushing, ridden, rolled, swinging, wandering
 
 
 @pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.0)])
 def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     rng = np.random.default_rng(5)
-    campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, run.time, moment)))
+    campaign = ridden(
+        sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, rolled(run, without), moment))
+    )
     found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
     assert found.along == pytest.approx(force, rel=0.15, abs=0.15)
     assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
@@ -34,18 +36,18 @@ def test_the_force_that_was_put_in_comes_out(sample, force, moment):
 def test_what_turns_a_chair_counts_as_a_floor_that_is_as_steep_along_the_way(sample):
     """And nothing else is found there."""
     rng = np.random.default_rng(5)
-    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, run.time, 0.4)))
+    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4)))
     found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
     assert found.moment == pytest.approx(0.4, rel=0.15) and found.floor == pytest.approx(found.moment / B)
     assert found.force < 0.15 and found.body < 0.15
 
 
 def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
-    """Slopes that are alike over 0.4 m, at 1.2 m/s."""
+    """Slopes that are alike over 0.6 m, however fast it rolls."""
     rng = np.random.default_rng(11)
-    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, run.time, 0.4, 0.33)))
+    campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4, 0.6)))
     found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
-    assert found.lasting == pytest.approx(0.33, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
+    assert found.lasting == pytest.approx(0.6, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
 
 
 def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
@@ -223,3 +225,20 @@ def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_b
     left, naive = (float(np.sqrt(np.mean(np.concatenate(errors) ** 2))) for errors in (with_it, without))
     swing = swings / likelihood.chair({})["chair.m"]
     assert left < 1.15 * np.hypot(swing, cut.noise["wheel_speed_l"]) and naive > 1.5 * left
+
+
+def test_who_rolls_slowly_gains_or_loses_more_speed_by_a_floor(sample):
+    """v dv = g dh: of one height, twice as much at half the speed; a floor is as it is in each place."""
+    coast, rng, noise = (
+        next(r for r in sample.runs if r.name == "coast-down"),
+        np.random.default_rng(3),
+        NoiseModel(sample.noise),
+    )
+    for speed in (0.5, 1.0, 2.0):
+        slower = replace(sample, runs=(replace(coast, u0=speed),))
+        campaign = ridden(slower, rng, lambda run, without: (0 * run.time, 0 * run.time))
+        with_floor = replace(noise, floor=5.0, lasting=0.5, mass=80.0)
+        told = (Likelihood(campaign, Variant(), n).evidence(campaign.runs, {}).runs[0] for n in (noise, with_floor))
+        even, uneven = (1 / e.whitener.spread[0, 0] ** 2 for e in told)
+        height = 5.0 * 0.5 * np.sqrt(2) / 3  # of the second order, m g times its standard deviation, by that of its slope
+        assert np.sqrt(uneven - even) == pytest.approx(height / 80.0 / speed, rel=0.03)

@@ -14,6 +14,7 @@ from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.search.candidate import Candidate, ranked
 from wheelchair_fmu.inference.search.probability import _rivals
 from wheelchair_fmu.inference.search.rounds import Round, instead
+from wheelchair_fmu.inference.search.ties import probable
 
 NONE = Fit((), {}, np.zeros((0, 0)), Evidence((), ()), 0.0, np.zeros(0))
 
@@ -184,3 +185,13 @@ def test_what_is_perhaps_nothing_is_not_found():
     known = candidate("a", 6.25, np.array([6.0]), np.array([[2.4**2]]))
     r = Round((), NONE, Evidence((), ()), (None,) * 30, (known,))
     assert r.present["a"] < DEFAULT.sure and r.winner is None and not r.slight
+
+
+def test_what_was_found_is_named_as_long_as_it_or_its_rivals_are_probable():
+    """Two that explain as much are there together, though neither is by itself; what others made needless is not."""
+    certain = np.array([[0.01]])
+    alike = tuple(candidate(e, 60.0, np.array([2.0]), certain) for e in "abc")
+    r = Round((), NONE, Evidence((), ()), (), tuple(ranked(alike)))
+    assert max(b.there for b in r.beliefs.values()) < 0.5 and all(probable(r, e) for e in "abc")
+    needless = Round(("x",), NONE, Evidence((), ()), (), (candidate("a", 3.0, np.array([0.2]), certain),), again=True)
+    assert not probable(needless, "a")

@@ -11,7 +11,7 @@ from ..faults import Fault
 from .axes import to_sae
 from .channels import BY_NAME, CHANNELS, INPUTS, Channel
 from .formats import read_smartwheel
-from .moving import moving, sets_off
+from .moving import moving, pace, sets_off
 from .reading import Judged, check, fingerprint, judged, read
 from .recorded import Recorded
 from .records import Baseline, Campaign, Clock, Run
@@ -34,6 +34,7 @@ __all__ = [
     "fingerprint",
     "judged",
     "moving",
+    "pace",
     "pieces",
     "read",
     "read_smartwheel",

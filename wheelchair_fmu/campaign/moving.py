@@ -18,6 +18,7 @@ from .windows import between, part
 
 ROLLS, STANDS = 0.2, 0.1  # m/s: a chair rolls from the former on until it is slower than the latter
 STILL = 0.05  # m/s: one that is slower stands, but for its sensors' noise
+WALK = 1.0  # m/s
 SMOOTH = 0.1  # s over which a speed is taken
 LEAST = 2.0  # s: what rolls for less is left out
 SPEEDS = ("wheel_speed_l", "wheel_speed_r", "u")
@@ -27,6 +28,13 @@ def moving(campaign: Campaign) -> Campaign:
     """The campaign with each run cut to where its chair rolls, in several where it stood in between; a run that tells no speed,
     or that never rolls for long, stays whole."""
     return replace(campaign, runs=tuple(part for run in campaign.runs for part in _parts(run)))
+
+
+def pace(run: Run) -> np.ndarray:
+    """Speed (n,) in m/s at which a run's chair rolls, at least as fast as one that is about to stand; of one that tells no
+    speed, a usual walk's."""
+    speed = _speed(run)
+    return np.full(len(run.time), WALK) if speed is None else np.maximum(speed, STANDS)
 
 
 def sets_off(campaign: Campaign) -> bool:

@@ -220,7 +220,7 @@ class _Place:
         self.library = of.of.library
         model, names = of.of.model, of._names
         self.nx, self.ny, self.ns, self.k = model.x.numel(), model.y.numel(), len(of.of.sensors), len(by) + len(run.starts)
-        self.nd, self.l = 0 if run.unknown is None else len(run.unknown.lasting), len(run.constants)
+        self.nd, self.l = 0 if run.unknown is None else run.unknown.count, len(run.constants)
         size = self.nx + len(run.pushes) + self.nd + self.nz
         if size > MOST:
             raise ValueError(f"{size} states, pushes, disturbances and readings are more than {MOST}")

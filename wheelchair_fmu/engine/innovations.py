@@ -68,15 +68,20 @@ class Noise:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,), or (n, d) where that
-    changes from moment to moment, and a time (d,) in s over which it is forgotten. `as_push` (nq, d) says as what change of the
-    recorded pushes one unit of each acts, `common` (d, d) how they are correlated at one moment: two that one white noise
-    drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each is on its own."""
+    """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
+    over which it is forgotten, either of them (n, d) where that changes from moment to moment. `as_push` (nq, d) says as what
+    change of the recorded pushes one unit of each acts, `common` (d, d) how they are correlated at one moment: two that one
+    white noise drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each is on its own."""
 
     sd: np.ndarray
     lasting: np.ndarray
     as_push: np.ndarray
     common: np.ndarray | None = None
+
+    @property
+    def count(self) -> int:
+        """How many there are, d."""
+        return self.as_push.shape[1]
 
 
 @cache
@@ -158,7 +163,7 @@ class Whitener:
     def _compose(self, unknown: Disturbance | None) -> None:
         """What the filter has of its inputs and readings, with these forces acting that nobody recorded."""
         n, nz = self.present.shape
-        nx, nd = self.arrays["A"].shape[1], 0 if unknown is None else len(unknown.lasting)
+        nx, nd = self.arrays["A"].shape[1], 0 if unknown is None else unknown.count
         nq = self.recorded + nd
         self.size = (nx, nq, nz)
         if sum(self.size) > MOST:
@@ -292,9 +297,9 @@ def noise_arrays(time: np.ndarray, noise: Noise, step: np.ndarray, unknown: Dist
         "sd": noise.readings,
         "ar": noise.colour,
         "step": step,
-        "unknown_sd": np.broadcast_to(forces.sd, (len(time), len(forces.lasting))),
-        "lasting": forces.lasting,
-        "together": np.eye(len(forces.lasting)) if forces.common is None else forces.common,
+        "unknown_sd": np.broadcast_to(forces.sd, (len(time), forces.count)),
+        "lasting": np.broadcast_to(forces.lasting, (len(time), forces.count)),
+        "together": np.eye(forces.count) if forces.common is None else forces.common,
         "as_push": forces.as_push,
     }
     return {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..campaign import CHANNELS, Campaign, Run, moving
+from ..campaign import CHANNELS, Campaign, Run, moving, pace
 from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.innovations import steps
 from ..engine.tangent import EXTERNAL, differentiable, sensed
@@ -19,7 +19,7 @@ from ..inference.estimation.statistics import finite
 from ..inference.evidence.initial_state import CASTERS, START, TUNING, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
-from ..inference.evidence.noise_model import BODYS, NoiseModel, disturbance, noise_of, pushes_of
+from ..inference.evidence.noise_model import BODYS, PLACES, NoiseModel, disturbance, noise_of, pushes_of
 from ..inference.explain.landscape import landscape
 from ..inference.models.factory import ModelFactory
 from ..inference.models.models import Models
@@ -96,14 +96,15 @@ def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _forces(colour: NoiseModel) -> dict[str, Any] | None:
-    """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for, and
-    which of them are the rider's body's, whose size in a run is `swinging` times as large."""
+    """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for that
+    rolls at 1 m/s; which of them are the rider's body's, whose size in a run is `swinging` times as large, and which the
+    floor's, which are forgotten sooner by as much as a run has `pace`."""
     if not colour.disturbed:
         return None
     found = disturbance(colour, EXTERNAL, mass=colour.mass)
     assert found.common is not None
     as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
-    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist()}
+    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist()}
     return {**sizes, "lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": as_push}
 
 
@@ -180,6 +181,7 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
         "swinging": _series(colour.swinging(run) if colour.disturbed else ()),
+        "pace": _series(pace(run) if colour.disturbed else ()),
         "constants": [_constant(c) for c in locals_of(run)],
     }
 

@@ -25,8 +25,8 @@ typedef struct {
     const int *pushes, *which;
     const double *push_sd, *push_ar, *push_step;   /* nq: standard deviation, AR(1) coefficient from one sample to the next, */
     const double *sd, *ar, *step;                  /* nz: and s between these samples */
-    const double *unknown_sd;                      /* n x nd: standard deviation at each moment, */
-    const double *lasting, *together;              /* nd: s until forgotten, and nd x nd: correlation */
+    const double *unknown_sd, *lasting;            /* n x nd: standard deviation at each moment, and s until forgotten, */
+    const double *together;                        /* nd x nd: correlation */
     const double *as_push;                         /* nq x nd: as what change of the pushes one unit of each acts */
 } wc_noise;
 

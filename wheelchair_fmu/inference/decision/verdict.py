@@ -42,7 +42,7 @@ from ..search.relief import reliefs
 from ..search.rounds import Belief, Round
 from ..search.screen import screen
 from ..search.selection import Selection, selection
-from ..search.ties import grouped, tied
+from ..search.ties import grouped, probable, tied
 from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worsened
 from .leftover import leftover, settled
@@ -111,9 +111,14 @@ class Diagnosis:
 
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
-        again = (r for r in self.beside if {*r.effects, effect} == set(self.included) and effect not in r.effects)
-        first = (r for r in reversed(self.rounds) if effect not in r.effects and any(c.effect == effect for c in r.candidates))
-        return next(again, None) or next(first)
+        return _deciding(effect, self.included, self.beside, self.rounds)
+
+
+def _deciding(effect: str, included: Sequence[str], beside: Sequence[Round], rounds: Sequence[Round]) -> Round:
+    """The round that judges an effect of a model, beside all others of it where there is such a round."""
+    again = (r for r in beside if {*r.effects, effect} == set(included) and effect not in r.effects)
+    first = (r for r in reversed(rounds) if effect not in r.effects and any(c.effect == effect for c in r.candidates))
+    return next(again, None) or next(first)
 
 
 @threadpool_limits.wrap(limits=1)  # runs are what is shared among the cores; BLAS threads would only wait for one another
@@ -209,7 +214,8 @@ def _diagnosed(
         included, proposal, ladder = settled(found, generic, proposal)
         stepped(ladder)
     beside = {e: r for e, r in found.beside.items() if r} if proposal is None else {}
-    effects = tuple(e for e in found.named() if e in included)
+    judged = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.named() if e in included}
+    effects = tuple(e for e, r in judged.items() if probable(r, e))  # what others made needless later only helps
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)

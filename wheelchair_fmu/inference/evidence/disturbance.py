@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from ...campaign import moving
+from ...campaign import moving, pace
 from ...engine.innovations import Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
@@ -28,8 +28,7 @@ NEAR = 0.02  # m: a CM that is nearer to the axle than that is no lever
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 # times these, from where the search may start
 START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
-# s: a chair feels no slope for less than its own length, 0.4 m, at the 1.3 m/s of a walk; what lasts longer is an effect
-LASTING = (0.3, 1.0)
+LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-3  # and share of a strength over which its slope is taken
 ROUNDS = 5  # in which a path and a strength are found, at most,
@@ -39,7 +38,7 @@ CLOSE = 0.1  # of a strength, by which the last one may differ
 @dataclass(frozen=True)
 class Strength:
     """Standard deviations of the slow force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
-    needs, by how much −2 log posterior falls with them, the time (s) over which the moment is forgotten, the standard deviation
+    needs, by how much −2 log posterior falls with them, the way (m) over which the moment is forgotten, the standard deviation
     of the floor's force (N), and the RMS push (N) of the runs that all was found for."""
 
     force: float
@@ -161,7 +160,7 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     """Forces as changes of the inputs that the filter of a run has noise for."""
     alone = pushes_of(e.run)
     inputs = alone if len(alone) == e.filter.whitener.recorded else pushes_of(e.run, led=True)
-    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run))
+    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run), speed=pace(e.run))
 
 
 def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...campaign import BY_NAME, CHANNELS, Campaign, Run
+from ...campaign import BY_NAME, CHANNELS, Campaign, Run, pace
 from ...campaign.channels import BODY_NAMES
 from ...engine.evaluation import Constant, Evaluation, Evaluator, Recording, Values
 from ...engine.innovations import Disturbance
@@ -281,7 +281,7 @@ class Likelihood:
     def _of_any_chair(self, run: Run) -> Disturbance:
         """The forces on a chair of the mass that they were found for."""
         mass, swinging = self.noise_model.mass, self.noise_model.swinging(run)
-        return disturbance(self.noise_model, self._pushes(run), mass=mass, swinging=swinging)
+        return disturbance(self.noise_model, self._pushes(run), mass=mass, swinging=swinging, speed=pace(run))
 
     def _told(
         self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]

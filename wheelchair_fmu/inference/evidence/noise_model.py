@@ -21,14 +21,15 @@ FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, wh
 HANDS, TURNS = (tuple(BY_NAME[n].fmu for n in names) for names in (FORCES, TORQUES))
 SCATTER = 1.15  # ratio of two estimates of the same noise
 SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
-FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, as long as nothing tells it
+FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, or m, as long as nothing tells it
 # s, of the third order by which the momentum of a rider's body swings: with each stroke, about once a second, and back, and
 # smoothly, as muscles pull; of second order it would tremble, and a slow force would seem likelier than a body
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
-# of the time over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
+# of the way over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
 RISES = (1 / 3, 2 / 3)
 # of the processes of `disturbance`, a force, a moment, those of the body and those of a floor, which are the body's,
 BODYS = np.repeat([False, True, False], [2, len(SWUNG), len(RISES)])
+PLACES = np.repeat([False, True, False, True], [1, 1, len(SWUNG), len(RISES)])  # those that a floor has in it,
 FORCED = len(BODYS)  # and how many there are
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
@@ -45,7 +46,7 @@ class NoiseModel:
     moment: float = 0.0  # N m, of what turns it,
     floor: float = 0.0  # N, of what a floor that rises and falls again pushes along the heading,
     body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
-    lasting: float = FORGOTTEN  # s over which the moment is forgotten; a force that is forgotten sooner than that is a body's
+    lasting: float = FORGOTTEN  # m over which the moment is forgotten, and the floor's force, as the chair rolls
     mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
     stroke: float = 0.0  # N, RMS push of the runs that they were found for; 0: of any
     by_run: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # times `sd` that a channel's noise is in a run
@@ -114,7 +115,12 @@ def noise_of(
 
 
 def disturbance(
-    noise_model: NoiseModel, inputs: Sequence[str], t_r: float = 1.0, mass: float = 1.0, swinging: np.ndarray | float = 1.0
+    noise_model: NoiseModel,
+    inputs: Sequence[str],
+    t_r: float = 1.0,
+    mass: float = 1.0,
+    swinging: np.ndarray | float = 1.0,
+    speed: np.ndarray | float = 1.0,
 ) -> Disturbance:
     """A force along the heading, a moment, the processes by which a rider's body pushes, and those of a floor, as changes of
     these inputs: of those from outside where they are among them, which no rider's body answers, or else of both hands', on
@@ -122,14 +128,15 @@ def disturbance(
 
     What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
     they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride. `swinging` is
-    times how much the body swings, at each moment (n,) or throughout.
+    times how much the body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
 
     A body pushes by −p', with p its momentum against the chair: a sum of processes of first order that one noise drives, and a
     force without a mean. So does a floor, which rises and falls again: the slope along the way is what its height changes. The
-    slope to the side, which turns a chair, is alike for as long as the height is, so that both are forgotten together.
+    slope to the side, which turns a chair, is alike for as far as the height is, so that both are forgotten together. A floor
+    is as it is in each place: who rolls slowly stays longer on a slope, and gains or loses the more by it.
     """
     body, floor = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
-    lasting = np.array([FORGOTTEN, noise_model.lasting, *body.lasting, *floor.lasting])
+    lasting = np.array([FORGOTTEN, noise_model.lasting, *body.lasting, *floor.lasting])  # s, or m
     as_push, common = np.zeros((len(inputs), FORCED)), block_diag(1.0, 1.0, body.together, floor.together)
     along = mass / noise_model.mass if noise_model.mass else 1.0
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
@@ -138,12 +145,13 @@ def disturbance(
     for name, (ahead, turning) in shares.items():
         as_push[inputs.index(name)] = [along * ahead, turning, *(-along * ahead * np.sign([*body.rates, *floor.rates]))]
     sd = np.array([noise_model.force, noise_model.moment, *np.abs(body.rates), *np.abs(floor.rates)])
-    return Disturbance(np.where(BODYS, np.multiply.outer(swinging, sd), sd), lasting, as_push, common)
+    seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
+    return Disturbance(np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds, as_push, common)
 
 
 class _Swing(NamedTuple):
-    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, what one standard
-    deviation of each adds to that rate (k,), and their correlation (k, k)."""
+    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, or ways in m, what one
+    standard deviation of each adds to that rate (k,), and their correlation (k, k)."""
 
     lasting: Sequence[float]
     rates: np.ndarray
@@ -161,7 +169,7 @@ def _swing(momentum: float, lasting: Sequence[float]) -> _Swing:
 
 
 def _rate(force: float, lasting: float) -> _Swing:
-    """Those whose sum is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (s)."""
+    """Those whose sum is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (m)."""
     first, second = (lasting * share for share in RISES)
     return _swing(force * np.sqrt(first * second), (first, second))
 

@@ -156,11 +156,16 @@ class Models:
     def restarted(
         self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int = TUNING, **how: Any
     ) -> Fit:
-        """A fit from `start`, with every run started where the readings want it there, in so many steps."""
+        """A fit from `start`, with every run started where the readings want it there, in so many steps; one that forces lead
+        also where they want it in the end, as these forces were others before."""
+
+        def started(values: Mapping[str, float]) -> Evidence:
+            return likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start)
+
         problem = Problem(likelihood, names)
         values = problem.values(problem.inside(start))
-        here = likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start)
-        return fit(likelihood, names, values, here, **how)
+        found = fit(likelihood, names, values, started(values), **how)
+        return fit(likelihood, names, found.values, started(found.values), most=0) if self.factory.leads else found
 
     def with_noise_of(self, found: Fit, *, again: bool = False) -> Models | None:
         """The models with the noise that this fit's residuals show; None where it is no other than before. `again`: now that an

@@ -100,7 +100,7 @@ class Unexplained:
         return told + [f"{o.words[0].upper()}{o.words[1:]}." for o in self.orders]
 
     def as_json(self) -> dict[str, Any]:
-        """The key `disturbance`: standard deviations in N, N m and N s that the model needs in the end, and the time in s over
+        """The key `disturbance`: standard deviations in N, N m and N s that the model needs in the end, and the way in m over
         which the moment lasts, the same as `calibrated`, what orders them, and all in words."""
         in_the_end, calibrated = (_figures(s) for s in (self.after, self.before))
         return {**in_the_end, "calibrated": calibrated, "orders": [o.as_json() for o in self.orders], "words": self.words}

@@ -48,6 +48,11 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
     return tuple(group)
 
 
+def probable(r: Round, effect: str) -> bool:
+    """Is an effect, or one that this campaign cannot tell from it, likelier to be there than not, by a round that judges it?"""
+    return sum(r.beliefs[e].there for e in tied(r, effect)) > 0.5
+
+
 def beside(models: Models, effect: str, final: Model, before: Round | None, calibrated: float = 0.0) -> Round | None:
     """One effect of a `final` model searched for again, beside all the others. `before` is the round that found it, if that
     knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or where
