@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from tests.inference.linear import evidence, least_squares, noise, signals, values
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.interval import NORMAL, half_width, widened
 from wheelchair_fmu.inference.estimation.score import Projector, score
 from wheelchair_fmu.inference.estimation.unnamed import allowance
 from wheelchair_fmu.inference.policy import DEFAULT
+from wheelchair_fmu.inference.search import selection
 from wheelchair_fmu.quantities import KG, Parameter
 
 CALIBRATED, EFFECTS = ("a", "b"), ("drag", "offset", "gain")
@@ -93,3 +95,13 @@ def test_an_interval_is_widened_by_squares_and_within_bounds():
     lower, upper = widened((7.0, 14.0), 10.0, 4.0 / NORMAL, record)
     assert (lower, upper) == pytest.approx((6.5, 10 + np.hypot(4, 4)))
     assert widened((5.0, 14.0), 10.0, 0.0, record) == pytest.approx((6.5, 14.0))
+
+
+def test_a_model_with_as_many_effects_as_are_put_in_is_allowed_for_as_well(sample, monkeypatch):
+    """Nothing was searched beside it."""
+    usual = diagnose(sample)
+    monkeypatch.setattr(selection, "MOST_EFFECTS", 1)
+    found = diagnose(sample)
+    assert found.included == usual.included and not any(r.effects == found.included for r in found.rounds)
+    assert found.allowance == pytest.approx(usual.allowance, rel=0.05)
+    assert found.allowance["chair.m"] > 0.1

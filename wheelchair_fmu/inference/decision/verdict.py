@@ -222,7 +222,7 @@ def _diagnosed(
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
     heard = (*heard, *beginning.heard(in_time))
-    allowed = _allowance(models, rounds, found.effects)
+    allowed = _allowance(found)
     return Diagnosis(
         campaign=models.campaign.name,
         verdict=verdict,
@@ -293,17 +293,20 @@ def _notes(
     return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large)
 
 
-def _allowance(models: Models, rounds: Sequence[Round], effects: tuple[str, ...]) -> dict[str, float]:
+def _allowance(found: Selection) -> dict[str, float]:
     """By how much (a standard deviation, by name) the estimates of the last model may be off by causes that nobody named. Those
-    that a nuisance of the campaign stands for are allowed for by it."""
-    last = next((r for r in reversed(rounds) if r.effects == effects), None)
-    if last is None:
-        return {}
+    that a nuisance of the campaign stands for are allowed for by it. A model with as many effects as are put in was not
+    searched for more, so that it is screened for this."""
+    models, effects = found.models, found.effects
+    last = next((r for r in reversed(found.rounds) if r.effects == effects), None)
+    scores, names = (
+        (last.scores, last.fit.names) if last else ((s.score for s in screen(models, found.top)), found.top.fit.names)
+    )
     causes = {e: record.cause for e, record in models.factory.catalogue.items()}
     named = {causes[e] for e in effects}
-    others = [s for s in last.scores if causes[s.effect] not in named and s.effect not in models.doubles]
-    covariance = allowance(others, causes, len(last.fit.names), models.policy)
-    return dict(zip(last.fit.names, map(float, np.sqrt(np.diag(covariance))), strict=True))
+    others = [s for s in scores if causes[s.effect] not in named and s.effect not in models.doubles]
+    covariance = allowance(others, causes, len(names), models.policy)
+    return dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
 
 
 def _intervals(
