@@ -224,8 +224,8 @@ def test_cancelling_leaves_things_as_they_were(page: Any) -> None:
     page.click("#diagnose")
     page.wait_for_function("() => document.getElementById('job').textContent.includes('calibrating')", timeout=LONG)
     page.click("#cancel")
-    page.wait_for_function("() => workbench.state.job?.state === 'cancelled'")
-    assert "nothing was changed" in page.inner_text("#progress")
+    page.wait_for_function("() => workbench.state.job?.state === 'cancelled'", timeout=LONG)
+    page.wait_for_function("() => document.getElementById('progress').textContent.includes('nothing was changed')")
     assert page.is_enabled("#diagnose")
     assert page.is_hidden("#outcome")
 
