@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from wheelchair_fmu.inference.decision.verdict import Diagnosis
@@ -15,14 +17,15 @@ Counts = dict[str, tuple[int, int]]  # by channel, how many samples lie in their
 def inside(d: Diagnosis) -> Counts:
     """A band is as wide as noise, with forces that nobody recorded, and doubt of the fitted values have it."""
     found, likelihood = d.top, d.models.likelihood(d.included)
-    held = likelihood.evidence(d.models.campaign.holdout, found.values, tune_start=1).runs
-    covariance, moved = sandwich(found), []
+
+    def foretold(values: Mapping[str, float]) -> tuple[RunEvidence, ...]:
+        return likelihood.evidence(d.models.campaign.holdout, values, tune_start=1).runs
+
+    held, covariance, moved = foretold(found.values), sandwich(found), []
     for name, se in zip(found.names, np.sqrt(np.diag(covariance)), strict=True):
         record = likelihood.records[name]
         step = se if found.values[name] + se <= record.upper else -se
-        there = likelihood.evidence(
-            d.models.campaign.holdout, {**found.values, name: found.values[name] + step}, tune_start=1
-        ).runs
+        there = foretold({**found.values, name: found.values[name] + step})
         moved.append([(b.predicted - a.predicted) / step for a, b in zip(held, there, strict=True)])
     counts: Counts = {}
     for i, e in enumerate(held):

@@ -22,11 +22,10 @@ LONG = 500  # samples of a run: two blocks and a half
 SIZE = 0.8  # of what is there, or not
 
 
-def fitted(rng: np.random.Generator, true: np.ndarray, names: tuple[str, ...] = NAMES) -> Fit:
-    """Of few samples, so that much is left unknown."""
+def fitted(rng: np.random.Generator, true: np.ndarray) -> Fit:
+    """Of small signals, so that much is left unknown."""
     slopes = [0.05 * s for s in signals(rng, 1, LONG, len(true))]
-    read = [s @ true + noise(rng, (LONG, 1)) for s in slopes]
-    return least_squares(read, [s[:, :, : len(names)] for s in slopes], names)
+    return least_squares([s @ true + noise(rng, (LONG, 1)) for s in slopes], slopes, NAMES)
 
 
 def told(held: Evidence) -> float:
@@ -81,13 +80,13 @@ def test_a_value_that_no_fitted_run_shows_and_no_prior_knows_stays_where_it_is()
     unseen = np.diag([0.01, 0.01, 0.0])
     fewer = replace(found, names=NAMES[:2], covariance=unseen[:2, :2])
     assert told(foretold_by(replace(found, covariance=unseen), held, np.zeros(3))) == pytest.approx(
-        told(foretold_by(fewer, held, np.zeros(2)))
+        told(foretold_by(fewer, held.only(fewer.names), np.zeros(2)))
     )
 
 
 def test_what_a_fit_could_not_know_gives_a_held_out_gain_to_nobody():
     """A value of which fitted runs show little, and held-out runs much, is off by chance; something that is not there, and does
-    nearly the same there, makes up for it. By squares alone it would gain a hundred times what decisive odds are."""
+    nearly the same there, makes up for it. By squares alone it would gain or lose more than decisive odds."""
     rng = np.random.default_rng(5)
     gains, squares = [], []
     for _ in range(200):

@@ -140,9 +140,8 @@ def number(records: Mapping[str, Parameter], name: str, value: float | str) -> f
     try:
         result = float(value)
     except (TypeError, ValueError):
-        raise UsageError(
-            f"{name} = {value!r} is not a number; give a number{record.unit.behind and f' in{record.unit.behind}'}"
-        ) from None
+        wanted = f"a number in{record.unit.behind}" if record.unit.behind else "a number"
+        raise UsageError(f"{name} = {value!r} is not a number; give {wanted}") from None
     if not math.isfinite(result) or not record.lower <= result <= record.upper:
         raise UsageError(
             f"{name} = {value} is outside its bounds {record.lower:g} to "

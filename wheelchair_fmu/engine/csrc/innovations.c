@@ -457,8 +457,9 @@ static void compose_inputs(const wc_noise *s, long n, filter *f) {
         double gap = i + 1 < n ? s->time[i + 1] - s->time[i] : 0;
         for (int q = 0; q < both; q++) {
             f->input_sd[i * both + q] = q < nq ? at_row(s, n, i, q) : s->unknown_sd[i * s->nd + q - nq];
-            if (i + 1 < n)
-                f->input_phi[i * both + q] = q < nq ? over(s->push_ar[q], gap, s->push_step[q]) : exp(-gap / s->lasting[i * s->nd + q - nq]);
+            if (i + 1 == n) continue;
+            double keeps = q < nq ? over(s->push_ar[q], gap, s->push_step[q]) : exp(-gap / s->lasting[i * s->nd + q - nq]);
+            f->input_phi[i * both + q] = keeps;
         }
         for (int z = 0; i + 1 < n && z < s->nz; z++) f->phi[i * s->nz + z] = over(s->ar[z], gap, s->step[z]);
     }

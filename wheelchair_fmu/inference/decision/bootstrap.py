@@ -13,7 +13,7 @@ import numpy as np
 
 from ..estimation.fit import Fit
 from ..estimation.statistics import decisive, difference_blocks
-from ..evidence.evidence import Evidence, block_length
+from ..evidence.evidence import Evidence, blocks_of
 from ..search.rounds import Round
 from .verdict import Diagnosis
 
@@ -82,7 +82,7 @@ def _likelihood_blocks(one: Evidence, other: Evidence) -> np.ndarray:
     """Falls of −2 log likelihood from one model to another, by blocks; what filters differ in is spread over a run's."""
     out, at = difference_blocks(one, other), 0
     for a, b in zip(one.runs, other.runs, strict=True):
-        count = -(-len(a.r) // block_length(a.run))
+        count = len(blocks_of(a.run))
         out[at : at + count] += (a.whitener.logdet - b.whitener.logdet) / count
         at += count
     return out
@@ -108,9 +108,9 @@ def _normal_equations(evidence: Evidence) -> tuple[np.ndarray, np.ndarray]:
     """Sᵀ S (blocks, k, k) and Sᵀ r (blocks, k)."""
     G, g = [], []
     for e in evidence.runs:
-        S, r, length = np.where(np.isfinite(e.r)[:, :, None], e.S, 0), np.nan_to_num(e.r), block_length(e.run)
-        for i in range(0, len(r), length):
-            part = S[i : i + length].reshape(-1, S.shape[2])
+        S, r = np.where(np.isfinite(e.r)[:, :, None], e.S, 0), np.nan_to_num(e.r)
+        for rows in blocks_of(e.run):
+            part = S[rows].reshape(-1, S.shape[2])
             G.append(part.T @ part)
-            g.append(part.T @ r[i : i + length].ravel())
+            g.append(part.T @ r[rows].ravel())
     return np.array(G), np.array(g)

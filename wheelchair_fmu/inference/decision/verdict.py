@@ -299,12 +299,11 @@ def _allowance(found: Selection) -> dict[str, float]:
     searched for more, so that it is screened for this."""
     models, effects = found.models, found.effects
     last = next((r for r in reversed(found.rounds) if r.effects == effects), None)
-    scores, names = (
-        (last.scores, last.fit.names) if last else ((s.score for s in screen(models, found.top)), found.top.fit.names)
-    )
+    scores = last.scores if last else [s.score for s in screen(models, found.top)]
     causes = {e: record.cause for e, record in models.factory.catalogue.items()}
     named = {causes[e] for e in effects}
     others = [s for s in scores if causes[s.effect] not in named and s.effect not in models.doubles]
+    names = found.top.fit.names
     covariance = allowance(others, causes, len(names), models.policy)
     return dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
 

@@ -19,10 +19,11 @@ from .inverse import inverse
 
 
 def foretold_by(found: Fit, held: Evidence, prior: np.ndarray) -> Evidence:
-    """Held-out runs, of evidence with slopes by all that a fit estimated, with how likely each block of them was; without these
-    slopes, which are most of its memory. `prior` (k,) are inverse variances of what the fit took for unknown beforehand."""
+    """Held-out runs, whose evidence has slopes by what a fit estimated, in its order, with how likely each block of them was;
+    without these slopes, which are most of its memory. `prior` (k,) are inverse variances of what the fit took for unknown
+    beforehand."""
     root, moved, runs = _root(found, prior), np.zeros(len(found.names)), list[RunEvidence]()
-    for e in held.only(found.names).runs:
+    for e in held.runs:
         places, told = blocks_of(e.run), list[float]()
         for rows in places:
             good = np.isfinite(e.r[rows])
@@ -33,7 +34,7 @@ def foretold_by(found: Fit, held: Evidence, prior: np.ndarray) -> Evidence:
             step = root.T @ (S.T @ r)
             moved = moved + root @ step
             told.append(float(r @ r - step @ step) + 2 * float(np.log(np.diag(factor)).sum()))
-        foretelling = np.array(told) + e.whitener.logdet / max(1, len(places))  # what filters differ in is spread over a run
+        foretelling = np.array(told) + e.whitener.logdet / len(places)  # what filters differ in is spread over a run
         runs.append(replace(e, S=np.empty((*e.r.shape, 0)), foretelling=foretelling))
     return Evidence(tuple(runs), ())
 

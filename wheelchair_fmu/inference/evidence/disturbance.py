@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from scipy.optimize import minimize
 
-from ...campaign import moving, pace
+from ...campaign import moving
 from ...engine.innovations import Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
@@ -160,7 +160,7 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     """Forces as changes of the inputs that the filter of a run has noise for."""
     alone = pushes_of(e.run)
     inputs = alone if len(alone) == e.filter.whitener.recorded else pushes_of(e.run, led=True)
-    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run), speed=pace(e.run))
+    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run), speed=e.pace)
 
 
 def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:

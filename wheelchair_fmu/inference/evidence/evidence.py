@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...campaign import BY_NAME, Run
+from ...campaign import BY_NAME, Run, pace
 from ..parallel import parallel_map
 from .initial_state import starts_of, uncertain
 from .local import Marginal, read
@@ -74,6 +74,11 @@ class RunEvidence:
         none = np.empty((*self.r.shape, 0))
         brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)))
         return brief if self.driven is None else replace(brief, predicted=self.foretold, path=None, added=0.0, driven=None)
+
+    @cached_property
+    def pace(self) -> np.ndarray:
+        """Speed (n,) at which the chair rolls: `campaign.pace`, once for all strengths of forces that are tried."""
+        return pace(self.run)
 
     @property
     def misfit(self) -> float:
@@ -196,12 +201,7 @@ def followed(e: RunEvidence) -> np.ndarray:
     return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])
 
 
-def block_length(run: Run) -> int:
-    """Samples in a block."""
-    return max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
-
-
 def blocks_of(run: Run) -> list[slice]:
     """Where each block of a run is; the last is what is left."""
-    length = block_length(run)
+    length = max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
     return [slice(i, i + length) for i in range(0, len(run.time), length)]

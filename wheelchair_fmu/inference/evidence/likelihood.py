@@ -143,7 +143,7 @@ class Likelihood:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
         for a start that is off; errors, of a simulation that knows no reading, do not."""
         if self.leads:
-            return evidence  # which starts where forces and readings together have it
+            return evidence  # forces make up for a start that is off, until a model is settled
 
         def one(e: RunEvidence) -> RunEvidence:
             try:
