@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from wheelchair_fmu.campaign import moving, sets_off
+from wheelchair_fmu.campaign import moving, pace, sets_off
 
 from .test_condensed import a_campaign, a_run
 
@@ -54,3 +55,20 @@ def test_what_never_rolls_for_long_and_what_tells_no_speed_stays_whole():
     still, mute = the_run((3.0, 4.5)), the_run((3.0, 15.0))
     mute = replace(mute, channels={"yaw_rate": mute.channels["wheel_speed_l"]})
     assert moving(a_campaign(still, mute)).runs == (still, mute)
+
+
+@pytest.mark.parametrize("speed", [0.4, 1.7])
+def test_places_tell_how_fast_a_chair_rolls_where_its_wheels_do_not(speed):
+    """On a circle of 2 m, by a marker that is 2 mm off at each moment, with some of its moments lost."""
+    run, random = the_run((3.0, 15.0)), np.random.default_rng(4)
+    seen = random.uniform(size=len(run.time)) < 0.6
+    at = {"x": 2.0 * np.sin(speed * run.time / 2.0), "y": -2.0 * np.cos(speed * run.time / 2.0)}
+    at = {name: np.where(seen, where + random.normal(0, 0.002, len(where)), np.nan) for name, where in at.items()}
+    assert np.allclose(pace(replace(run, channels=at)), speed, rtol=0.03, atol=0.01)
+
+
+def test_a_chair_that_stands_by_its_places_or_tells_nothing_has_a_pace_still():
+    run = the_run((3.0, 15.0))
+    stands = replace(run, channels=dict.fromkeys("xy", np.zeros(len(run.time))))
+    nothing = replace(run, channels={"yaw_rate": run.channels["wheel_speed_l"]})
+    assert np.all(pace(stands) == 0.1) and np.all(pace(nothing) == 1.0)

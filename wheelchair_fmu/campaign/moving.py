@@ -20,6 +20,7 @@ ROLLS, STANDS = 0.2, 0.1  # m/s: a chair rolls from the former on until it is sl
 STILL = 0.05  # m/s: one that is slower stands, but for its sensors' noise
 WALK = 1.0  # m/s
 SMOOTH = 0.1  # s over which a speed is taken
+APART = 0.5  # s between places that tell one: a marker's 2 mm are then 6 mm/s
 LEAST = 2.0  # s: what rolls for less is left out
 SPEEDS = ("wheel_speed_l", "wheel_speed_r", "u")
 
@@ -31,9 +32,11 @@ def moving(campaign: Campaign) -> Campaign:
 
 
 def pace(run: Run) -> np.ndarray:
-    """Speed (n,) in m/s at which a run's chair rolls, at least as fast as one that is about to stand; of one that tells no
-    speed, a usual walk's."""
+    """Speed (n,) in m/s at which a run's chair rolls, by its wheels or else by its places, at least as fast as one that is
+    about to stand; of one that tells neither, a usual walk's."""
     speed = _speed(run)
+    if speed is None:
+        speed = _between_places(run)
     return np.full(len(run.time), WALK) if speed is None else np.maximum(speed, STANDS)
 
 
@@ -73,6 +76,20 @@ def _speed(run: Run) -> np.ndarray | None:
         if good.sum() > 1:
             found.append(np.abs(_smooth(run.time, run.time[good], run.channels[name][good])))
     return np.max(found, axis=0) if found else None
+
+
+def _between_places(run: Run) -> np.ndarray | None:
+    """The chair's speed (n,) by how far apart it is a moment before and after each time."""
+    if not {"x", "y"} <= set(run.channels):
+        return None
+    x, y = run.channels["x"], run.channels["y"]
+    good = np.isfinite(x) & np.isfinite(y)
+    if good.sum() < 2:
+        return None
+    time = run.time[good]
+    ends = [np.clip(run.time + side * APART / 2, time[0], time[-1]) for side in (-1, 1)]
+    took, *way = (np.subtract(*(_smooth(end, time, c) for end in reversed(ends))) for c in (time, x[good], y[good]))
+    return np.divide(np.hypot(*way), took, out=np.zeros_like(took), where=took > 0)
 
 
 def _smooth(at: np.ndarray, time: np.ndarray, values: np.ndarray) -> np.ndarray:
