@@ -30,7 +30,7 @@ LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
-NEARBY = 1e-3  # and share of a strength over which its slope is taken
+NEARBY = 1e-5  # and share of a strength over which its slope is taken: over more, a minimum's slope is not 0
 ROUNDS = 5  # in which a path and a strength are found, at most,
 CLOSE = 0.1  # of a strength, by which the last one may differ
 
