@@ -19,6 +19,13 @@ def test_usual_units_are_those_of_pint(text, si, monkeypatch):
     assert known == pytest.approx(by_pint, rel=1e-15)
 
 
+@pytest.mark.parametrize("text", list(units.BY_KG_M_S))
+def test_coherent_units_are_those_of_pint(text, monkeypatch):
+    known = units.coherent.__wrapped__(text)
+    monkeypatch.setattr(units, "BY_KG_M_S", {})
+    assert known == pytest.approx(units.coherent.__wrapped__(text), rel=1e-15)
+
+
 def test_dimensions_are_those_of_pint(monkeypatch):
     names = [si for text, si in units.SI_OF.items() if text == si]
     by_hand = {(text, si): units.same_dimension(text, si) for text in units.SI_OF for si in names}

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from importlib.resources import files
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 from unicodedata import bidirectional, category
 
-from fontTools.subset import Options, Subsetter
-from fontTools.ttLib import TTFont
+if TYPE_CHECKING:  # fontTools takes a fifth of a second to load
+    from fontTools.ttLib import TTFont
 
 VENDOR = files(__package__) / "page" / "vendor"
 WRITERS = ("jspdf-4.2.1.umd.min.js", "svg2pdf-2.8.1.umd.min.js")  # github.com/parallax/jsPDF and yWorks/svg2pdf.js, both MIT
@@ -32,6 +33,8 @@ def press(texts: Iterable[str]) -> dict[str, object]:
 
 def subset(style: str, letters: Iterable[str]) -> bytes:
     """A face of DejaVu Sans with these letters alone, as TrueType; the same letters give the same bytes."""
+    from fontTools.subset import Options, Subsetter
+
     options = Options()
     options.hinting = False
     options.name_IDs = [0, 1, 2, 4, 6, 13, 14]  # names, copyright and licence
@@ -55,6 +58,7 @@ def _joins(letter: str) -> bool:
 
 def _face(style: str) -> TTFont:
     import matplotlib  # here, not above: see `canvas`
+    from fontTools.ttLib import TTFont
 
     return TTFont(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / FACES[style], recalcTimestamp=False)
 

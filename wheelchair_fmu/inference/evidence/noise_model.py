@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag
-from scipy.signal import lfilter
+from scipy.linalg import block_diag, solve_banded
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
@@ -185,7 +184,8 @@ def effort(run: Run) -> np.ndarray:
     grid = np.arange(run.time[0], run.time[-1] + GRID, GRID)
     squares = np.interp(grid, run.time, _both(run) ** 2)
     keeps = np.exp(-2 * GRID / DIES_OUT)
-    after, before = (lfilter([1 - keeps], [1, -keeps], squares[::way])[::way] for way in (1, -1))
+    recursion = [np.ones(len(grid)), np.full(len(grid), -keeps)]  # y(i) − keeps y(i−1)
+    after, before = ((1 - keeps) * solve_banded((1, 0), recursion, squares[::way])[::way] for way in (1, -1))
     return np.sqrt(np.interp(run.time, grid, (after + before) / 2))
 
 
