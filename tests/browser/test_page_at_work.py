@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -414,7 +415,23 @@ def test_where_nothing_is_missing_the_largest_error_is_shown_until_one_is_put_in
         Object.keys(run.channels).map((c) => ({rise})(i, c) / report.opened[i].counts[c])))""")
     here = f"({rise})(report.shown.run, report.shown.channel) / report.opened[report.shown.run].counts[report.shown.channel]"
     assert reader.page.evaluate(here) == most > 0
+    parted = reader.page.evaluate("report.shown")
+    reader.page.click(".tab >> nth=0")  # which tells of the largest error still
+    assert reader.page.evaluate(shown) == reader.page.evaluate(f"({errors})(report.opened)")
+    reader.page.click(".tab >> nth=2")
+    assert reader.page.evaluate("report.shown") == parted != reader.page.evaluate("report.left")
     reader.close()
+
+
+def test_a_calibrated_value_is_marked_where_it_was_fitted_with_what_is_in(reader):
+    """Before an effect is in, and with it."""
+    mark = "document.getElementById('slider-resistance.f_r-help').textContent"
+    fitted = lambda step: next(m["values"] for m in TOLD["models"] if m["step"] == step)["resistance.f_r"]  # noqa: E731
+    told = lambda: float(re.search(r"fitted ([\d.]+)", reader.page.evaluate(mark))[1])  # noqa: E731
+    assert told() == pytest.approx(fitted("calibrated"), rel=5e-3)
+    reader.page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    assert told() == pytest.approx(fitted(f"+{HIDDEN}"), rel=5e-3) != fitted("calibrated")
 
 
 def test_a_curve_of_a_size_ends_where_it_is_beyond_what_is_drawn(open_report):

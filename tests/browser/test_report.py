@@ -147,7 +147,9 @@ def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browse
         assert table[e.run.name] == pytest.approx(e.rms, rel=1e-7), e.run.name
         found = reader.page.evaluate("i => [report.results[i].start, report.results[i].sd.a_y[50]]", i)
         assert found[0] == pytest.approx(e.started, abs=1e-7)
-        assert found[1] == pytest.approx(1 / e.whitener.spread[50, e.channels.index("a_y")], rel=1e-9)
+        assert found[1] == pytest.approx(
+            1 / e.whitener.spread[50, e.channels.index("a_y")], rel=1e-8
+        )  # each browser has an exp of its own
     quickly = "values => report.pool.later({run: 9, values, exact: false}).then(r => [...r.predicted.yaw_rate])"
     again = reader.page.evaluate(quickly, values)
     assert again == pytest.approx(expected.runs[9].predicted[:, expected.runs[9].channels.index("yaw_rate")], abs=1e-5)

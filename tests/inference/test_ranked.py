@@ -148,7 +148,7 @@ def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     assert _instead_of_small(r) == ()
     near = replace(large, drop=98.0)
     (said,) = _instead_of_small(replace(r, candidates=tuple(ranked([slight, near]))))
-    assert said.startswith("b would do as well, and would not be small: 3.0 times what is of interest; the odds are ")
+    assert said.words.startswith("b would do as well, and would not be small: 3.0 times what is of interest; the odds are ")
 
 
 def test_what_is_found_is_there_as_often_as_it_says():

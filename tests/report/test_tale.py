@@ -12,11 +12,12 @@ from wheelchair_fmu.campaign import CHANNELS
 from wheelchair_fmu.inference.decision.verdict import FORCES
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
+from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.advice import INSPECT, inspect
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, exceeds, near_rivals
-from wheelchair_fmu.report.words import headline, in_full
+from wheelchair_fmu.report.words import headline, in_full, probability_words
 
 EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
@@ -59,8 +60,8 @@ def test_what_forces_brought_down_is_not_told_as_the_work_of_an_effect():
     """From 1.68 to 0.92 the error came by forces among the noise, and no further by an effect too small to matter."""
     story = tale(CASES["small, left out"])
     said = " ".join(texts([*story.cards, *story.screens]))
-    assert "falls" not in said and "is 0.92 times what noise alone gives, and hardly changes with it" in said
-    assert "Without them the calibrated model misses the sensors by 1.68 times" in story.cards[1]["lines"][-1]
+    assert "falls" not in said and "is 0.92 times what noise alone gives, and to put it in hardly changes that" in said
+    assert "Without them the calibrated model is off by 1.68 times" in story.cards[1]["lines"][-1]
     assert story.screens[2]["title"] == "Put it in: hardly anything changes"
     assert "falls from 0.92 to 0.80" in tale(CASES["with forces"]).cards[1]["lines"][0]
 
@@ -114,7 +115,7 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     what, sure, do = tale(CASES["missing"]).cards
     assert what["lead"] == "One rear wheel that rolls harder than the other"
     assert what["lines"][-1] == "That is 4 times the size that would matter, 0.4 N."
-    assert sure["lead"] == "99.6 % that it is large enough to matter"
+    assert sure["lead"] == "A chance of 99.6 % that it is large enough to matter"
     before, after = (CASES["missing"]["ladder"][i]["heldout"] for i in (1, -1))
     assert f"from {before:.2f} to {after:.2f}" in sure["lines"][0]
     assert do["lead"] == "Lift the rear and spin both wheels: one stops sooner."
@@ -124,7 +125,7 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
 def test_what_is_small_is_told_by_how_sure_it_is_that_it_is_small():
     small = [{**r, "probability": 0.03} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     sure = tale(told("small", [DRAG], ranking=small)).cards[1]
-    assert sure["lead"] == "97 % that it is too small to matter"
+    assert sure["lead"] == "A chance of 97 % that it is too small to matter"
 
 
 def test_an_adequate_model_explains_what_it_leaves_only_where_that_is_noise():
@@ -176,17 +177,17 @@ def test_two_effects_are_a_list_and_a_tie_shows_both_sizes():
         "One rear wheel that rolls harder than the other",
         "Rear wheels that lean",
     ]
-    assert "Which: not yet" in tie[1]["lead"]
+    assert "which one, these runs do not say" in tie[1]["lead"]
 
 
 def test_small_effects_that_these_runs_cannot_tell_apart_are_one():
     two = tale(told("small", [DRAG, LEAN], ladder=[*SAMPLE["ladder"][:2], LED])).cards
     assert two[0]["lead"] == "One of two causes" and len(two[0]["lines"]) == 2
-    assert "That one of them is there at all is more likely than 95 %" in two[1]["lines"][0]
+    assert "The chance that one of them is there at all is above 95 %" in two[1]["lines"][0]
     bars = tale(told("small", [DRAG, LEAN], ladder=[*SAMPLE["ladder"][:2], LED])).screens[3]["bars"]
     assert "all that was found together" not in [b["title"] for b in bars]  # nothing was put in
     one = tale(CASES["small, left out"]).cards[1]["lines"]
-    assert one[0] == ("That it is there at all is more likely than 95 %, by the fitted runs and those kept back together.")
+    assert one[0] == "The chance that it is there at all is above 95 %, by the fitted runs and those kept back together."
 
 
 def test_an_effect_that_was_tried_beside_others_is_no_rival_of_theirs():
@@ -245,6 +246,44 @@ def test_where_nothing_was_found_one_guesses_what_these_runs_would_show():
     assert all(("would have shown it" in c["answer"]) == c["right"] for c in choices)
 
 
+def test_where_these_runs_cannot_see_what_they_could_not_show_is_named():
+    rows = [{**r, "power": 0.05 + 0.1 * i} if i < 3 else {**r, "power": 1.0} for i, r in enumerate(SAMPLE["ranking"])]
+    rivals = tale(told("cannot_see", ranking=rows)).screens[3]
+    hidden, said = [TITLES[r["effect"]] for r in rows[:3]], rivals["lines"][1].lower()
+    assert rivals["title"] == "What these runs could not show" and rivals["bars"] == []
+    assert all(title.lower() in said for title in hidden) and "(5 %)" in said
+    assert not any(TITLES[r["effect"]].lower() in said for r in rows[3:])
+
+
+def test_an_effect_whose_size_is_left_open_is_not_said_to_be_smaller():
+    """These runs would have shown it, and yet its interval goes beyond the smallest size that matters."""
+    wide = {r["effect"]: {**r, "power": 1.0} for r in SAMPLE["ranking"]}
+    first = next(e for e, r in wide.items() if len(r["parameters"]) == 1)
+    ((name, v),) = wide[first]["parameters"].items()
+    wide[first]["parameters"] = {name: {**v, "estimate": 0.6 * v["smallest_interesting"], "se": v["smallest_interesting"]}}
+    order = sorted(wide.values(), key=lambda r: r["effect"] != first)
+    answers = {c["effect"]: c for c in tale(told("adequate", ranking=order)).screens[1]["choices"]}
+    assert "leave open" in answers[first]["answer"] and not answers[first]["right"]
+
+
+def test_what_is_small_may_be_something_else_that_is_large():
+    """With odds of 4 to 1 against that, the chance that it is small is four fifths of what it would be."""
+    found = tale(told("small", [DRAG], larger=[{"effect": LEAN, "times": 1.1, "odds_against": 4.0}])).cards[1]
+    alone = tale(told("small", [DRAG])).cards[1]
+    assert "1.1 times the size that would matter" in " ".join(found["lines"]) and "4 to 1 against" in " ".join(found["lines"])
+    chance = 1 - exceeds(next(r for r in SAMPLE["ranking"] if r["effect"] == DRAG))
+    assert probability_words(0.8 * chance) in found["lead"] and found["lead"] != alone["lead"]
+
+
+def test_a_value_that_came_out_as_nobody_would_measure_it_is_a_doubt_on_the_card():
+    bent = {"chair.a": {**SAMPLE["calibration"]["chair.a"], "value": 0.21, "prior": 0.25, "prior_sd": 0.01, "beyond": True}}
+    records = RECORDS | {p.name: p for p in Variant().parameters()}
+    doubted = story_of(told("missing", [DRAG], calibration=bent), TITLES, records, UNITS).cards[1]["lines"]
+    (doubt,) = (line for line in doubted if line.startswith("One doubt: the "))
+    assert "0.21 m" in doubt and "0.250 ± 0.010 m was given" in doubt
+    assert not any("doubt" in line for line in tale(CASES["missing"]).cards[1]["lines"])
+
+
 def test_a_tie_says_what_tells_the_two_apart():
     following = {"manoeuvre": "a slalom at 1 m/s", "separates": [DRAG, LEAN], "repeats": 2, "why": ""}
     do = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], next_experiment=following)).cards[2]
@@ -258,7 +297,7 @@ def test_a_rival_that_does_nearly_as_well_is_named():
     assert any("nearly as well" in line for line in tale(CASES["missing"]).cards[1]["lines"])
     poor = [{**r, "lr": r["lr"] / (1 if r["effect"] == DRAG else 5)} for r in SAMPLE["ranking"]]
     alone = tale(told("missing", [DRAG], ranking=poor)).cards[1]["lines"]
-    assert alone[-1] == "No other effect in the catalogue explains these runs as well."
+    assert alone[-1] == "No other effect in the catalogue explains these runs equally well."
 
 
 @pytest.mark.parametrize(
@@ -293,7 +332,7 @@ def test_the_right_guess_is_among_the_choices_and_the_rest_are_not_right():
 
 def test_effects_that_were_put_in_at_once_are_told_as_one():
     story = tale(CASES["together"])
-    assert "These were put in at once, as one acts through the other." in story.cards[0]["lines"]
+    assert "These were put in together, as one acts through the other." in story.cards[0]["lines"]
     guess, rivals = (next(s for s in story.screens if s["kind"] == kind) for kind in ("guess", "rivals"))
     answers = [c["answer"] for c in guess["choices"] if c["right"]]
     assert len(answers) == 2 and all("together with" in answer for answer in answers)
@@ -308,7 +347,7 @@ def test_bars_of_several_sizes_are_in_the_order_of_the_sentences():
     """What is sure comes before what is tied, as it does in the sentences."""
     tie = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]])).cards[0]["gauge"]
     sizes = {e: Told(SAMPLE, TITLES, RECORDS).multiple(e) for e in (DRAG, LEAN, "toe_misalignment")}
-    assert tie["bars"] == [("first", sizes[DRAG]), ("second", sizes[LEAN])]
+    assert tie["bars"] == [("first 4×", sizes[DRAG]), ("second 12×", sizes[LEAN])]
     beside = tale(told("tie", [DRAG, LEAN, "toe_misalignment"], [[DRAG, LEAN]])).cards[0]
     assert [length for _, length in beside["gauge"]["bars"]] == [sizes[e] for e in ("toe_misalignment", DRAG, LEAN)]
     assert beside["lines"][0].startswith("Rear wheels that do not point")
@@ -316,8 +355,8 @@ def test_bars_of_several_sizes_are_in_the_order_of_the_sentences():
 
 def test_bars_show_the_size_and_the_fall_where_there_are_any():
     what, sure, do = tale(CASES["missing"]).cards
-    assert what["gauge"]["bars"] == [("size", pytest.approx(4.0, abs=0.05))] and what["gauge"]["mark"] == 1.0
-    assert [label for label, _ in sure["gauge"]["bars"]] == ["before", "after"] and "gauge" not in do
+    assert what["gauge"]["bars"] == [("size 4×", pytest.approx(4.0, abs=0.05))] and what["gauge"]["mark"] == 1.0
+    assert [label.split()[0] for label, _ in sure["gauge"]["bars"]] == ["before", "after"] and "gauge" not in do
     assert cards_html([what]).count("<u ") == 1 and cards_html([sure]).count("<u ") == 2
     assert "gauge" not in tale(CASES["adequate"]).cards[0] and "gauge" not in tale(CASES["no fall"]).cards[1]
 

@@ -12,10 +12,12 @@ from .told import (
     Told,
     actions,
     capital,
+    doubts,
     exceeds,
     fall_words,
     forces_words,
     it,
+    larger_words,
     number,
     odds_words,
     rival_words,
@@ -52,12 +54,18 @@ def _size_gauge(t: Told) -> dict[str, Any]:
     groups = grouped(t.found, t.diagnosis["ties"]) if t.verdict == "tie" else [(e,) for e in t.found]
     each = [e for group in sorted(groups, key=lambda group: len(group) > 1) for e in group]
     labels = ORDER if len(each) > 1 else ("size",)
-    return {"gauge": {"bars": [(label, t.multiple(e)) for label, e in zip(labels, each, strict=False)], **MATTERS}}
+    bars = [
+        (f"{label} {times_words(size).removesuffix(' times')}×", size)
+        for label, e in zip(labels, each, strict=False)
+        for size in [t.multiple(e)]
+    ]
+    return {"gauge": {"bars": bars, **MATTERS}}
 
 
 def _fall_gauge(t: Told) -> dict[str, Any]:
     before, after = t.fall
-    return {"gauge": {"bars": [("before", before), ("after", after)], "mark": 1.0, "words": "noise alone"}} if t.falls else {}
+    bars = [(f"{when} {error:.2f}", error) for when, error in (("before", before), ("after", after))]
+    return {"gauge": {"bars": bars, "mark": 1.0, "words": "noise alone"}} if t.falls else {}
 
 
 def _what(t: Told) -> tuple[str, list[str]]:
@@ -124,15 +132,28 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         else:
             together = [fall]
         among = f"the other {number(len(t.tied)).lower()}" if set(t.found) - set(t.tied) else "them"
-        return f"That one of {among} is there: yes. Which: not yet", [*together, *odds_words(t), *forces]
+        return f"One of {among} is there; which one, these runs do not say", [*together, *odds_words(t), *doubts(t), *forces]
     if t.verdict in ("missing", "small") and t.found:
-        large, what = [exceeds(t.rows[e]) for e in t.found], "all are" if it(t) == "them" else "it is"
-        sure, size = (1 - max(large), "too small") if t.verdict == "small" else (min(large), "large enough")
-        return f"{capital(probability_words(sure))} that {what} {size} to matter", [*there_words(t), fall, *rivals, *forces]
+        large, several = [exceeds(t.rows[e]) for e in t.found], "both are" if len(t.found) == 2 else "all are"
+        what = several if it(t) == "them" else "it is"
+        sure, size = (_small(t, max(large)), "too small") if t.verdict == "small" else (min(large), "large enough")
+        return f"A chance of {probability_words(sure)} that {what} {size} to matter", [
+            *there_words(t),
+            *larger_words(t),
+            fall,
+            *rivals,
+            *doubts(t),
+            *forces,
+        ]
     if t.verdict == "outside":
         return "Sure that something is there, less so what", [fall, *rivals, *forces]
     lead, explained = _would_be_seen(t)
     return lead, [explained, fall, *forces]
+
+
+def _small(t: Told, large: float) -> float:
+    """The chance that what is there is small: that what was found is not large, and that it is nothing else, which would be."""
+    return (1 - large) / (1 + sum(1 / other["odds_against"] for other in t.diagnosis.get("larger") or ()))
 
 
 def _would_be_seen(t: Told) -> tuple[str, str]:
@@ -148,5 +169,7 @@ def _would_be_seen(t: Told) -> tuple[str, str]:
         return f"{many} would have been seen" if adequate else f"Only {many} could have been seen", counted
     causes = f"{share:.0%} of all causes".replace("%", " %")
     lead = f"{causes} would have been seen" if adequate else f"Only {causes} could have been seen"
-    apart = "Effects of one cause count as one, and what a mass or a size given a little wrong would do as well counts as seen."
+    apart = (
+        "Effects of one cause count as one, and one counts as seen that a mass or a size given a little wrong could imitate."
+    )
     return lead, f"{counted} {apart}"

@@ -54,4 +54,4 @@ def marked(line: str) -> str:
 
 
 def _typed(command: re.Match[str]) -> str:
-    return f"<code>{command[1].replace('_', '_<wbr>')}</code>"
+    return f"<code>{command[1]}</code>"

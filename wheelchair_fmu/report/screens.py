@@ -10,6 +10,7 @@ from typing import Any
 
 from ..inference.policy import DEFAULT
 from .told import (
+    SURE,
     Told,
     actions,
     capital,
@@ -49,17 +50,17 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
         return {
             "title": "Here the model errs, a little",
             "lines": [
-                "Over all that was recorded, the calibrated model misses the sensors by hardly more than their noise.",
+                "Over all that was recorded, the calibrated model is off by hardly more than the noise of the sensors.",
                 "In some runs and channels it misses more: below the curves, the mean error over half a second shows where.",
                 *forces_words(t),
             ],
         }
     how = f"{before:.2f} times" if before < 10 else f"{before:.0f} times"
-    lines = [f"On {t.runs}, the calibrated model misses the sensors by {how} what their noise alone would."]
+    lines = [f"On {t.runs}, the calibrated model is off by {how} what the noise of the sensors gives."]
     if calm:
         return {
-            "title": "Here the model errs most, and it is next to nothing",
-            "lines": [*lines, "What remains looks like noise.", *forces_words(t)],
+            "title": "Where the model errs most, the error is next to nothing",
+            "lines": [*lines, f"What remains {'is hardly more than' if t.found else 'looks like'} noise.", *forces_words(t)],
         }
     return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part.", *forces_words(t)]}
 
@@ -82,9 +83,18 @@ def choices(t: Told) -> list[dict[str, Any]]:
     right = set(t.found)
     offered = [*t.found[: CHOICES + 1], *others[:CHOICES]]
     if t.verdict in ("adequate", "cannot_see"):  # what these runs would show, and what not
-        right = {e for e in others if t.rows[e]["power"] >= DEFAULT.power}
+        right = {e for e in others if t.rows[e]["power"] >= DEFAULT.power and _below(t.rows[e])}
         offered = [*[e for e in others if e in right][:2], *[e for e in others if e not in right][:2]]
-    guesses = ({"effect": e, "title": t.title(e), "right": e in right, "answer": _answer(t, e)} for e in offered)
+    guesses = (
+        {
+            "effect": e,
+            "title": t.title(e),
+            "right": e in right,
+            "answer": _answer(t, e),
+            "beside": e in others and not t.alone(e),
+        }
+        for e in offered
+    )
     return sorted(guesses, key=lambda guess: str(guess["title"]))
 
 
@@ -93,16 +103,17 @@ def _answer(t: Told, effect: str) -> str:
     if t.slight and effect in t.found:
         return f"Yes, at {multiple_words(t, effect)} the size that would matter."
     if t.verdict in ("adequate", "cannot_see"):
+        if row["power"] >= DEFAULT.power and not _below(row):
+            return "At the smallest size that matters it would have shown; but how large it is, these runs leave open."
         if row["power"] >= DEFAULT.power:
             return "These runs would have shown it at the smallest size that matters: it is not there, or smaller than that."
-        chance = f"{row['power']:.0%}".replace("%", " %")
-        return f"At the smallest size that matters, these runs would show it with a chance of {chance} only."
+        return f"At the smallest size that matters, these runs would show it with a chance of {_per_cent(row['power'])} only."
     if effect in t.slightly_in:
         return (
             f"It is in the model, at {multiple_words(t, effect)} the size that would matter: too little to be what is missing."
         )
     comes = t.error(effect)
-    error = "" if comes is None else f" The error comes to {comes:.2f}{_with(t, effect)}."
+    error = "" if comes is None else f" {_moves(t, comes)}{_with(t, effect)}."
     if effect in t.found:
         tied = t.verdict == "tie" and effect in t.tied
         if t.verdict == "outside":
@@ -125,6 +136,18 @@ def _answer(t: Told, effect: str) -> str:
     if comes < t.fall[1] + STILL:
         return f"Close, but over all moments these runs are explained less well by it.{error}"
     return f"It helps, but not enough.{error}"
+
+
+def _below(row: Mapping[str, Any]) -> bool:
+    """Is each size of an effect surely smaller than what would matter, as far as it is known?"""
+    known = [v for v in row["parameters"].values() if v["se"] and v["smallest_interesting"]]
+    return all(abs(v["estimate"]) + SURE * v["se"] < v["smallest_interesting"] for v in known)
+
+
+def _moves(t: Told, comes: float) -> str:
+    """What an effect does to the error."""
+    before = t.fall[0]
+    return f"The error goes from {before:.2f} to {comes:.2f}" if before - comes > STILL else f"The error comes to {comes:.2f}"
 
 
 def _with(t: Told, effect: str) -> str:
@@ -269,17 +292,37 @@ def _rivals(t: Told) -> dict[str, Any]:
                 *_bent(t),
             ],
         )
+    elif t.verdict == "cannot_see":
+        title, lines = "What these runs could not show", _unseen(t)
     elif len(bars(t)) > 1:
         title, lines = (
             "Why nothing else",
-            ["This is the error that each leaves when it is put in: none is better than the model without."],
+            ["This is the error that each leaves when it is put in: none brings it down by more than chance would."],
         )
     else:
         title, lines = (
             "Why nothing else",
             ["Every effect of the catalogue was held against what the model leaves over.", _nothing(t)],
         )
-    return {"title": title, "lines": lines, "bars": bars(t)}
+    return {"title": title, "lines": lines, "bars": [] if t.verdict == "cannot_see" else bars(t)}
+
+
+def _unseen(t: Told) -> list[str]:
+    """Effects that could be large and hide, the least visible first, with the chance that these runs would have shown each."""
+    hidden = sorted(
+        (r for r in t.rows.values() if r["power"] < DEFAULT.power and r["effect"] in t.titles), key=lambda r: r["power"]
+    )
+    named = [f"{t.title(r['effect'])} ({_per_cent(r['power'])})" for r in hidden[:TRIED]]
+    more = [f"{number(len(hidden) - TRIED).lower()} more"] if len(hidden) > TRIED else []
+    return [
+        "At the smallest size that matters, each of these could be there and not show. In brackets stands the chance that "
+        "these runs would have shown it.",
+        f"{capital(listed([*named, *more], 'and'))}.",
+    ]
+
+
+def _per_cent(share: float) -> str:
+    return f"{share:.0%}".replace("%", " %")
 
 
 def _nothing(t: Told) -> str:

@@ -75,7 +75,7 @@ class Told:
 
     @property
     def together(self) -> list[list[str]]:
-        """Of what was found, effects that were put in at once, as one acts through the other."""
+        """Of what was found, effects that were put in together, as one acts through the other."""
         groups = [[e for e in self.found if e in g["effects"]] for g in self.diagnosis.get("groups") or () if g["found"]]
         return [group for n, group in enumerate(groups) if len(group) > 1 and group not in groups[:n]]
 
@@ -156,7 +156,7 @@ def fall_words(t: Told) -> str:
     before, after = t.fall
     if abs(before - after) < STILL:
         unmoved = "" if t.verdict in ("adequate", "cannot_see") else ", before and after"  # nothing was put in
-        where = f", and hardly changes with {it(t)}" if t.slight else unmoved
+        where = f", and to put {it(t)} in hardly changes that" if t.slight else unmoved
         if t.found and not t.slight:
             told = [f"{error:.2f}" for error in t.fall]
             moves = f"is {told[1]}" if told[0] == told[1] else f"hardly changes, from {' to '.join(told)}"
@@ -174,7 +174,7 @@ def forces_words(t: Told) -> list[str]:
         return []
     return [
         "Forces that nobody recorded, of an uneven floor or of a body that swings, count as noise here. "
-        f"Without them the calibrated model misses the sensors by {without:.{2 if without < 10 else 0}f} times their noise."
+        f"Without them the calibrated model is off by {without:.{2 if without < 10 else 0}f} times the noise of the sensors."
     ]
 
 
@@ -189,14 +189,24 @@ def there_words(t: Told) -> list[str]:
         return []
     by = "the fitted runs and those kept back together" if t.key == "heldout" else "the fitted runs"
     which = "it is" if len(t.found) == 1 else "one of them is"
-    return [f"That {which} there at all is more likely than {DEFAULT.sure:.0%}, by {by}.".replace("%", " %")]
+    return [f"The chance that {which} there at all is above {DEFAULT.sure:.0%}, by {by}.".replace("%", " %")]
+
+
+def larger_words(t: Told) -> list[str]:
+    """What would be large instead of what is small."""
+    return [
+        f"If it is {t.title(other['effect'])} instead, which has odds of {other['odds_against']:.0f} to 1 against it, that is "
+        f"{times_words(other['times'])} the size that would matter."
+        for other in t.diagnosis.get("larger") or ()
+        if other["effect"] in t.titles
+    ]
 
 
 def together_words(t: Told) -> list[str]:
     """Which of what was found act only together."""
     every = len(t.together) == 1 and len(t.together[0]) == len(t.found)
     names = ["these" if every else listed([t.title(e) for e in group], "and") for group in t.together]
-    return [f"{capital(name)} were put in at once, as one acts through the other." for name in names]
+    return [f"{capital(name)} were put in together, as one acts through the other." for name in names]
 
 
 def near_rivals(t: Told) -> list[Mapping[str, Any]]:
@@ -218,8 +228,20 @@ def odds_words(t: Told) -> list[str]:
     said = []
     for odds in t.diagnosis.get("odds") or ():
         shares = listed([f"{probability_words(p)} for {t.title(e)}" for e, p in odds.items()], "and")
-        said.append(f"If it is one of these, the chance is {shares}: to say which takes more than a hundred to one.")
+        said.append(
+            f"If it is one of these, the chance is {shares}. To name one of them would take odds of more than a hundred to one."
+        )
     return said or ["These runs do not tell them apart."]
+
+
+def doubts(t: Told) -> list[str]:
+    """Calibrated values that came out as nobody would measure them, beside which a size is less sure than it seems."""
+    bent = {name: v for name, v in (t.diagnosis.get("calibration") or {}).items() if v.get("beyond") and name in t.records}
+    return [
+        f"One doubt: the {t.records[name].meaning} comes out at {spoken(v['value'], None, t.records[name].unit)}, where "
+        f"{spoken(v['prior'], v['prior_sd'], t.records[name].unit)} was given."
+        for name, v in bent.items()
+    ]
 
 
 def rival_words(t: Told) -> list[str]:
@@ -230,7 +252,7 @@ def rival_words(t: Told) -> list[str]:
     for rival in near_rivals(t)[:NAMED]:
         alike.setdefault((_has_more(t, rival), _better(t, rival)), []).append(rival)
     if not alike:
-        return ["No other effect in the catalogue explains these runs as well."]
+        return ["No other effect in the catalogue explains these runs equally well."]
     return [_stands_back(t, rivals) for rivals in alike.values()]
 
 

@@ -42,7 +42,7 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         "missing": f"Missing from the model: {_all_of(names)}.",
         "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
-        "cannot_see": "Nothing was found, but many effects could be of interesting size and these runs would not show it.",
+        "cannot_see": "Nothing was found, but many effects could be of a size that matters and these runs would not show them.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]

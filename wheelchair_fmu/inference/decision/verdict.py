@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -102,6 +102,11 @@ class Diagnosis:
     def odds(self) -> tuple[dict[str, float], ...]:
         """Of each group of effects that are tied, the probability that it is each of them."""
         return tuple(shared(group, self._decided(group[0])) for group in self.ties)
+
+    @property
+    def larger(self) -> tuple[Larger, ...]:
+        """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
+        return _instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
 
     @property
     def _one_sided(self) -> dict[str, np.ndarray]:
@@ -289,7 +294,7 @@ def _notes(
     odd = unlike_the_others(top.fit.evidence, top.heldout)
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
-    large = _instead_of_small(rounds[0]) if verdict == "small" else ()
+    large = tuple(other.words for other in _instead_of_small(rounds[0])) if verdict == "small" else ()
     return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large)
 
 
@@ -429,13 +434,27 @@ def _slight(first: Round) -> tuple[str, ...]:
     return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
 
 
-def _instead_of_small(first: Round) -> tuple[str, ...]:
-    """A sentence for each effect that would be large, and that data cannot tell from those that are slight."""
+class Larger(NamedTuple):
+    """An effect that would be large, `times` the size of interest, with the odds that are `against` it."""
+
+    effect: str
+    times: float
+    against: float
+
+    @property
+    def words(self) -> str:
+        return (
+            f"{self.effect} would do as well, and would not be small: {self.times:.1f} times what is of interest; the odds are "
+            f"{self.against:.0f} to 1 against it"
+        )
+
+
+def _instead_of_small(first: Round) -> tuple[Larger, ...]:
+    """Effects that would be large, and that data cannot tell from those that are slight."""
     likeliest = max((c.support.slight for c in first.slight), default=0.0)
     behind = ((c, likeliest - first.log_prior - c.support.large) for c in first.candidates if c.matters and not c.worsens)
     return tuple(
-        f"{c.effect} would do as well, and would not be small: {np.linalg.norm(c.size / c.delta):.1f} times what is of "
-        f"interest; the odds are {np.exp(log_odds):.0f} to 1 against it"
+        Larger(c.effect, float(np.linalg.norm(c.size / c.delta)), float(np.exp(log_odds)))
         for c, log_odds in behind
         if 2 * log_odds < first.policy.tied
     )

@@ -26,6 +26,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "effects": list(d.effects),
         "ties": [list(t) for t in d.ties],
         "odds": list(d.odds),
+        "larger": [{"effect": other.effect, "times": other.times, "odds_against": other.against} for other in d.larger],
         "ranking": ranking(d),
         "groups": groups(d),
         "ladder": [step.as_json() for step in d.ladder],

@@ -237,8 +237,15 @@ class App {
   parted() {
     this.parting = false;
     if (this.shown.chosen || !this.opened?.length) return;
+    this.left ??= this.shown;
     const mean = (r, c) => r.squares[c] / r.counts[c];
     this.turnTo((i, c) => mean(this.results[i], c) - mean(this.opened[i], c));
+  }
+
+  /** Turns back to where it was before. */
+  returned() {
+    if (this.left && !this.shown.chosen) this.turn(this.left);
+    this.left = null;
   }
 
   /** The shown run as it was where the search began. */

@@ -1,6 +1,6 @@
 // What the reader sets: steps of the search, effects with their sizes, calibrated values.
 
-import { h, symbols } from "page/dom";
+import { h, symbols, write } from "page/dom";
 import { display, inUnit, settled, significant, unitText } from "page/numbers";
 import { capital, stepOf } from "page/words";
 
@@ -46,7 +46,7 @@ export class Controls {
       h("fieldset", {}, h("legend", {}, "Put an effect in"),
         h("p", { class: "hint" }, "Sizes of all that is ticked are fitted together, with the calibrated values."),
         effects(first), this.again,
-        rest.length ? h("details", {}, h("summary", {}, `${rest.length} effects that the search did not refit`), effects(rest)) : null),
+        rest.length ? h("details", {}, h("summary", {}, `${rest.length} less likely effects`), effects(rest)) : null),
       h("fieldset", {}, h("legend", {}, "Go to a step of the search"), h("div", { class: "steps" }, this.steps)),
       h("fieldset", {}, h("legend", {}, "Calibrated values"),
         h("details", {}, h("summary", {}, "change them"), this.campaign.calibrated.map((p) => this.slider(p, this.reach(p))))),
@@ -90,12 +90,23 @@ export class Controls {
     range.addEventListener("input", () => put(range));
     range.addEventListener("keydown", (event) => this.stepped(event, range, (high - low) * factor));
     number.addEventListener("change", () => put(number));
-    this.sliders.set(p.name, { range, number, factor, record: p });
-    const found = row?.parameters[p.name.split(".").at(-1)], fitted = found && seen(found) ? found.estimate : row ? null : this.start().values[p.name];
-    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted }) }, "↺");
-    const help = [p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, fitted === null || fitted === undefined ? null : `▲ fitted ${inUnit(fitted, p)}`].filter(Boolean).join("; ");
-    return h("div", { class: "slider" }, h("label", { for: id, title: p.name }, symbols(capital(p.meaning))), h("div", { class: "track" }, range, marks(p, low, high, fitted)),
-      h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit)), fitted === null || fitted === undefined ? null : back), h("small", { id: `${id}-help` }, help));
+    const found = row?.parameters[p.name.split(".").at(-1)], own = found && seen(found) ? found.estimate : null;
+    const fitted = () => (row ? own : (this.stored.get(key(this.values)) ?? this.start().values)[p.name]) ?? null; // of a calibrated value, with the effects that are in
+    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted() }) }, "↺");
+    const help = h("small", { id: `${id}-help` }), track = h("div", { class: "track" }, range);
+    let last;
+    const mark = () => {
+      const size = fitted();
+      if (size === last) return;
+      last = size;
+      back.hidden = size === null;
+      write(help, [p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, size === null ? null : `▲ fitted ${inUnit(size, p)}`].filter(Boolean).join("; "));
+      track.replaceChildren(range, marks(p, low, high, size));
+    };
+    mark();
+    this.sliders.set(p.name, { range, number, factor, record: p, mark });
+    return h("div", { class: "slider" }, h("label", { for: id, title: p.name }, symbols(capital(p.meaning))), track,
+      h("span", { class: "value" }, number, h("span", { class: "unit" }, unitText(unit)), back), help);
   }
 
   /** Arrow keys move by a four-hundredth, with Shift by a fortieth: "any" alone would leave that to the browser. */
@@ -134,7 +145,8 @@ export class Controls {
       sliders.hidden = !box.checked && document.activeElement?.closest?.(".sliders") !== sliders;
     }
     this.again.disabled = ![...this.boxes.values()].some(({ box }) => box.checked); // not hidden: nothing moves under a pointer that drags
-    for (const [name, { range, number, factor, record }] of this.sliders) {
+    for (const [name, { range, number, factor, record, mark }] of this.sliders) {
+      mark();
       const value = settled(this.values[name] ?? this.campaign.known[name] ?? record.default, record) * factor, active = document.activeElement;
       if (this.shown.get(name) === value && active !== range && active !== number) continue;
       this.shown.set(name, value);

@@ -74,10 +74,16 @@ export function present(time, values) {
 export const round = (v) => Math.round(v * 10) / 10;
 
 /** Round numbers from low to high, about so many. */
+const FEWEST = 3; // ticks, as fewer are no scale; where there is room for so many
+
 export function ticks(low, high, about = 5) {
-  const raw = (high - low) / Math.max(1, about), size = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * size).find((s) => s >= raw) ?? raw, out = [];
-  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) out.push(Math.abs(v) < 1e-9 * step ? 0 : v);
+  const raw = (high - low) / Math.max(1, about), size = 10 ** Math.floor(Math.log10(raw)), steps = [10, 5, 2, 1, 0.5, 0.2].map((k) => k * size);
+  let out = [];
+  for (const step of steps.slice(Math.max(0, steps.findLastIndex((s) => s >= raw)))) {
+    out = [];
+    for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) out.push(Math.abs(v) < 1e-9 * step ? 0 : v);
+    if (out.length >= Math.min(FEWEST, about)) break;
+  }
   return out;
 }
 

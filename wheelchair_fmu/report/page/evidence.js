@@ -2,17 +2,20 @@
 
 import { byId, csv, h, save, symbols } from "page/dom";
 import { chance, inUnit, rms, significant, uncertain } from "page/numbers";
-import { capital, channelOf, listed, titleOf } from "page/words";
+import { capital, channelOf, listed, proposed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
 const SEEN = 0.05; // a p below which the data show something like an effect that was not chosen
+const KEY = `Sizes are of an effect put in alone, or beside what was put in before it. Would be seen: in how many of such campaigns it would show at the
+  smallest size that matters. Hidden in the fit: how much of what it does calibrated values can imitate. Held out: the error on runs held out,
+  noise = 1, before and after it was put in. Alike: effects that do nearly the same to the readings; 1 is just the same.`;
 const VERDICTS = {
-  missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen",
+  missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen", proposed: "helps most; not in the catalogue",
 };
 
 export function evidence(campaign) {
   const { diagnosis, effects } = campaign, records = new Map(effects.map((e) => [e.id, e]));
-  byId("evidence").append(table(diagnosis.ranking.filter((r) => records.has(r.effect)), records, campaign));
+  byId("evidence").append(table([proposed(campaign), ...diagnosis.ranking].filter((r) => r && records.has(r.effect)), records, campaign));
   const groups = (diagnosis.groups ?? []).filter((g) => g.effects.every((e) => records.has(e)));
   if (groups.length) byId("evidence").append(together(groups, campaign));
   ties(byId("ties"), campaign);
@@ -31,6 +34,7 @@ function table(ranking, records, campaign) {
   return h("div", {}, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Evidence table" },
     h("table", { class: "evidence" }, h("caption", {}, "Every effect of the catalogue, the likeliest first"),
       h("thead", {}, h("tr", {}, heads.map(([text, right]) => h("th", { scope: "col", class: right ? "number" : null }, text)))), body)),
+    h("p", { class: "hint" }, KEY),
     h("p", { class: "tools" }, ranking.length > FIRST ? more : null,
       h("button", { type: "button", class: "quiet", onclick: () => save(`${campaign.name}-evidence.csv`, csv(columns(ranking))) }, "CSV")));
 }
@@ -42,12 +46,12 @@ function line(campaign, row, record, later) {
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, symbols(p.name.split(".").at(-1)), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
-    h("th", { scope: "row" }, capital(record.title), h("small", {}, h("code", {}, row.effect))),
+    h("th", { scope: "row" }, capital(record.title), row.verdict === "proposed" ? null : h("small", {}, h("code", {}, row.effect))),
     h("td", { "data-head": "Size" }, parameters.map(([p, v]) => own(uncertain(v, p), p))),
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
     h("td", { class: "number", "data-head": "Chance that it matters" }, chance(row.probability)),
-    h("td", { class: "number", "data-head": "Would be seen" }, `${Math.round(100 * row.power)} %`),
-    h("td", { class: "number", "data-head": "Hidden in the fit" }, `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
+    h("td", { class: "number", "data-head": "Would be seen" }, row.power === null ? "–" : `${Math.round(100 * row.power)} %`),
+    h("td", { class: "number", "data-head": "Hidden in the fit" }, row.hidden_in_fit === null ? "–" : `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
     h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed", "small"].includes(row.verdict) && !campaign.diagnosis.effects.includes(row.effect) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : campaign.diagnosis.verdict === "outside" && row.verdict === "missing" ? "helps, does not suffice" : VERDICTS[row.verdict] ?? row.verdict)));
@@ -98,6 +102,6 @@ function ties(section, campaign) {
   if (left?.where) {
     const { run, channel, rms: size } = left.where, where = `the ${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;
     section.append(h("p", {}, left.proposal ? `Without what helps most, the model errs most in ${where}.` :
-      `A search for anything else that is left, among generic forces and errors, found nothing that stands. The largest error is in ${where}.`));
+      `A search for anything else that is left, among generic forces and errors, found nothing that would be put in. The largest error that is left on the fitted runs is in ${where}.`));
   }
 }

@@ -10,11 +10,12 @@ import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
 import { UNSEEN, beside, between, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, isolated, listed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, proposed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const LOW = 230; // px: height of curves below which no error stands under them, as its label has no room
 const AXES = 92; // px: what curves have above, between and below them
+const ADDS_UP = ["x", "y", "yaw"]; // channels in which noise of the pushes adds up
 const LATE = 10; // samples from the end of a run
 
 /** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
@@ -78,12 +79,12 @@ export class Figures {
 
   sizes() {
     const { diagnosis, effects } = this.campaign, records = new Map(effects.map((e) => [e.id, e]));
-    const rows = diagnosis.ranking.filter((r) => records.has(r.effect)).flatMap((r) => records.get(r.effect).parameters.map((p) => {
+    const rows = [proposed(this.campaign), ...diagnosis.ranking].filter((r) => r && records.has(r.effect)).flatMap((r) => records.get(r.effect).parameters.map((p) => {
       const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
       if (!own || !p.delta) return null;
       const [low, high] = endsOf(own);
       return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
-        note: uncertain(own, p), strong: diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
+        note: uncertain(own, p), strong: r.verdict === "proposed" || diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
@@ -105,9 +106,9 @@ export class Figures {
         parameter: name, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, from: v.lower, to: v.upper, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
-      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: as was given"),
+      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: 95 % of what was given", 1.96),
       columns: () => Object.fromEntries(["parameter", "given", "sd", "fitted", "se", "from", "to", "bound"].map((k) => [k, rows.map((r) => r[k])])),
-      caption: () => `What calibration made of the values that the campaign gives; zero is the value given, the band one standard deviation of it, and each bar a 95 % interval.${rows.some((r) => r.bound) ? ` Upright bars are bounds, shown where a value stands on one: ${listed(rows.filter((r) => r.bound).map((r) => r.words))}.` : " None stands on a bound."}`,
+      caption: () => `What calibration made of the values that the campaign gives; zero is the value given, the band its 95 % interval as it was given, and each bar the 95 % interval now.${rows.some((r) => r.bound) ? ` Upright bars are bounds, shown where a value stands on one: ${listed(rows.filter((r) => r.bound).map((r) => r.words))}.` : " None stands on a bound."}`,
     };
   }
 
@@ -116,11 +117,10 @@ export class Figures {
     const { landscape: told } = this.campaign, curves = (told?.profiles ?? []).filter((c) => bowl(c.heights, c.level)), joint = told?.pair && bowl(told.pair.heights.flat(), told.pair.level) ? told.pair : null;
     byId("profiles").hidden = !curves.length;
     byId("joint").hidden = !joint;
+    const tied = joint && this.campaign.diagnosis.ties.some((t) => joint.effects.every((e) => t.includes(e)));
+    if (tied) byId("ties").append(byId("joint")); // before the other is drawn, which has its place then
     if (curves.length) this.add("profiles", "How sure each size is", this.profiled(curves));
-    if (!joint) return;
-    const tied = this.campaign.diagnosis.ties.some((t) => joint.effects.every((e) => t.includes(e)));
-    if (tied) byId("ties").append(byId("joint"));
-    this.add("joint", tied ? "Why these cannot be told apart" : "Two rivals together", this.joined(joint));
+    if (joint) this.add("joint", tied ? "Why these cannot be told apart" : "Two rivals together", this.joined(joint));
   }
 
   sizeOf(name) {
@@ -133,25 +133,32 @@ export class Figures {
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
       columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "misfit above the best": all.flatMap((p) => p.ys) }),
-      caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies the 95 % interval. ${curves.map((c) => this.sure(c)).join(" ")}`,
+      caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies 95 % by the noise of these runs alone. What is told allows besides for runs that differ by more, and for what else may be missing. ${curves.map((c) => this.sure(c)).join(" ")}`,
     };
   }
 
   /** A profile in words: its lowest place, and its 95 % interval as far as it was followed. */
   sure(curve) {
-    const { record, name } = this.sizeOf(curve.parameter), ends = crossings(curve.values, curve.heights, curve.level);
+    const { record, name } = this.sizeOf(curve.parameter), ends = this.told(curve.parameter)?.interval ?? crossings(curve.values, curve.heights, curve.level);
     if (!ends.every(Number.isFinite)) return `${name}: ${inUnit(curve.estimate, record, 4)}.`;
     return `${name}: ${withInterval(curve.estimate, ends, record)}.`;
   }
 
+  /** What the ranking has of a parameter of an effect. */
+  told(name) {
+    const [, effect, short] = name.split(".");
+    return this.campaign.diagnosis.ranking.find((r) => r.effect === effect)?.parameters[short];
+  }
+
   joined(joint) {
-    const sizes = joint.parameters.map((n) => this.sizeOf(n)), drawn = { ...joint, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
+    const sizes = joint.parameters.map((n) => this.sizeOf(n)), alone = joint.parameters.map((n) => this.told(n)?.estimate ?? NaN);
+    const drawn = { ...joint, alone, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
       bounds: sizes.map(({ record: { lower, upper, delta } }) => [(lower ?? -Infinity) / delta, (upper ?? Infinity) / delta]) };
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "misfit above the best": cells.map((c) => c[2]) }),
-      caption: () => `Where both sizes lie when they are fitted together, each as a multiple of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one. ${drawn.names[0]} alone lies on the horizontal zero line, ${drawn.names[1].toLowerCase()} alone on the vertical one; where a solid line meets both zero lines, either effect would do without the other. Within the shading neither would matter. The point is what fits best, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
+      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other. The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
 
@@ -205,7 +212,7 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => `Error of each run and channel${this.app.printed ? ", before what was found was put in," : ""} in units of the noise; colour begins where it is more than noise.${this.greatest()}`,
+      caption: () => `Error of each run and channel${this.app.printed ? ", before what was found was put in," : ""} in units of the noise; colour begins at ${QUIET}.${this.greatest()}`,
     };
   }
 
@@ -240,20 +247,20 @@ export class Figures {
   }
 
   units() {
-    const all = this.app.physical();
+    const all = this.app.physical(), { campaign } = this;
     return {
       draw: (width, look) => {
-        const shown = all.map((r) => ({ name: `${r.channel} [${r.unit}]`, cells: r.values.map((v) => ({ value: v.times, note: v.value === undefined ? "" : beside(significant(v.value, 2), r.unit) })) }));
+        const shown = all.map((r) => ({ name: `${capital(r.channel)} [${r.unit || "1"}]`, cells: r.values.map((v) => ({ value: v.times, ...(v.value === undefined ? {} : { shown: significant(v.value, 2), note: `${rms(v.times)} ×` }) })) }));
         return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
       },
       columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
-      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, in units of the noise; small, what the sensor's reading is missed by.${this.missed(all)}`,
+      caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, by how much the readings are missed, and small, how many times what the noise of sensors and pushes gives.${campaign.channels.some((c) => ADDS_UP.includes(c.name)) ? " In a place or a heading that noise adds up along a run, so that the two need not fall alike." : ""}${this.missed(all)}`,
     };
   }
 
-  /** What a step of the search changed most, in the unit of a sensor. */
+  /** What the search changed most, in the unit of a sensor. */
   missed(rows) {
-    const known = rows.filter((r) => r.values.length > 1 && r.values.every((v) => v.value !== undefined)), most = known.reduce((a, b) => (a && a.values[0].times >= b.values[0].times ? a : b), null);
+    const known = rows.filter((r) => r.values.length > 1 && r.values.every((v) => v.value !== undefined)), begun = this.ladder.findIndex((s) => s.step === this.campaign.diagnosis.begins), fall = (r) => r.values[begun].times - r.values.at(-1).times, most = known.reduce((a, b) => (a && fall(a) >= fall(b) ? a : b), null);
     return most ? ` The ${most.channel} is missed by ${listed(most.values.map((v) => `${beside(significant(v.value, 2), most.unit)} ${stillOf(v.step)}`))}.` : "";
   }
 

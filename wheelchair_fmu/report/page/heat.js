@@ -72,7 +72,7 @@ export class Heat {
   }
 }
 
-/** The same as a drawing. */
+/** The same as a drawing; `shown` is what a cell says in place of its value, by which it is coloured. */
 export function heat(width, look, heads, rows) {
   const called = (r) => (r.note ? `${r.name} (${r.note})` : r.name), words = heads.flatMap((t) => t.split(/\s+/)), longest = Math.max(0, ...words.map((w) => long(w, look, 10))) + 4;
   const named = 14 + Math.max(...rows.map((r) => long(called(r), look))), upright = width - longest * heads.length < Math.min(0.24 * width, named); // where heads beside one another would leave no room for names
@@ -92,7 +92,7 @@ export function heat(width, look, heads, rows) {
     row.cells.forEach((c, j) => {
       const x = left + wide * j, middle = x + wide / 2;
       drawn.push(svg("rect", { x: x + 1, y: y + 1, width: wide - 2, height: high - 2, fill: look.error, "fill-opacity": loud(c.value) / 100, stroke: look.line }),
-        text(middle, y + (noted ? 15 : high / 2 + 4), number(c.value), look.ink, "middle"), notes[j].map((t, k) => text(middle, y + 27 + 11 * k, t, look.faint, "middle", { "font-size": NOTE })));
+        text(middle, y + (noted ? 15 : high / 2 + 4), c.shown ?? number(c.value), look.ink, "middle"), notes[j].map((t, k) => text(middle, y + 27 + 11 * k, t, look.ink, "middle", { "font-size": NOTE })));
     });
     y += high;
   }

@@ -120,12 +120,13 @@ function solved(a, b) {
 }
 
 /** Two sizes together: contours of 50 and 95 % about the best, and either size alone on its axis. `pair` is the landscape's
- *  with `names`, `deltas` and `bounds` [[least, greatest], ...]; both axes are in the smallest sizes that would matter. */
+ *  with `names`, `deltas`, `bounds` [[least, greatest], ...] and the sizes that each has `alone`; both axes are in the smallest sizes that would matter. */
 export function together(width, look, pair) {
   const left = 70, top = 14, w = Math.min(width - left - 20, 460), hh = Math.min(300, 0.7 * w), { best, axes, deltas, bounds } = pair, [about, heights] = finer(pair.about, pair.heights);
   const at = ([u, v]) => [0, 1].map((k) => (best[k] + axes[k][0] * u + axes[k][1] * v) / deltas[k]);
   const lines = [[pair.middle, "4 3"], [pair.level, null]].map(([level, dash]) => [joined(contour(heights, about, level)).map((points) => within(points.map(at), bounds)), dash]);
-  const points = [[0, 0], [1, 1], ...lines.flatMap(([pieces]) => pieces.flat()).filter(([v]) => Number.isFinite(v))], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
+  const alone = (pair.alone ?? []).map((v, k) => (k ? [0, v / deltas[1]] : [v / deltas[0], 0])).filter((q) => q.every(Number.isFinite));
+  const points = [[0, 0], [1, 1], ...alone, ...lines.flatMap(([pieces]) => pieces.flat()).filter(([v]) => Number.isFinite(v))], reach = (k) => { const vs = points.map((p) => p[k]), low = Math.min(...vs), high = Math.max(...vs); return [low - 0.08 * (high - low), high + 0.08 * (high - low)]; };
   const [xs, ys] = [reach(0), reach(1)], across = (v) => left + (w * (v - xs[0])) / (xs[1] - xs[0]), down = (v) => top + hh * (1 - (v - ys[0]) / (ys[1] - ys[0])), drawn = [];
   const [x0, x1] = [Math.max(-1, xs[0]), Math.min(1, xs[1])], [y0, y1] = [Math.max(-1, ys[0]), Math.min(1, ys[1])];
   drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
@@ -134,6 +135,7 @@ export function together(width, look, pair) {
   for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
+  for (const [x, y] of alone) drawn.push(svg("circle", { cx: across(x), cy: down(y), r: 5, fill: look.paper, stroke: look.ink, "stroke-width": 2 }));
   const [below, beside] = [measured(pair.names[0], w + 40, look), measured(pair.names[1], hh, look)];
   below.forEach((t, k) => drawn.push(text(left + w / 2, top + hh + 36 + 14 * k, t, look.ink, "middle")));
   beside.forEach((t, k) => drawn.push(text(0, 0, t, look.ink, "middle", { transform: `translate(${14 + 14 * k} ${top + hh / 2}) rotate(-90)` })));

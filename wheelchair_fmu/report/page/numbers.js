@@ -41,8 +41,8 @@ export function withError(estimate, se, record) {
   const [value, error] = [estimate * factor, se === null ? null : se * factor];
   if (error === null || !(error > 0)) return `${significant(value)}${space}${suffix}`;
   if (value !== 0 && error > 100 * Math.abs(value)) return UNSEEN;
-  const place = placeOf(error);
-  return `${unsigned(minus(value.toFixed(place)))} ± ${error.toFixed(place)}${space}${suffix}`;
+  const coarse = Math.max(error, finest(record)), place = placeOf(coarse);
+  return `${unsigned(minus(value.toFixed(place)))} ± ${coarse.toFixed(place)}${space}${suffix}`;
 }
 
 /** "1.61 (1.48 to 1.73) N": an estimate in its 95 % interval. */
@@ -50,9 +50,12 @@ export function withInterval(estimate, ends, record) {
   const { unit, factor } = display(record), suffix = unitText(unit), half = ((ends[1] - ends[0]) / 2) * factor;
   if (!(half > 0)) return withError(estimate, null, record);
   if (estimate !== 0 && half > 200 * Math.abs(estimate * factor)) return UNSEEN;
-  const [value, low, high] = [estimate, ...ends].map((v) => unsigned(minus((v * factor).toFixed(placeOf(half)))));
+  const [value, low, high] = [estimate, ...ends].map((v) => unsigned(minus((v * factor).toFixed(placeOf(Math.max(half, finest(record)))))));
   return beside(`${value} (${low} to ${high})`, suffix);
 }
+
+/** The least error that is told of a size, as it is shown: a thousandth of what would matter. */
+const finest = (record) => (Math.abs(record.delta ?? 0) * display(record).factor) / 1000;
 
 /** The decimal place to which an error has two digits at most. */
 function placeOf(error) {

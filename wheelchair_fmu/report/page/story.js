@@ -52,6 +52,8 @@ export class Story {
 
   go(at, byHand = false) {
     this.at = at;
+    if (this.screens[at].dataset.kind !== "put") this.app.returned();
+    else if (this.parts() && this.isIn()) this.app.parted();
     this.screens.forEach((s, i) => { s.hidden = i !== at; });
     this.tabs.forEach((t, i) => t.setAttribute("aria-current", i === at ? "step" : "false"));
     if (byHand) { this.screens[at].querySelector("h3").focus({ preventScroll: true }); this.turned(at); }
@@ -85,7 +87,7 @@ export class Story {
     const { choice, app, revealed } = this;
     if (!choice) return;
     if (revealed?.choice !== choice || revealed.run !== app.shown.run) this.reveal();
-    else this.guessed.replaceChildren(...(revealed.after ? this.curves(app.before(), revealed.after, "with this guess") : []));
+    else this.guessed.replaceChildren(...(revealed.after ? this.curves(app.before(), revealed.after, choice.beside ? "with what was found, and this" : "with this guess") : []));
   }
 
   /** What stands beside the last screen: the missing force, where it is drawn; commands can be copied. */
@@ -105,10 +107,16 @@ export class Story {
     const known = ranking.filter((r) => this.campaign.effects.some((e) => e.id === r.effect)), told = this.told("put").effect, first = known.find((r) => effects.includes(r.effect)) ?? known.find((r) => r.effect === told) ?? known[0];
     const sizes = first ? this.campaign.effects.find((e) => e.id === first.effect).parameters.map((p) => [p.name, p.delta || p.default]) : [];
     this.with = !same(this.last.values, begins.values) ? this.last.values : first?.values && (effects.length || verdict === "outside") ? first.values : { ...begins.values, ...Object.fromEntries(sizes) };
-    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.parting = !this.isIn() && same(this.last.values, begins.values); this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
+    this.toggle = h("button", { type: "button", class: "step big", "aria-pressed": "false", onclick: () => { this.app.parting = !this.isIn() && this.parts(); this.app.put({ ...(this.isIn() ? begins.values : this.with) }); this.pressed(); } }, "put it in");
     this.figures = h("p", { class: "counter" }, this.before = h("b", {}, "–"), this.change = h("span", { class: "change" }, " → ", this.after = h("b", {}, "–")), this.of = h("span", {}, " times the noise"));
     this.curve = h("div", { class: "curve" });
     this.stages.put.append(this.toggle, this.figures, this.curve);
+  }
+
+  /** Does the button put in what the search did not, so that nobody knows yet where it shows? */
+  parts() {
+    const { models, begins } = this.campaign.diagnosis;
+    return same(this.last.values, models.find((m) => m.step === begins).values);
   }
 
   isIn() {

@@ -12,6 +12,15 @@ export function stepOf(campaign, step) {
   return step.startsWith("+") ? `${added[0]?.step === step ? "with" : "and"} ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
 }
 
+/** A term that the search proposes where no effect suffices, as a row of the ranking; null where there is none. */
+export function proposed({ effects, diagnosis }) {
+  const found = diagnosis.leftover?.proposal, record = found && effects.find((e) => e.id === found.term);
+  if (!record) return null;
+  const at = diagnosis.ladder.findIndex((s) => s.step === `+${found.term}`), error = (s) => s?.heldout ?? null;
+  return { effect: found.term, parameters: { q: { estimate: found.estimate, se: found.se } }, probability: null, power: null, hidden_in_fit: null, p: found.p ?? 0, rivals: [], verdict: "proposed",
+    heldout_before: error(diagnosis.ladder[at - 1]), heldout_after: error(diagnosis.ladder[at]) };
+}
+
 /** The same in a list of several, where what was put in before is still in. */
 export const stillOf = (name) => (name.startsWith("and ") ? `with ${name.slice(4)} as well` : name);
 
