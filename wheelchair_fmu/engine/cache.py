@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
+from threading import Lock
 
 import casadi as cs
 
@@ -27,9 +28,10 @@ from .lanes import in_two, lanes_source, of_stages
 from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
 from .store import kept
-from .tangent import noisy, tangent
+from .tangent import Tangent, noisy, tangent
 
 log = logging.getLogger(__name__)
+_deriving = Lock()  # one model after another, as CasADi's expressions are shared; what compiles them runs side by side
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
 LEVELS = {
@@ -136,21 +138,33 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 
 def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
-    model, pushes, columns = assemble(wanted.choice, wanted.effects), noisy(wanted.moved or ()), wanted.columns
+    pushes, by_hand = noisy(wanted.moved or ()), ["tangent", "rodas", "innovations", "evaluation"]
+    with _deriving:
+        texts, by = _derived(wanted, pushes, wide)
+    if by is None:
+        _link(texts, ["advance"], pushes, target, wide, cross)
+        return
+    try:
+        _link(texts, by_hand, pushes, target, wide, cross)
+    except BuildError as error:
+        log.info("stages are evaluated one by one: %s", error)
+        with _deriving:
+            plainly = tangent_source(by, "tangent")
+        _link({"model": texts["model"], "tangent_model": plainly}, by_hand, pushes, target, wide, cross)
+
+
+def _derived(wanted: Wanted, pushes: int, wide: int) -> tuple[dict[str, str], Tangent | None]:
+    """Generated C by name, and the derivatives that it has, if any."""
+    model = assemble(wanted.choice, wanted.effects)
     if wanted.moved is not None:
         model = at_rest(model, wanted.moved)
     texts = {"model": c_source(kernel(model), "model")}
-    if columns is None:
-        _link(texts, ["advance"], pushes, target, wide, cross)
-        return
-    by, by_hand = tangent(model, columns, pushes), ["tangent", "rodas", "innovations", "evaluation"]
+    if wanted.columns is None:
+        return texts, None
+    by = tangent(model, wanted.columns, pushes)
     of_several, names = of_stages(by, "tangent")
     together = {"tangent_lanes": of_several, "tangent_model": tangent_source(by, "tangent", names, wide)}
-    try:
-        _link({**texts, **together}, by_hand, pushes, target, wide, cross)
-    except BuildError as error:
-        log.info("stages are evaluated one by one: %s", error)
-        _link({**texts, "tangent_model": tangent_source(by, "tangent")}, by_hand, pushes, target, wide, cross)
+    return {**texts, **together}, by
 
 
 def _link(

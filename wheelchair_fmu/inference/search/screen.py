@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -93,14 +94,15 @@ def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -
     w = models.factory
     free = [e for e in (among if among is not None else w.catalogue) if e not in base.effects and w.parameters(e)]
     light = [e for e in free if e in w.light]
+    dear = [more for group in (w.heavy, w.demanding) if (more := [e for e in free if e in group])]
+    wanted = [partial(models.wide, base.effects), *(partial(models.rerun, (*base.effects, *more)) for more in dear)]
+    parallel_map(lambda make: make(), wanted)  # those that are not compiled yet, side by side
     found, here = _by_slopes(models, base, [e for e in light if e not in models.doubles])
     # Beside unrecorded forces an offset without its nuisance would be made up for by these.
     for effect in [] if w.leads else [e for e in light if e in models.doubles]:
         found += _by_slopes(models, models.rival_of(effect, base), [effect])[0]
-    for group in (w.heavy, w.demanding):
-        more = [e for e in free if e in group]
-        if more:
-            found += _by_secants(models, models.rerun((*base.effects, *more)), base.fit, here, more)
+    for more in dear:
+        found += _by_secants(models, models.rerun((*base.effects, *more)), base.fit, here, more)
     return sorted(found, key=lambda s: -s.score.drop), here
 
 
