@@ -416,6 +416,10 @@ def test_where_nothing_is_missing_the_largest_error_is_shown_until_one_is_put_in
     here = f"({rise})(report.shown.run, report.shown.channel) / report.opened[report.shown.run].counts[report.shown.channel]"
     assert reader.page.evaluate(here) == most > 0
     parted = reader.page.evaluate("report.shown")
+    told = reader.page.inner_text(".counter")
+    assert "in this run and channel" in told
+    before, after = map(float, re.findall(r"\d+\.\d\d", told))
+    assert after > before and after == pytest.approx(np.sqrt(before**2 + most), abs=0.02)
     reader.page.click(".tab >> nth=0")  # which tells of the largest error still
     assert reader.page.evaluate(shown) == reader.page.evaluate(f"({errors})(report.opened)")
     reader.page.click(".tab >> nth=2")

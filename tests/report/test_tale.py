@@ -429,7 +429,7 @@ def test_of_a_size_below_zero_it_is_said_what_it_is_of():
     size = {**row["parameters"]["D"], "estimate": -1.6, "se": 0.1, "interval": None}
     ranking = [{**r, "parameters": {"D": size}} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     line = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ranking=ranking)).cards[0]["lines"][0]
-    assert ": rolling resistance of the left wheel less the right wheel's −1.60 ± 0.10 N, 4 times" in line
+    assert ": the rolling resistance of the left wheel less the right wheel's is −1.60 ± 0.10 N, 4 times" in line
     assert ": 1.61 N (95 % sure: 1.48 to 1.73 N), 4 times" in tale(CASES["tie"]).cards[0]["lines"][0]
 
 

@@ -303,7 +303,7 @@ def sized(t: Told, effect: str) -> str:
     seen = [size for size in every if _seen(size[1])] or every
     sizes = " and ".join(f"{_which(name, every)}{estimated(v, r.unit)}" for name, v, r in seen)
     if len(every) == 1 and every[0][1]["estimate"] < 0:  # of which the sign says something
-        sizes = f"{every[0][2].meaning} {sizes}"
+        sizes = f"the {every[0][2].meaning} is {sizes}"
     sure = any(_seen(v) for _, v, _ in every)
     size = f"{multiple_words(t, effect)} the size that would matter" if sure else "a size that these runs leave open"
     return f"{capital(t.title(effect))}: {sizes}, {size}."

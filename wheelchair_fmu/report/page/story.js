@@ -119,6 +119,12 @@ export class Story {
     return same(this.last.values, models.find((m) => m.step === begins).values);
   }
 
+  /** The shown channel's error in the shown run, noise = 1, before and now. */
+  partsBy() {
+    const { app } = this, { run, channel } = app.shown, both = [app.before(), app.results[run]];
+    return both.every((r) => r?.counts?.[channel]) ? both.map((r) => Math.sqrt(r.squares[channel] / r.counts[channel])) : null;
+  }
+
   isIn() {
     return Object.entries(this.with).every(([n, v]) => (this.app.values[n] ?? 0) === v);
   }
@@ -156,8 +162,10 @@ export class Story {
     const { models, ladder, begins } = this.campaign.diagnosis, start = ladder.find((s) => s.step === begins), key = this.shows(start, ladder.at(-1));
     this.pressed();
     this.of.textContent = ` times the noise${key === "fit" && Number.isFinite(this.app.now?.heldout) ? ", on the fitted runs" : ""}`;
-    this.before.textContent = rms(start?.[key]);
-    this.after.textContent = rms(this.app.now?.[key]);
+    const own = this.parts() && this.partsBy(); // over all readings such an error hardly moves
+    if (own) this.of.textContent = " times the noise, in this run and channel";
+    this.before.textContent = rms(own ? own[0] : start?.[key]);
+    this.after.textContent = rms(own ? own[1] : this.app.now?.[key]);
     this.change.hidden = same(this.app.values, models.find((m) => m.step === begins).values);
     if (rested || this.seen) this.curve.replaceChildren(...this.curves(this.app.before(), this.app.results[this.app.shown.run]));
   }
