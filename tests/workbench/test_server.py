@@ -15,11 +15,12 @@ import pytest
 
 from tests.campaign import lab
 from tests.kit import SAMPLE_DIAGNOSIS, with_settings
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
 from wheelchair_fmu.workbench.guard import HEADER, TOKEN_HEADER  # noqa: E402
-from wheelchair_fmu.workbench.server import Workbench  # noqa: E402
+from wheelchair_fmu.workbench.server import Workbench, _at_bounds  # noqa: E402
 from wheelchair_fmu.workbench.session import Session, prune  # noqa: E402
 
 SAMPLE = Path(__file__).parents[2] / "examples" / "sample-campaign"
@@ -140,7 +141,7 @@ def test_the_sample_is_taken_in_once_and_gives_no_answer_away(client):
     assert len(state["files"]) == 10 and state["faults"] == [] and state["outcome"] is None
     assert state["campaign"]["campaign"]["name"] == "sample-chair"
     assert "recordings here already" in client.post(f"{client.base}/sample").json()["error"]
-    assert len(state["signals"]["yaw_rate [rad/s]"]) > 100 and state["times"] == ["time [s]"]
+    assert len(state["signals"]["yaw_rate [rad/s]"][state["files"][0]]) > 100 and state["times"] == ["time [s]"]
     seen = client.get(f"{client.base}/preview")
     assert seen.status_code == 200 and "<svg" in seen.text and "Nothing odd was found" in seen.text
     assert "default-src 'none'" in seen.headers["content-security-policy"]
@@ -166,8 +167,30 @@ def test_files_of_a_lab_are_read_together_and_that_can_be_undone(client, tmp_pat
     assert client.post(f"{client.base}/history", json={"by": -1}).json()["campaign"] == before
     again = client.post(f"{client.base}/history", json={"by": 1}).json()["campaign"]
     assert again == state["campaign"]
-    gone = client.delete(f"{client.base}/files/{files[0][0]}").json()["campaign"]["run"]
-    assert gone == again["run"][1:], "a run that lacks a file goes"
+    moments = next(own for header, own in state["signals"].items() if header.startswith("Mz"))
+    assert len(moments) == 2 and moments["run01_SWL.csv"] != moments["run01_SWR.csv"], "each device's own"
+    gone = client.delete(f"{client.base}/files/{files[0][0]}").json()
+    assert gone["campaign"]["run"] == again["run"][1:], "a run that lacks a file goes"
+    assert gone["remark"] == f"{files[0][0]} was taken out; undo brings it back." and files[0][0] not in gone["files"]
+    back = client.post(f"{client.base}/history", json={"by": -1}).json()
+    assert back["campaign"] == again and files[0][0] in back["files"] and not back["remark"]
+    assert files[0][0] not in client.post(f"{client.base}/history", json={"by": 1}).json()["files"]
+
+
+def test_notes_and_pictures_in_a_folder_of_recordings_are_left_out_and_named(client):
+    state = upload(client, ("README.md", b"# notes"), *recordings(), ("zz.pdf", b"%PDF")).json()
+    assert len(state["files"]) == len(recordings()) and state["remark"] == "Left out, as no recording: README.md, zz.pdf."
+    assert len(state["campaign"]["run"]) == len(recordings())
+
+
+def test_a_size_at_its_bound_is_said_to_be_there():
+    effect = bundled()["aerodynamic_drag"]
+    (size,) = (p for p in effect.owned if p.smallest_interesting)
+    assert list(_at_bounds(effect, {size.name: size.smallest_interesting})) == []
+    (least,) = _at_bounds(effect, {size.name: size.lower})
+    assert "the least that is allowed" in least and "acts the other way" in least
+    (most,) = _at_bounds(effect, {size.name: size.upper})
+    assert "the greatest that is allowed" in most
 
 
 def test_two_tabs_do_not_disturb_each_other(client):
@@ -283,6 +306,8 @@ def test_comments_and_layout_outlast_the_forms(client, bench):
     assert client.delete(f"{client.base}/files/runs/slalom-slow.csv").status_code == 200
     head, _, rest = edited.partition('[[run]]\nfile = "runs/slalom-slow.csv"')
     assert file.read_text() == head + rest[rest.index("[[run]]") :]
+    client.post(f"{client.base}/history", json={"by": -1})
+    assert file.read_text() == edited, "what was taken out is back"
     client.post(f"{client.base}/history", json={"by": -1})
     assert file.read_text().startswith("# as weighed in spring") and "m = 80.0" in file.read_text()
     late = upload(client, ("late.csv", recordings()[0][1])).json()

@@ -19,8 +19,13 @@ MOST_BYTES = 512_000_000  # of recordings at once, and of what one of them unpac
 PIECE = 1 << 20
 
 
+class NoRecording(UsageError):
+    """A file of a kind that no campaign is made of, as notes and pictures are."""
+
+
 def safe_path(name: str) -> PurePosixPath:
-    """The path of a file within its campaign. Raises UsageError for a name that cannot belong to one."""
+    """The path of a file within its campaign. Raises UsageError for a name that cannot belong to one, NoRecording where it is
+    only of another kind."""
     path, shown = PurePosixPath(name.replace("\\", "/")), repr(name if len(name) <= 80 else f"{name[:77]}...")
     if path.is_absolute() or not path.name or any(p == ".." or p.startswith(".") for p in path.parts) or not name.isprintable():
         raise UsageError(f"{shown} is no name for a file of a campaign; give a plain name")
@@ -32,7 +37,7 @@ def safe_path(name: str) -> PurePosixPath:
             "its folder to `wheelchair diagnose --effects DIR`"
         )
     if path.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"{path}: {path.suffix or 'no ending'} is no recording; give one of {', '.join(SUFFIXES)}")
+        raise NoRecording(f"{path}: {path.suffix or 'no ending'} is no recording; give one of {', '.join(SUFFIXES)}")
     return path
 
 

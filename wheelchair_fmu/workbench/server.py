@@ -6,7 +6,7 @@ Reading changes nothing but when a session was last looked at; `guard` says who 
 from __future__ import annotations
 
 import re
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from functools import partial
@@ -33,14 +33,16 @@ from ..model.arithmetic import shown as cut
 from ..model.dimensions import targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
+from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import assemble
 from ..report import preview
 from ..report.page import ASSETS, asset
+from ..report.words import value_text
 from . import faults
 from .bodies import Json, json_object, number
 from .guard import Guard
-from .intake import MOST_BYTES
+from .intake import MOST_BYTES, NoRecording, safe_path
 from .jobs import Job, Jobs, printed_json
 from .locks import Locks
 from .outcome import outcome
@@ -49,6 +51,8 @@ from .session import Session, channel_list
 EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
 LONGEST_TITLE = 200
 EARLIER = 12  # pieces of work that are listed
+NAMED = 4  # files that are named of those left out
+AT_BOUND = 1e-3  # of the size that matters, from a bound on which a size stands
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
 POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -140,12 +144,13 @@ class Workbench:
         return respond
 
     async def change(self, session: Session, act: Callable[[], object] = lambda: None) -> Response:
-        """Do something with a session that nobody else changes meanwhile, and tell how it is then."""
+        """Do something with a session that nobody else changes meanwhile, and tell how it is then, and what the act says to
+        that, if it says anything."""
 
         def alone() -> dict[str, Any]:
             with self.locks.held(session):
-                act()
-                return self.told(session)
+                said = act()
+                return {**self.told(session), "remark": said if isinstance(said, str) else ""}
 
         return Json(await run_in_threadpool(alone))
 
@@ -210,7 +215,7 @@ class Workbench:
             "files": session.files(),
             "headers": {header: column["files"] for header, column in columns.items()},
             "times": [header for header, column in columns.items() if column["time"]],
-            "signals": {header: column["signal"] for header, column in columns.items()},
+            "signals": {header: column["signals"] for header, column in columns.items()},
             "faults": found,
             "channels": channel_list(),
             "noise": noise,
@@ -240,10 +245,23 @@ class Workbench:
             name = form.get("name")
             return await self.change(session, lambda: self._take_in(session, files, name if isinstance(name, str) else ""))
 
-    def _take_in(self, session: Session, files: list[UploadFile], name: str) -> None:
+    def _take_in(self, session: Session, files: list[UploadFile], name: str) -> str:
+        """Takes in the recordings among these files, and says which are none: a lab's folder holds notes and pictures, too."""
+        taken, other = list[UploadFile](), list[NoRecording]()
         for file in files:
+            try:
+                safe_path(file.filename or "")
+                taken.append(file)
+            except NoRecording as error:
+                other.append(error)
+        if not taken:
+            raise other[0]
+        for file in taken:
             session.put(file.filename or "", file.file, self.most_upload)
         session.draft(name)
+        names = [str(error).partition(":")[0] for error in other]
+        more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+        return f"Left out, as no recording: {', '.join(names[:NAMED])}{more}." if names else ""
 
     async def take_sample(self, request: Request, session: Session) -> Response:
         return await self.change(session, session.try_sample)
@@ -326,7 +344,7 @@ class Workbench:
         effect = self._effect(session, asked)
 
         def after(outputs: list[str]) -> None:
-            job.result = _added(effect, outputs[0])
+            job.result = _added(effect, outputs[0], session)
 
         words = ["add", effect, "campaign", "-o", "tried.toml", "--json", "--progress", *self._with(session)]
         job = Job("try", [words], after)
@@ -337,7 +355,7 @@ class Workbench:
         target = session.folder / "better.toml"
 
         def after(outputs: list[str]) -> None:
-            found = _added(effect, outputs[0])
+            found = _added(effect, outputs[0], session)
             with self.locks.held(session):
                 session.keep(target, f"+ {effect}", found["ladder"])
             job.result = found
@@ -374,6 +392,10 @@ class Workbench:
             )
         if id in bundled():
             raise UsageError(f"there is an effect {id!r} already; choose another name")
+        if any(step["label"] == f"+ {id}" for step in session.history()["steps"]):
+            raise UsageError(
+                f"a model of this work has your effect {id!r} already, which stays what it is; choose another name"
+            )
         if not title.isprintable() or set(title) & set('"\\{}') or not 0 < len(title) <= LONGEST_TITLE:
             raise UsageError("say in a few plain words what the effect is")
         size, lower, upper = (number(asked, key) for key in ("size", "lower", "upper"))
@@ -408,10 +430,24 @@ class Workbench:
         return Response(content, media_type="application/octet-stream", headers=_attached(name))
 
 
-def _added(effect: str, printed: str) -> dict[str, Any]:
+def _added(effect: str, printed: str, session: Session) -> dict[str, Any]:
     """What `wheelchair add` found, as far as the page tells it."""
     told = printed_json(printed)
-    return {"effect": effect, "ladder": told["ladder"], "estimates": told["estimates"]}
+    bounds = list(_at_bounds(session.catalogue()[effect], told["values"]))
+    return {"effect": effect, "ladder": told["ladder"], "estimates": told["estimates"], "bounds": bounds}
+
+
+def _at_bounds(effect: Effect, values: Mapping[str, float]) -> Iterator[str]:
+    """A sentence for each size that stands at a bound, where its error says nothing of how sure it is."""
+    for p in effect.owned:
+        if p.name not in values or not p.smallest_interesting:
+            continue
+        value, near, short = values[p.name], AT_BOUND * p.smallest_interesting, p.name.rpartition(".")[2]
+        if value <= p.lower + near:
+            least = value_text(p.lower, None, p.unit)
+            yield f"{short} stands at the least that is allowed, {least}: the effect is not there, or acts the other way."
+        elif value >= p.upper - near:
+            yield f"{short} stands at the greatest that is allowed, {value_text(p.upper, None, p.unit)}: it may be larger."
 
 
 def _download(file: Path, name: str) -> Response:

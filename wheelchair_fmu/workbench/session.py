@@ -6,6 +6,7 @@
     effects/*.py                     effects written in the page
     variants/N.toml                  one for each step; history.json says which, and where undo has gone
     campaigns/*.toml                 campaign.toml as it was at each step
+    taken-out/                       recordings that were taken out, for undo
     diagnosis.json, report.html      of the last diagnosis; diagnosed.json says of which variant and campaign.toml
 """
 
@@ -62,8 +63,8 @@ class Session:
         if not NAME.fullmatch(id):
             raise UsageError(f"{id!r} is no session; open the workbench's first page")
         self.id, self.folder = id, root / id
-        self.campaign, self.effects, self.variants, self.campaigns = (
-            self.folder / n for n in ("campaign", "effects", "variants", "campaigns")
+        self.campaign, self.effects, self.variants, self.campaigns, self.aside = (
+            self.folder / n for n in ("campaign", "effects", "variants", "campaigns", "taken-out")
         )
 
     @classmethod
@@ -182,18 +183,30 @@ class Session:
         return {header: column["files"] for header, column in self.columns().items()}
 
     def columns(self) -> dict[str, dict[str, Any]]:
-        """Every header there is, with the `files` that have it, and its `signal` in the first of them, of few values, null in
-        gaps, so that a sign or a unit that is wrong can be seen, empty where there are no numbers; and whether the files call
-        it their `time`."""
+        """Every header there is, with the `files` that have it, and its `signals`, in the first of them and in the first of
+        each device: few values, null in gaps, so that a sign or a unit that is wrong can be seen, empty where there are no
+        numbers; and whether the files call it their `time`."""
         found: dict[str, dict[str, Any]] = {}
+        firsts = self._first_of_devices()
         for name in self.files():
             table, _ = open_recording(self.campaign / name, name, {})
             for i, header in enumerate(table.headers if table else ()):
                 if table and header and header not in found:
-                    found[header] = {"files": [], "signal": _thinned(table.rows([i]).values[i]), "time": table.time == i}
+                    found[header] = {"files": [], "signals": {}, "time": table.time == i}
+                if table and header and (name in firsts or not found[header]["signals"]):
+                    found[header]["signals"][name] = _thinned(table.rows([i]).values[i])
                 if header:
                     found[header]["files"].append(name)
         return found
+
+    def _first_of_devices(self) -> set[str]:
+        """The first recording of each device that campaign.toml knows."""
+        runs, first = (self.content() or {}).get("run"), dict[str, str]()
+        for run in runs if isinstance(runs, list) else ():
+            files = run.get("files") if isinstance(run, dict) else None
+            for device, file in files.items() if isinstance(files, dict) else ():
+                first.setdefault(device, str(file))
+        return set(first.values())
 
     def content(self) -> dict[str, Any] | None:
         """campaign.toml as data; None where it is no TOML, or nothing that anybody writes; {} where there is none."""
@@ -230,12 +243,23 @@ class Session:
             runs = [r for r in content["run"] if not isinstance(r, Mapping) or _kept(r, keep)]
             self.write_content({**content, "run": runs})
 
-    def drop(self, name: str) -> None:
-        """Take a recording out. Raises UsageError for one that is not there."""
+    def drop(self, name: str) -> str:
+        """Take a recording out, which undo brings back, and say so. Raises UsageError for one that is not there."""
         if name not in self.files():
             raise unknown("file", name, self.files())
-        (self.campaign / name).unlink()
+        steps = self._steps_so_far()
+        self._move(name, self.campaign, self.aside)
         self.without(lambda file: file != name)
+        if steps:
+            self._append(steps, f"{name} taken out", self.variant_file.name, None, name)
+        return f"{name} was taken out; undo brings it back."
+
+    def _move(self, name: str, source: Path, target: Path) -> None:
+        """A recording from one folder into another, where it is there."""
+        there = target / safe_path(name)
+        if (source / name).is_file():
+            there.parent.mkdir(parents=True, exist_ok=True)
+            (source / name).replace(there)
 
     def judged(self, known: Mapping[str, tuple[float, float]]) -> tuple[list[dict[str, Any]], dict[str, float]]:
         """What is wrong with the recordings and with the session itself; standard deviations of the noise in SI, as stated or
@@ -288,7 +312,8 @@ class Session:
         return {**bundled(), **self.own_effects()}
 
     def history(self) -> dict[str, Any]:
-        """{"at": place, "steps": [{"label", "file", "ladder", "campaign"}]}; what variants there are, where it is broken."""
+        """{"at": place, "steps": [{"label", "file", "ladder", "campaign"}]}, some with the recording that was "taken" out; what
+        variants there are, where it is broken."""
         return recovered(self.folder)
 
     def keep(self, variant: Variant | Path, label: str, ladder: Any = None) -> None:
@@ -318,6 +343,9 @@ class Session:
         if not 0 <= at < len(steps):
             raise UsageError("there is nothing to undo" if by < 0 else "there is nothing to redo")
         steps[history["at"]]["campaign"] = self._snapshot()
+        if taken := steps[max(at, history["at"])].get("taken"):
+            folders = (self.aside, self.campaign) if by < 0 else (self.campaign, self.aside)
+            self._move(str(taken), *folders)
         if steps[at].get("campaign") and (self.campaigns / steps[at]["campaign"]).is_file():
             self._restore(self.campaigns / steps[at]["campaign"])
         self._write_history(at, steps)
@@ -361,8 +389,9 @@ class Session:
             steps[-1]["campaign"] = self._snapshot()
         return steps
 
-    def _append(self, steps: list[dict[str, Any]], label: str, file: str, ladder: Any) -> None:
-        steps.append({"label": label, "file": file, "ladder": ladder, "campaign": self._snapshot()})
+    def _append(self, steps: list[dict[str, Any]], label: str, file: str, ladder: Any, taken: str | None = None) -> None:
+        step = {"label": label, "file": file, "ladder": ladder, "campaign": self._snapshot()}
+        steps.append(step if taken is None else {**step, "taken": taken})
         self._write_history(len(steps) - 1, steps)
 
     def _snapshot(self) -> str | None:
@@ -382,7 +411,7 @@ class Session:
         if file.exists() and file.read_bytes() == kept.read_bytes():
             return
         write(file, kept.read_bytes())
-        there = set(self.files())
+        there = self.files()  # a list: what campaign.toml names may be anything
         self.without(lambda file: file in there)
         self.draft()
 

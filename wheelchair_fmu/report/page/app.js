@@ -299,6 +299,13 @@ class App {
     return held.length ? held : this.campaign.runs.map((_, i) => i);
   }
 
+  /** The model as it is shown: a step of the search, or values that the reader has set. */
+  called() {
+    const { diagnosis } = this.campaign, there = this.printed ? diagnosis.models.at(-1) : diagnosis.models.find((m) => same(m.values, this.values));
+    if (!there) return "with values set by hand";
+    return there === diagnosis.models.at(-1) && there.step.startsWith("+") ? "with what the search found" : `model ${stepOf(this.campaign, there.step)}`;
+  }
+
   judged() {
     return this.campaign.runs.some((r) => r.role === "holdout") ? "runs held out" : "the fitted runs";
   }

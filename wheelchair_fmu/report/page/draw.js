@@ -7,7 +7,7 @@ const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "
 
 /** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
 export const PRINT = {
-  ink: "#111111", faint: "#505050", line: "#d9d9d9", paper: "#ffffff", measured: "#4d4d4d", model: "#0072b2", before: "#9a6fb0",
+  ink: "#111111", faint: "#505050", line: "#d9d9d9", paper: "#ffffff", measured: "#767676", model: "#0072b2", before: "#9a6fb0",
   error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", print: true,
 };
 

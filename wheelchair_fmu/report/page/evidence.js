@@ -34,7 +34,7 @@ function table(ranking, records, campaign) {
   return h("div", {}, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Evidence table" },
     h("table", { class: "evidence" }, h("caption", {}, "Every effect of the catalogue, the likeliest first"),
       h("thead", {}, h("tr", {}, heads.map(([text, right]) => h("th", { scope: "col", class: right ? "number" : null }, text)))), body)),
-    h("p", { class: "hint" }, KEY),
+    h("p", { class: "hint of-columns" }, KEY),
     h("p", { class: "tools" }, ranking.length > FIRST ? more : null,
       h("button", { type: "button", class: "quiet", onclick: () => save(`${campaign.name}-evidence.csv`, csv(columns(ranking))) }, "CSV")));
 }

@@ -108,16 +108,16 @@ const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? cam
 function columnRow(bench, header, place, given, options, record) {
   const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
   const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
-  const unit = text(`unit of ${header}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
+  const unit = text(`unit of ${header}${place.name ? ` of ${place.name}` : ""}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header}${place.name ? ` of ${place.name}` : ""} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
   const rolls = () => { radius.hidden = !ROLLING.test(which.value); };
   const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
   const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
   const derived = channel && !(channel in options) ? { [channel]: `${channelOf(channel)}, from which other signals are worked out` } : {};
-  const which = select(`channel of ${header}`, { ...options, ...unused, ...derived }, channel, () => change());
+  const which = select(`channel of ${header}${place.name ? ` of ${place.name}` : ""}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
   rolls();
-  const files = headers[header].filter((f) => !place.files || place.files.has(f));
-  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(signals[header] ?? [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
+  const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
+  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */

@@ -13,7 +13,7 @@ const STRONGEST = 55; // per cent of colour, on which text in ink still stands o
 /** How much colour an error has, in per cent. */
 export const loud = (v) => (Number.isFinite(v) ? Math.round(Math.min(1, Math.max(0, Math.log(v / QUIET) / Math.log(LOUD / QUIET))) * STRONGEST) : 0);
 
-const number = (v) => (Number.isFinite(v) ? (v < 100 ? rms(v) : significant(v, 3)) : "–");
+const number = (v) => (Number.isFinite(v) ? (v < 10 ? rms(v) : significant(v, 3)) : "–"); // three digits at most have room in a column
 
 /** A table in the page. `rows` are [{name, note, cells: [{value, note, label, at}]}]; `choose(at)` makes cells buttons. */
 export class Heat {

@@ -132,10 +132,10 @@ export function together(width, look, pair) {
   drawn.push(svg("rect", { x: across(x0), y: down(y1), width: across(x1) - across(x0), height: down(y0) - down(y1), fill: look.band }));
   for (const [v, words] of ticked(ticks(...xs, w / 70))) drawn.push(line(across(v), top, across(v), top + hh, v === 0 ? look.faint : look.line), text(across(v), top + hh + 16, words, look.faint, "middle"));
   for (const [v, words] of ticked(ticks(...ys, hh / 45))) drawn.push(line(left, down(v), left + w, down(v), v === 0 ? look.faint : look.line), text(left - 7, down(v) + 4, words, look.faint, "end"));
+  for (const [x, y] of alone) drawn.push(svg("circle", { cx: across(x), cy: down(y), r: 6, fill: "none", stroke: look.faint, "stroke-width": 1.5 })); // under the lines, which may end there
   for (const [pieces, dash] of lines) for (const points of pieces) drawn.push(course(points.map((q) => across(q[0])), points.map((q) => down(q[1])), look.accent, { "stroke-width": 2, "stroke-dasharray": dash }));
   const [a, b] = at([0, 0]);
   drawn.push(svg("circle", { cx: across(a), cy: down(b), r: 4.5, fill: look.accent }));
-  for (const [x, y] of alone) drawn.push(svg("circle", { cx: across(x), cy: down(y), r: 5, fill: look.paper, stroke: look.ink, "stroke-width": 2 }));
   const [below, beside] = [measured(pair.names[0], w + 40, look), measured(pair.names[1], hh, look)];
   below.forEach((t, k) => drawn.push(text(left + w / 2, top + hh + 36 + 14 * k, t, look.ink, "middle")));
   beside.forEach((t, k) => drawn.push(text(0, 0, t, look.ink, "middle", { transform: `translate(${14 + 14 * k} ${top + hh / 2}) rotate(-90)` })));

@@ -100,6 +100,7 @@ class Workbench {
 
   show(state) {
     this.state = state;
+    write(byId("remark"), state.remark ?? "");
     byId("name").textContent = state.files.length ? state.campaign?.campaign?.name ?? "" : "";
     this.showForms();
     this.showFaults();
@@ -276,9 +277,9 @@ class Workbench {
   }
 
   /** What an effect that was tried does to the error, how large it comes out, and the way to keep it. */
-  triedWords({ effect, ladder, estimates }) {
+  triedWords({ effect, ladder, estimates, bounds = [] }) {
     const sizes = Object.entries(estimates ?? {}).filter(([name]) => name.startsWith(`effect.${effect}.`)).map(([name, size]) => `its size ${name.split(".").at(-1)} comes out as ${size}`);
-    return [`With ${this.titleOf(effect)}, ${changed(ladder)} ${sizes.length ? `${capital(listed(sizes))}. ` : ""}`, h("button", { type: "button", "data-add": effect, onclick: () => this.job("add", { effect }) }, "keep it in the model")];
+    return [`With ${this.titleOf(effect)}, ${changed(ladder)} ${sizes.length ? `${capital(listed(sizes))}. ` : ""}${bounds.map((words) => `Its size ${words} `).join("")}`, h("button", { type: "button", "data-add": effect, onclick: () => this.job("add", { effect }) }, "keep it in the model")];
   }
 
   async poll() {
