@@ -117,6 +117,17 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     assert beside.inner_text() == ""
 
 
+def test_a_value_that_is_no_number_is_no_reason_to_read_the_files_anew(page: Any) -> None:
+    """Which would write over all other values."""
+    page.click("#sample")
+    page.wait_for_function("() => window.workbench?.state?.files.length === 10")
+    page.evaluate("workbench.save((c) => { c.chair.m = 'heavy'; })")
+    page.wait_for_function("() => document.getElementById('faults').innerText.includes('heavy')")
+    assert "find out" not in page.inner_text("#faults") and page.is_hidden("#lab")
+    page.click("#undo")
+    page.wait_for_function("() => document.getElementById('faults').innerText.includes('can be read')")
+
+
 def test_a_run_without_recorded_pushes_is_mended_where_it_stands(page: Any, tmp_path: Path) -> None:
     """And of a file of many columns, those that nothing is taken from are folded."""
     time = np.arange(0, 5, 0.02)

@@ -132,7 +132,8 @@ class Workbench {
 
   showFaults() {
     const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), remarks = faults.filter((f) => f.severity !== "error");
-    const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), by = raw ? ": find out above what is in these files, or mend them by hand." : ".", unread = files.length > 0 && errors.length > 0 && this.unread;
+    const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), unread = files.length > 0 && errors.length > 0 && this.unread;
+    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), by = raw && anew ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed, and writes over the others
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
     if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
       h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
@@ -142,12 +143,12 @@ class Workbench {
     mark(faults);
     byId("there").hidden = !files.length;
     byId("there").textContent = `${files.length} ${files.length > 1 ? "files are" : "file is"} here; more can be added.`;
-    byId("lab").hidden = !files.length || (!errors.length && raw);
+    byId("lab").hidden = !files.length || (!anew && raw);
     byId("lab").firstElementChild.textContent = raw ? "What is in these files?" : "Read the files again, with other sizes";
-    if (this.asked !== (this.asked = errors.length > 0)) byId("lab").open = this.asked; // else as the reader left it
+    if (this.asked !== (this.asked = anew)) byId("lab").open = this.asked; // else as the reader left it
     for (const [name, of] of Object.entries(SIZES)) sizeField(name).value ||= of(campaign ?? {}) ?? "";
     sizeField("person").placeholder = campaign?.rider?.m ?? ""; // it may be assumed: who does not give it has it assumed again
-    byId("import").setAttribute("aria-pressed", errors.length > 0);
+    byId("import").setAttribute("aria-pressed", anew);
     byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
     byId("preview-link").hidden = !files.length || unread;
     byId("preview").href = `${this.here}/preview`;
