@@ -117,6 +117,18 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     assert beside.inner_text() == ""
 
 
+def test_the_keyboard_goes_on_from_the_section_whose_button_is_gone(page: Any) -> None:
+    page.focus("#sample")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => window.workbench?.state?.files.length === 10")
+    page.wait_for_function("() => document.activeElement.id === 'measurements-title'")
+    page.focus("#diagnose")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => document.activeElement.id === 'work-title'")
+    page.click("#cancel")
+    page.wait_for_function("() => workbench.state.job.state !== 'running'", timeout=LONG)
+
+
 def test_a_value_that_is_no_number_is_no_reason_to_read_the_files_anew(page: Any) -> None:
     """Which would write over all other values."""
     page.click("#sample")

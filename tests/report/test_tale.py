@@ -118,7 +118,7 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     assert sure["lead"] == "A chance of 99.6 % that it is large enough to matter"
     before, after = (CASES["missing"]["ladder"][i]["heldout"] for i in (1, -1))
     assert f"from {before:.2f} to {after:.2f}" in sure["lines"][0]
-    assert do["lead"] == "Lift the rear and spin both wheels: one stops sooner."
+    assert do["lead"] == "Lift the rear and spin both wheels."
     assert do["lines"][-1].endswith(f"wheelchair add {DRAG}.")
 
 

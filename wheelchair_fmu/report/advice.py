@@ -27,8 +27,8 @@ INSPECT = {
     "push_force_delay": "Tap the push rim sharply and compare when the force and the accelerometer show it.",
     "push_force_gain": "Hang a known weight on each push rim and compare what its force sensor reads.",
     "relaxation_length": "Compare the tyres with those that were identified: a soft or wide tyre follows slip more slowly.",
-    "rolling_resistance_asymmetry": "Lift the rear and spin both wheels: one stops sooner. Look there for a "
-    "rubbing brake, a soft tyre or a tight bearing.",
+    "rolling_resistance_asymmetry": "Lift the rear and spin both wheels. If one stops sooner, look "
+    "there for a rubbing brake or a tight bearing; if both turn alike, compare the pressure of their tyres.",
     "rolling_resistance_speed": "Spin the rear wheels off the floor and watch how they slow: grease and seals resist speed.",
     "scrub_torque": "Turn the chair on the spot and feel what it takes to keep it turning; then at a higher tyre pressure.",
     "scrub_torque_viscous": "Turn the chair on the spot slowly and quickly: does turning faster take more?",

@@ -223,6 +223,7 @@ class Workbench {
     }
     this.showDock(job);
     this.enable();
+    this.refocus();
     clearTimeout(this.polling);
     if (job?.state === "running") this.polling = setTimeout(() => this.poll(), told.parentElement === byId("dock") && !told.hidden ? LOST : POLL);
   }
@@ -334,6 +335,16 @@ class Workbench {
     for (const file of files) if (!(await this.take(() => ask(`files/${file}`, { method: "DELETE" })))) return;
   }
 
+  /** Whoever used what is gone now, or rests, goes on from the head of its section, and not from the top of the page. */
+  refocus() {
+    const { element, section } = this.used ?? {};
+    if (document.activeElement !== document.body || !section || (element.isConnected && !element.disabled && element.getClientRects().length)) return;
+    this.used = null;
+    const head = section.querySelector("h2");
+    head.tabIndex = -1;
+    head.focus({ preventScroll: true });
+  }
+
   /** Hand out a file that the server may have to make first. */
   async export(name, making) {
     const button = document.activeElement;
@@ -345,11 +356,13 @@ class Workbench {
       return response.blob();
     });
     button.disabled = false;
+    if (document.activeElement === document.body) button.focus({ preventScroll: true });
     if (done) save(name, done);
     byId("taken").textContent = done ? `${name} was handed out, ${Math.max(1, Math.round(done.size / 1000))} kB.` : "";
   }
 
   listen() {
+    document.addEventListener("focusin", ({ target }) => { this.used = { element: target, section: target.closest("section") }; });
     const drop = byId("drop"), sizes = () => Object.fromEntries(Object.keys(SIZES).map((n) => [n, sizeField(n).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
     byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {}), "Taking in the sample …"));
     byId("import").addEventListener("click", () => this.job("import", sizes()));
