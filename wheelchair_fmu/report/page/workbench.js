@@ -248,10 +248,10 @@ class Workbench {
 
   /** Which step it is, of how many, and how long the rest takes: as the last one of its kind did, or else as its steps so far. */
   progressed({ kind, lines, steps, seconds, usual }, bar) {
-    const many = usual?.steps ?? STEPS[kind], length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = many && (length ? seconds >= length : steps > many);
+    const many = usual?.steps ?? STEPS[kind], length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
     if (length) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
-      late ? usual ? "longer than the last time" : "these recordings take longer than most" : length ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : length >= seconds + 1 ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
   }
 
   /** What came of a job, in a sentence. */
@@ -443,7 +443,7 @@ class Workbench {
 
 const sizeField = (name) => byId("lab").querySelector(`[name=${name}]`);
 const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
-const whole = (seconds) => (seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
+const whole = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 
 /** Where to look once it has ended: [address, words]. */
 const SEE = { import: ["#measurements-title", "see what is in them"], diagnose: ["#outcome", "read the verdict"], calibrate: ["#history", "see the models"], add: ["#history", "see the models"], try: ["#tried", "see what it does"] };
