@@ -50,18 +50,6 @@ _EXAMPLES = {
     "1": "1 or %",
     "bar": "bar or kPa",
 }
-BY_KG_M_S = {  # coherent units of generic terms and of most that people type, by their powers
-    **dict.fromkeys(("1", "rad"), (0, 0, 0)),
-    **{
-        "s": (0, 0, 1),
-        "m": (0, 1, 0),
-        "m/s": (0, 1, -1),
-        "m/s2": (0, 1, -2),
-        "rad/s": (0, 0, -1),
-        "N": (1, 1, -2),
-        "N.m": (1, 2, -2),
-    },
-}
 KEPT = 4096  # units that are remembered
 _PLAIN = {"rad": "1"}  # an angle is a plain number
 SI_OF = {**{si: si for si in _EXAMPLES}, **{text: si for text, si in USUAL}}
@@ -182,8 +170,6 @@ def coherent(text: str) -> tuple[float, int, int, int]:
     Raises UnitError for an unknown unit, and for one that needs more than mass, length and time, in whole powers.
     """
     text, cure = text.strip(), "write a unit of mass, length, time or angle, such as N.m, km/h or deg"
-    if text in BY_KG_M_S:
-        return 1.0, *BY_KG_M_S[text]
     unit = _parse(text) if text else None
     if unit is None:
         raise _unknown(text, cure)

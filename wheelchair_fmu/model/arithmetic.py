@@ -17,6 +17,7 @@ import casadi as cs
 import numpy as np
 
 from ..errors import UsageError
+from ..quantities import UNITS
 from ..units import UnitError, coherent
 from .smooth import direction, grip, magnitude
 
@@ -170,11 +171,13 @@ def _without_units(text: str) -> tuple[str, Numbers]:
 
 def _in_si(number: str, unit: str) -> Number:
     written = f"{number} [{unit.strip()}]"
-    try:
-        factor, *exponents = coherent(unit)
-    except UnitError as error:
-        raise UsageError(f"{shown(written)}: {error}") from None
-    kg, m, s = exponents
+    if known := UNITS.get(unit.strip()):  # which pint need not be loaded for
+        factor, kg, m, s = 1.0, known.kg, known.m, known.s
+    else:
+        try:
+            factor, kg, m, s = coherent(unit)
+        except UnitError as error:
+            raise UsageError(f"{shown(written)}: {error}") from None
     if not isfinite(float(number) * factor):
         raise UsageError(f"{shown(written)} is no number to count with; give a finite one")
     return Number(float(number) * factor, unit.strip(), (kg, m, s), written)

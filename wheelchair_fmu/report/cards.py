@@ -24,6 +24,7 @@ from .told import (
     size_lines,
     sized,
     there_words,
+    times_text,
     times_words,
     together_words,
 )
@@ -54,11 +55,7 @@ def _size_gauge(t: Told) -> dict[str, Any]:
     groups = grouped(t.found, t.diagnosis["ties"]) if t.verdict == "tie" else [(e,) for e in t.found]
     each = [e for group in sorted(groups, key=lambda group: len(group) > 1) for e in group]
     labels = ORDER if len(each) > 1 else ("size",)
-    bars = [
-        (f"{label} {times_words(size).removesuffix(' times')}×", size)
-        for label, e in zip(labels, each, strict=False)
-        for size in [t.multiple(e)]
-    ]
+    bars = [(f"{label} {times_text(t.multiple(e))}×", t.multiple(e)) for label, e in zip(labels, each, strict=False)]
     return {"gauge": {"bars": bars, **MATTERS}}
 
 

@@ -25,7 +25,7 @@ from .told import (
     together_words,
     why_not,
 )
-from .words import STILL, listed, strained
+from .words import STILL, listed, printed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
 TRIED = 6  # effects in the picture of the rivals
@@ -83,7 +83,7 @@ def choices(t: Told) -> list[dict[str, Any]]:
     right = set(t.found)
     offered = [*t.found[: CHOICES + 1], *others[:CHOICES]]
     if t.verdict in ("adequate", "cannot_see"):  # what these runs would show, and what not
-        right = {e for e in others if t.rows[e]["power"] >= DEFAULT.power and _below(t.rows[e])}
+        right = {e for e in others if _absent(t.rows[e])}
         offered = [*[e for e in others if e in right][:2], *[e for e in others if e not in right][:2]]
     guesses = (
         {
@@ -103,11 +103,12 @@ def _answer(t: Told, effect: str) -> str:
     if t.slight and effect in t.found:
         return f"Yes, at {multiple_words(t, effect)} the size that would matter."
     if t.verdict in ("adequate", "cannot_see"):
-        if row["power"] >= DEFAULT.power and not _below(row):
-            return "At the smallest size that matters it would have shown; but how large it is, these runs leave open."
-        if row["power"] >= DEFAULT.power:
+        if _absent(row):
             return "These runs would have shown it at the smallest size that matters: it is not there, or smaller than that."
-        return f"At the smallest size that matters, these runs would show it with a chance of {_per_cent(row['power'])} only."
+        if row["power"] >= DEFAULT.power:
+            return "At the smallest size that matters it would have shown; but how large it is, these runs leave open."
+        chance = printed(f"{row['power']:.0%}")
+        return f"At the smallest size that matters, these runs would show it with a chance of {chance} only."
     if effect in t.slightly_in:
         return (
             f"It is in the model, at {multiple_words(t, effect)} the size that would matter: too little to be what is missing."
@@ -138,8 +139,11 @@ def _answer(t: Told, effect: str) -> str:
     return f"It helps, but not enough.{error}"
 
 
-def _below(row: Mapping[str, Any]) -> bool:
-    """Is each size of an effect surely smaller than what would matter, as far as it is known?"""
+def _absent(row: Mapping[str, Any]) -> bool:
+    """Would these runs have shown an effect, and is each of its sizes, as far as it is known, surely smaller than what would
+    matter?"""
+    if row["power"] < DEFAULT.power:
+        return False
     known = [v for v in row["parameters"].values() if v["se"] and v["smallest_interesting"]]
     return all(abs(v["estimate"]) + SURE * v["se"] < v["smallest_interesting"] for v in known)
 
@@ -312,17 +316,13 @@ def _unseen(t: Told) -> list[str]:
     hidden = sorted(
         (r for r in t.rows.values() if r["power"] < DEFAULT.power and r["effect"] in t.titles), key=lambda r: r["power"]
     )
-    named = [f"{t.title(r['effect'])} ({_per_cent(r['power'])})" for r in hidden[:TRIED]]
+    named = [printed(f"{t.title(r['effect'])} ({r['power']:.0%})") for r in hidden[:TRIED]]
     more = [f"{number(len(hidden) - TRIED).lower()} more"] if len(hidden) > TRIED else []
     return [
         "At the smallest size that matters, each of these could be there and not show. In brackets stands the chance that "
         "these runs would have shown it.",
         f"{capital(listed([*named, *more], 'and'))}.",
     ]
-
-
-def _per_cent(share: float) -> str:
-    return f"{share:.0%}".replace("%", " %")
 
 
 def _nothing(t: Told) -> str:

@@ -325,9 +325,14 @@ def multiple_words(t: Told, effect: str) -> str:
 
 
 def times_words(multiple: float) -> str:
+    return f"{times_text(multiple)} times"
+
+
+def times_text(multiple: float) -> str:
+    """The number alone."""
     if multiple < 0.95:
-        return f"{multiple:.2g} times"
-    return f"{multiple:.1f} times".replace(".0 ", " ") if multiple < 9.95 else f"{multiple:.0f} times"
+        return f"{multiple:.2g}"
+    return f"{multiple:.1f}".removesuffix(".0") if multiple < 9.95 else f"{multiple:.0f}"
 
 
 def number(n: int) -> str:

@@ -27,6 +27,7 @@ from ..campaign.importing import SIZES
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
+from ..inference.estimation.fit import AT_BOUND
 from ..inference.models.factory import CALIBRATED
 from ..inference.subject import known_parameters
 from ..model.arithmetic import shown as cut
@@ -52,7 +53,6 @@ EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
 LONGEST_TITLE = 200
 EARLIER = 12  # pieces of work that are listed
 NAMED = 4  # files that are named of those left out
-AT_BOUND = 1e-3  # of the size that matters, from a bound on which a size stands
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
 POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -247,19 +247,19 @@ class Workbench:
 
     def _take_in(self, session: Session, files: list[UploadFile], name: str) -> str:
         """Takes in the recordings among these files, and says which are none: a lab's folder holds notes and pictures, too."""
-        taken, other = list[UploadFile](), list[NoRecording]()
+        taken, other = list[UploadFile](), dict[str, NoRecording]()
         for file in files:
             try:
                 safe_path(file.filename or "")
                 taken.append(file)
             except NoRecording as error:
-                other.append(error)
+                other[file.filename or ""] = error
         if not taken:
-            raise other[0]
+            raise next(iter(other.values()))
         for file in taken:
             session.put(file.filename or "", file.file, self.most_upload)
         session.draft(name)
-        names = [str(error).partition(":")[0] for error in other]
+        names = list(other)
         more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
         return f"Left out, as no recording: {', '.join(names[:NAMED])}{more}." if names else ""
 

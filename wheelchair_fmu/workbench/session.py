@@ -190,13 +190,15 @@ class Session:
         firsts = self._first_of_devices()
         for name in self.files():
             table, _ = open_recording(self.campaign / name, name, {})
-            for i, header in enumerate(table.headers if table else ()):
-                if table and header and header not in found:
-                    found[header] = {"files": [], "signals": {}, "time": table.time == i}
-                if table and header and (name in firsts or not found[header]["signals"]):
-                    found[header]["signals"][name] = _thinned(table.rows([i]).values[i])
-                if header:
-                    found[header]["files"].append(name)
+            if table is None:
+                continue
+            for i, header in enumerate(table.headers):
+                if not header:
+                    continue
+                column = found.setdefault(header, {"files": [], "signals": {}, "time": table.time == i})
+                if name in firsts or not column["signals"]:
+                    column["signals"][name] = _thinned(table.rows([i]).values[i])
+                column["files"].append(name)
         return found
 
     def _first_of_devices(self) -> set[str]:

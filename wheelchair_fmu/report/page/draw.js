@@ -73,9 +73,9 @@ export function present(time, values) {
 
 export const round = (v) => Math.round(v * 10) / 10;
 
-/** Round numbers from low to high, about so many. */
 const FEWEST = 3; // ticks, as fewer are no scale; where there is room for so many
 
+/** Round numbers from low to high, about so many. */
 export function ticks(low, high, about = 5) {
   const raw = (high - low) / Math.max(1, about), size = 10 ** Math.floor(Math.log10(raw)), steps = [10, 5, 2, 1, 0.5, 0.2].map((k) => k * size);
   let out = [];

@@ -22,6 +22,9 @@ const LATE = 10; // samples from the end of a run
  *  rises at once, and a picture of it would say nothing of how sure a size is. */
 const bowl = (heights, level) => heights.filter((v) => v !== null && v < 2 * level).length > 3;
 
+/** Columns of a table by their heads, of rows that have them by `heads`' names. */
+const tabled = (rows, heads) => Object.fromEntries(Object.entries(heads).map(([name, head]) => [head, rows.map((r) => r[name])]));
+
 /** What ± is, where a number has it in place of an interval. */
 const plainly = (rows) => (rows.some((r) => r.plainly) ? " Where a number has a ±, that is one standard error, and the bar twice as long either way." : "");
 
@@ -85,14 +88,14 @@ export class Figures {
     const rows = [proposed(this.campaign), ...diagnosis.ranking].filter((r) => r && records.has(r.effect)).flatMap((r) => records.get(r.effect).parameters.map((p) => {
       const own = r.parameters[p.name.split(".").at(-1)], several = records.get(r.effect).parameters.length > 1;
       if (!own || !p.delta) return null;
-      const [low, high] = endsOf(own);
+      const [low, high] = endsOf(own), { unit, factor } = display(p);
       return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
-        note: uncertain(own, p), unit_shown: display(p).unit, from: low * display(p).factor, to: high * display(p).factor, plainly: !own.interval, strong: r.verdict === "proposed" || diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
+        note: uncertain(own, p), unit_shown: unit, from: low * factor, to: high * factor, plainly: !own.interval, strong: r.verdict === "proposed" || diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
       draw: (width, look, room) => forest(width, look, rows.slice(0, Math.max(room ? fitting(room) : FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
-      columns: () => Object.fromEntries(Object.entries({ parameter: "parameter", estimate: "estimate", se: "se", unit: "unit", delta: "smallest of interest", value: "in sizes of interest", low: "95 % from, in sizes of interest", high: "95 % to, in sizes of interest", from: "95 % from", to: "95 % to", unit_shown: "unit of the interval" }).map(([k, words]) => [words, rows.map((r) => r[k])])),
+      columns: () => tabled(rows, { parameter: "parameter", estimate: "estimate", se: "se", unit: "unit", delta: "smallest of interest", value: "in sizes of interest", low: "95 % from, in sizes of interest", high: "95 % to, in sizes of interest", from: "95 % from", to: "95 % to", unit_shown: "unit of the interval" }),
       caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN || Math.abs(r.value) < 0.005 ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : `None of them ${diagnosis.verdict === "outside" ? "suffices" : "is needed"}.`}${rows.length > FIRST ? ` The likeliest of ${rows.length} sizes are drawn.` : ""}${plainly(rows)}`,
     };
   }
@@ -101,16 +104,16 @@ export class Figures {
     const { calibration, final } = this.campaign.diagnosis, intervals = new Map((final?.parameters ?? []).map((p) => [p.name, p.interval])), records = new Map([...this.campaign.calibrated, ...this.campaign.constants].map((p) => [p.name, p]));
     const rows = Object.entries(calibration).filter(([, v]) => v.prior_sd).map(([name, v]) => {
       const at = (b, without) => (Number.isFinite(b) ? (b - v.prior) / v.prior_sd : without); // a bound, as far from what was given
-      const off = (v.value - v.prior) / v.prior_sd, record = records.get(name) ?? { unit: "1" }, own = { estimate: v.value, se: v.se, interval: intervals.get(name) };
-      const [below, above] = endsOf(own).map((end) => (end - v.prior) / v.prior_sd);
+      const off = (v.value - v.prior) / v.prior_sd, record = records.get(name) ?? { unit: "1" }, own = { estimate: v.value, se: v.se, interval: intervals.get(name) }, ends = endsOf(own);
+      const [below, above] = ends.map((end) => (end - v.prior) / v.prior_sd);
       const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
       const words = record.meaning ?? name, [low, high] = [Math.max(below, at(v.lower, -Infinity)), Math.min(above, at(v.upper, Infinity))];
       return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: uncertain(own, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
-        parameter: name, unit: record.unit, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, low_end: endsOf(own)[0], high_end: endsOf(own)[1], lower: v.lower, upper: v.upper, plainly: !own.interval, bound: v.at_bound ? "at its bound" : "" };
+        parameter: name, unit: record.unit, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, low_end: ends[0], high_end: ends[1], lower: v.lower, upper: v.upper, plainly: !own.interval, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
       draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: 95 % of what was given", 1.96),
-      columns: () => Object.fromEntries(Object.entries({ parameter: "parameter", unit: "unit", given: "given", sd: "sd", fitted: "fitted", se: "se", low_end: "95 % from", high_end: "95 % to", lower: "lower bound", upper: "upper bound", bound: "bound" }).map(([k, words]) => [words, rows.map((r) => r[k])])),
+      columns: () => tabled(rows, { parameter: "parameter", unit: "unit", given: "given", sd: "sd", fitted: "fitted", se: "se", low_end: "95 % from", high_end: "95 % to", lower: "lower bound", upper: "upper bound", bound: "bound" }),
       caption: () => `What calibration made of the values that the campaign gives; zero is the value given, the band its 95 % interval as it was given, and each bar the 95 % interval now.${rows.some((r) => r.bound) ? ` Upright bars are bounds, shown where a value stands on one: ${listed(rows.filter((r) => r.bound).map((r) => r.words))}.` : " None stands on a bound."}${plainly(rows)}`,
     };
   }

@@ -3,6 +3,7 @@
 import { byId, h } from "page/dom";
 import { extent, look } from "page/draw";
 import { same } from "page/controls";
+import { byChannel } from "page/errors";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
@@ -122,7 +123,8 @@ export class Story {
   /** The shown channel's error in the shown run, noise = 1, before and now. */
   partsBy() {
     const { app } = this, { run, channel } = app.shown, both = [app.before(), app.results[run]];
-    return both.every((r) => r?.counts?.[channel]) ? both.map((r) => Math.sqrt(r.squares[channel] / r.counts[channel])) : null;
+    const errors = both.map((r) => (r ? byChannel(r)[channel] : NaN));
+    return errors.every(Number.isFinite) ? errors : null;
   }
 
   isIn() {
@@ -188,7 +190,7 @@ export class Story {
     const factor = record.display[0]?.factor ?? 1, scaled = (v) => Array.from(v, (x) => x * factor), there = after?.predicted?.[channel] && after !== before;
     const drawn = [["measured", scaled(run.channels[channel]), "measured", 1.2], there && ["before", scaled(before.predicted[channel]), "before", 1.5, [3, 3]], there ? [name, scaled(after.predicted[channel]), "model", 2] : ["calibrated model", scaled(before.predicted[channel]), "model", 2]].filter(Boolean);
     const edges = this.app.band(...(there ? [after] : [before, null])).map(scaled), width = this.room(this.stages[this.screens[this.at].dataset.kind], 760);
-    const shown = there ? after : before, slight = Math.sqrt(before.squares[channel] / before.counts[channel]) < SLIGHT;
+    const shown = there ? after : before, slight = byChannel(before)[channel] < SLIGHT;
     const mean = (result) => smooth(run.time, result.errors[channel]), was = there ? [["before", mean(before), "before", 1.2, [3, 3]]] : [];
     const means = slight ? [{ label: "error ÷ noise", lines: [...was, ["error", mean(shown), "error", 1.5]], height: 90 }] : [], [low, high] = extent(...means.flatMap((m) => m.lines.map((l) => l[1]))), most = Math.max(LEAST, -low, high);
     for (const m of means) m.reach = [-most, most];
