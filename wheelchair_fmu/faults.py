@@ -17,7 +17,8 @@ class Fault:
     """What is wrong, where, and what to do about it.
 
     `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
-    `column` is a whole header. An error stops `read`; a warning does not; of a note nothing is to be done.
+    `column` is a whole header; `place` is the dotted key of campaign.toml that it is of, as in `chair.m`.
+    An error stops `read`; a warning does not; of a note nothing is to be done.
     """
 
     file: str
@@ -27,6 +28,7 @@ class Fault:
     cure: str
     severity: str = ERROR
     in_run: bool = False  # the file is a recording of a campaign
+    place: str = ""
 
     def __str__(self) -> str:
         kind = "" if self.severity == ERROR else f"{self.severity}: "

@@ -136,6 +136,9 @@ def test_a_value_that_is_no_number_is_no_reason_to_read_the_files_anew(page: Any
     page.evaluate("workbench.save((c) => { c.chair.m = 'heavy'; })")
     page.wait_for_function("() => document.getElementById('faults').innerText.includes('heavy')")
     assert "find out" not in page.inner_text("#faults") and page.is_hidden("#lab")
+    told = page.locator("[data-at='chair.m']")
+    assert "'heavy' is not a finite number" in told.text_content() and "guess" not in told.get_attribute("class")
+    assert page.locator("input[aria-label^='chair.m:']").get_attribute("aria-invalid") is not None
     page.click("#undo")
     page.wait_for_function("() => document.getElementById('faults').innerText.includes('can be read')")
 
@@ -287,6 +290,18 @@ def test_columns_of_devices_are_told_by_what_they_serve(page: Any) -> None:
     assert used.count() == 2 and rest.count() == len(page.evaluate("Object.keys(workbench.state.headers)")) - 2
     chosen = used.first.locator("select").evaluate("e => e.selectedOptions[0].textContent")
     assert chosen == "left wheel angle, from which other signals are worked out"
+    assert page.locator("#forms h3", has_text="Of no device").count() == 0
+    page.evaluate("""() => {
+        const state = structuredClone(workbench.state), [first] = Object.keys(state.headers), [run] = state.campaign.run;
+        state.files.push("late.csv");
+        state.headers = {...state.headers, [first]: [...state.headers[first], "late.csv"]};
+        state.faults.push({severity: "guess", file: run.file, column: first, what: "rad by its size: check it", where: "rim", text: ""});
+        workbench.show(state);
+    }""")
+    lone = page.locator("#forms div", has=page.locator("> h3", has_text="Of no device"))
+    assert "late.csv" in lone.locator("h3").inner_text() and lone.locator("> .wide > table tbody tr").count() == 1
+    assert "Rad by its size: check it." in page.locator("#forms .guess").all_text_contents()
+    assert "1 to look at" in page.inner_text("#faults details[open] > summary")
     assert "turned round" in used.first.inner_text() and not rest.first.is_visible()
     assert "how far the rear axle is behind it" in page.inner_text("#assumed")
 

@@ -354,3 +354,41 @@ def wait_for(ready, seconds: float = 120) -> None:
 
 def test_json_after_other_lines():
     assert printed_json('out/a.png\n{"a": 1}\n') == {"a": 1}
+
+
+def test_what_an_import_only_guessed_is_to_be_looked_at_until_it_is_changed(client):
+    rolling = b"time,u,yaw_rate\n" + b"".join(b"%.2f,%.4f,%.4f\n" % (i / 50, 1 + i / 400, 0.1 * (i % 50)) for i in range(400))
+    upload(client, ("a-coast.csv", rolling), ("b-coast.csv", rolling.replace(b"1.0", b"1.1")))
+
+    def read_anew(**more) -> dict:
+        assert client.post(f"{client.base}/jobs", json={"kind": "import", "mass": 90, **more}).status_code == 200
+        wait_for(lambda: client.get(f"{client.base}/job").json()["state"] != "running")
+        state = client.get(f"{client.base}/state").json()
+        assert state["job"]["state"] == "done" and state["job"]["steps"] >= 4, state["job"]["lines"]
+        return state
+
+    state = read_anew()
+    guesses = [f for f in state["faults"] if f["severity"] == "guess"]
+    assert {f["column"] for f in guesses if f["column"]} == {"u", "yaw_rate"}
+    assert all(f["what"].endswith("check it") for f in guesses if f["column"]), guesses
+    assert all(f["file"] in state["files"] for f in guesses if f["column"])
+    assert [f["at"] for f in guesses if not f["column"]][:1] == ["campaign.axes"]
+    content = state["campaign"]
+    content["columns"]["yaw_rate"]["unit"] = "deg/s"
+    content |= {"noise": {"u": 0.02}, "chair": {**content["chair"], "I_z": 3.3}}
+    content["run"][0]["manoeuvre"] = "down the ramp"
+    state = client.put(f"{client.base}/campaign", json=content).json()
+    assert "yaw_rate" not in {f["column"] for f in state["faults"] if f["severity"] == "guess"}, "somebody has looked at it"
+    again = client.post(f"{client.base}/history", json={"by": -1}).json()
+    assert "yaw_rate" in {f["column"] for f in again["faults"] if f["severity"] == "guess"}
+    client.post(f"{client.base}/history", json={"by": 1})
+    anew = read_anew(track=0.6)["campaign"]
+    assert anew["noise"] == {"u": 0.02} and anew["chair"] == {"m": 90, "t_r": 0.6, "I_z": 3.3}, "written by hand"
+    assert anew["run"][0]["manoeuvre"] == "down the ramp" and anew["columns"]["yaw_rate"]["unit"] == "rad/s"
+
+
+def test_a_wrong_value_is_told_with_its_place(client):
+    content = upload(client, *recordings()).json()["campaign"]
+    content |= {"chair": {"m": "heavy"}, "noise": {"yaw_rate": -1}, "prior": {"chair": {"I_z": 0}}}
+    faults = client.put(f"{client.base}/campaign", json=content).json()["faults"]
+    assert {f["at"] for f in faults if f["severity"] == "error"} == {"chair.m", "noise.yaw_rate", "prior.chair.I_z"}

@@ -20,7 +20,7 @@ from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
 from ..writing import written
 from .files import Kind, TableKind, print_json
-from .group import console, working
+from .group import Progress, console, working
 from .settings import subject
 from .staircase import physical_table
 from .terminal import announce
@@ -40,11 +40,12 @@ def compare(
     as_json: Annotated[bool, typer.Option("--json", help="Print the errors as JSON.")] = False,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where series and figures go.")] = None,
     table: Kind = TableKind.csv,
+    progress: Progress = False,
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     chair, measured, _ = subject(campaign, variant, effects, settings)
     names = [n.strip() for n in calibrate.split(",") if n.strip()]
-    with working("simulating") as say:
+    with working("calibrating" if names else "simulating", lines=progress) as say:
         found = compared(measured, chair, names, say, brief=not output)
     for note in _notes(measured):
         console(stderr=True).print(note)

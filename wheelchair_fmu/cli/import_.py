@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -32,7 +32,9 @@ from ..campaign.importing import (
     open_axes,
     still,
     text,
+    unsure,
 )
+from ..campaign.syncing import RunClocks
 from ..campaign.syncing import find as find_clocks
 from ..errors import UsageError
 from ..faults import ERROR, NOTE, Fault
@@ -40,7 +42,8 @@ from ..inference.subject import known_parameters
 from ..units import same_dimension
 from ..writing import written
 from .check import MOST, draw
-from .group import console, working
+from .files import print_json
+from .group import Progress, console, working
 from .sync import show
 
 RUNS = "runs"  # the folder of a campaign in which the recordings lie
@@ -71,27 +74,50 @@ def import_(
     yes: Annotated[bool, typer.Option("--yes", help="Ask nothing.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the campaign.toml that is there.")] = False,
     link: Annotated[bool, typer.Option("--link", help="Link to the recordings in place of copying them.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+    progress: Progress = False,
 ) -> None:
     """Find out which file is which run and device, which column is what, and how the clocks stand; write a campaign of it."""
     given = (mass, person, radius, track, wheelbase, cm_ahead, caster_track)
     _usable(output, axes, force, dict(zip(SIZES, given, strict=True)))
-    with working("reading"):
+    with working("reading", lines=progress):
         found = find(files, radius)
     kept = held_out(found.runs, holdout or [])
     wanted = Wanted(output.resolve().name, *given, axes=axes, holdout=kept)
     if _at_terminal() and not yes:
         found = _told(files, radius, found)
         wanted = _asked(wanted, found)
-    with working("writing"):
+    with working("writing", lines=progress):
         names = _placed(found, output, link)
     wanted = replace(wanted, at_rest=still(found, wanted.radius))
-    with working("finding the clocks"):
-        seen, said = _on_one_clock(output, found, names, wanted)
-    draw(wanted.name, seen.runs, seen.faults, output)
+    with working("finding the clocks", lines=progress) as say:
+        seen, clocks = _on_one_clock(output, found, names, wanted)
+        say("drawing every signal")
+        draw(wanted.name, seen.runs, seen.faults, output)
+    if as_json:
+        print_json(_told_as_data(found, wanted))
+        return
+    said = [*show(clocks), *_needing_radius(output, found, wanted)]
     _show(found)
     for line in said:
         console().print(line)
     _conclude(output, found, wanted, seen.faults, link)
+
+
+def _told_as_data(found: Found, wanted: Wanted) -> dict[str, Any]:
+    """What was found, column by column, and what is to be looked at."""
+    devices = [
+        {
+            "name": plan.name,
+            "place": plan.place,
+            "columns": [
+                {"channel": c.channel, "column": c.header, "unit": c.unit, "sign": c.sign, "why": c.why, "beside": c.beside}
+                for c in plan.choices
+            ],
+        }
+        for plan in found.plans
+    ]
+    return {"runs": list(found.runs), "devices": devices, "unsure": [asdict(one) for one in unsure(found.plans, wanted)]}
 
 
 def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | None]) -> None:
@@ -187,8 +213,8 @@ def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]
 
 def _on_one_clock(
     output: Path, found: Found, names: Mapping[str, Mapping[str, str]], wanted: Wanted
-) -> tuple[Judged, list[str]]:
-    """Writes campaign.toml with the clocks that are sure; the campaign as it is then, and what is not sure.
+) -> tuple[Judged, list[RunClocks]]:
+    """Writes campaign.toml with the clocks that are sure; the campaign as it is then, and all clocks.
 
     Where a radius is needed that nobody gave, one stands in for it until all is read, and is not written.
     """
@@ -206,15 +232,18 @@ def _on_one_clock(
     write(replace(known, clocks=sure))
     if sure:
         seen = judged(output, known_parameters())
-    said = show(clocks)
     noise = {} if seen.campaign is None or standing_in else {c: seen.campaign.noise[c] for c in seen.campaign.noise_estimated}
     write(replace(wanted, clocks=sure, noise=noise))
-    if standing_in:
-        said.append(
-            "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
-            f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
-        )
-    return seen, said
+    return seen, clocks
+
+
+def _needing_radius(output: Path, found: Found, wanted: Wanted) -> list[str]:
+    if wanted.radius is not None or not needs_radius(found.plans):
+        return []
+    return [
+        "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
+        f"[wheel] R in {output / FILE} before you go on (the preview is drawn with {RADIUS:g} m)"
+    ]
 
 
 def _show(found: Found) -> None:

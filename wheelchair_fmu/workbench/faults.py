@@ -12,6 +12,7 @@ from typing import Any
 from ..faults import Fault, short
 
 COLUMNS, RUNS, NOISE = "Columns and their units", "Runs", "Noise of the sensors"  # forms, as the page heads them
+GUESS = "guess"  # severity of what was assumed, and may be right
 NOTHING = "nothing is to be done"  # the cure of a note
 CURES: tuple[tuple[str, str], ...] = (
     (r"add a column 'F_r[lr] .*", f"choose its column under “{COLUMNS}”, or say under “{RUNS}” that nobody pushed"),
@@ -36,6 +37,8 @@ CURES: tuple[tuple[str, str], ...] = (
     ),
     (r"give role = .*", f"give that role under “{RUNS}” to one in which the chair moves"),
     (r"add manoeuvre = .*", f"say under “{RUNS}” what the chair did, as in coast-down or slalom"),
+    (r"write columns\..*", f"choose its column under “{COLUMNS}”"),
+    (r"write axes = .*--axes", f"choose the axes under “{RUNS}”"),
     (r"fill it in, or cut the run by from and to", "fill it in, or leave out the rows in which it is missing"),
     (r"export it as CSV, or name its format", f"export it as CSV and drop that, and take this one out under “{RUNS}”"),
     (r"export it again, or leave it out", f"export it again and drop it here, or take it out under “{RUNS}”"),
@@ -45,7 +48,7 @@ NAMED = {"F_rl": "on the left wheel", "F_rr": "on the right wheel"}
 
 def told(fault: Fault) -> dict[str, Any]:
     """{"text": the fault in one sentence; "what": the same without its place; "where": that place; "severity"; "column" and
-    "file", where it is of one}."""
+    "file", where it is of one; "at": the key of campaign.toml that it is of}."""
     cure = next((words for pattern, words in CURES if re.fullmatch(pattern, fault.cure)), fault.cure)
     fact = re.sub(r"^no push force (F_r[lr])$", lambda m: f"the push {NAMED[m[1]]} is missing", short(fault.fact))
     what = fact if cure == NOTHING else f"{fact}; {cure}"
@@ -59,4 +62,15 @@ def told(fault: Fault) -> dict[str, Any]:
         "severity": fault.severity,
         "column": fault.column,
         "file": fault.file if fault.in_run else None,
+        "at": fault.place,
     }
+
+
+def to_look_at(what: str, device: str, column: str, file: str, at: str) -> dict[str, Any]:
+    """As `told`, of something that was only guessed: it may be right, and somebody has to look."""
+    what = what.removeprefix(f"{device}: ")
+    fact, _, cure = what.partition("; ")
+    said = next((f"{fact}; {words}" for pattern, words in CURES if re.fullmatch(pattern, cure)), what)
+    where = f"{device} column {column}" if column and device else column or device
+    of = {"column": column or None, "file": file or None, "at": at}
+    return {"text": f"{where}: {said}" if where else said, "what": said, "where": where, "severity": GUESS, **of}

@@ -308,7 +308,7 @@ class Workbench:
                 session.keep(replace(chair, values=found), "calibrated", ladder)
             job.result = {"ladder": ladder}
 
-        words = ["compare", "campaign", "--calibrate", ",".join(names), "--json", *self._with(session)]
+        words = ["compare", "campaign", "--calibrate", ",".join(names), "--json", "--progress", *self._with(session)]
         job = Job("calibrate", [words], after)
         return job
 
@@ -319,11 +319,11 @@ class Workbench:
 
         def after(outputs: list[str]) -> None:
             with self.locks.held(session):
-                session.read_anew(name)
+                session.read_anew(name, printed_json(outputs[0])["unsure"])
 
         name = session.name
         session.note_campaign()
-        words = ["import", "campaign", "-o", "campaign", "--yes", "--force"]
+        words = ["import", "campaign", "-o", "campaign", "--yes", "--force", "--json", "--progress"]
         return Job("import", [[*words, *(word for name, size in sizes for word in (name, f"{size:g}"))]], after)
 
     def _diagnose(self, session: Session, asked: dict[str, Any]) -> Job:

@@ -7,6 +7,7 @@
     variants/N.toml                  one for each step; history.json says which, and where undo has gone
     campaigns/*.toml                 campaign.toml as it was at each step
     taken-out/                       recordings that were taken out, for undo
+    guesses.json                     what the last import only guessed, to be looked at
     diagnosis.json, report.html      of the last diagnosis; diagnosed.json says of which variant and campaign.toml
 """
 
@@ -18,7 +19,7 @@ import re
 import shutil
 import time
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
@@ -40,7 +41,9 @@ from ..model.stage import Effect
 from ..model.variant import Variant, programs_in, variant_text
 from ..resources import EXAMPLES
 from ..writing import written
+from . import guesses
 from .bodies import refuse_unusual, too_deep
+from .carrying import carried
 from .faults import told
 from .history import broken, recovered
 from .intake import MOST_BYTES, SUFFIXES, refuse_bomb, safe_path
@@ -52,6 +55,7 @@ DAY = 86400.0  # s
 NAME = re.compile(r"[0-9a-f]{12}")
 SAMPLE = "sample-campaign"
 UNNAMED, LONGEST_NAME = "campaign", 120  # of a campaign
+READ_ANEW = "files read anew"  # label of an import
 THUMB = 120  # values of a signal that is drawn beside its column
 FIRST_HOLDOUT = "holdout"  # a file whose name says so is held out
 
@@ -275,6 +279,7 @@ class Session:
         seen = self.seen(known)
         campaign, faults = seen.campaign, seen.faults
         found += map(told, faults)
+        found += guesses.standing(self.folder, content or {})
         return found, campaign.noise if campaign else {}
 
     def seen(self, known: Mapping[str, tuple[float, float]]) -> Judged:
@@ -357,14 +362,26 @@ class Session:
         steps = self._steps_so_far()
         self._write_history(len(steps) - 1, steps)
 
-    def read_anew(self, name: str) -> None:
-        """One step more, with a campaign.toml that something else has written, which keeps the campaign's `name`."""
+    def read_anew(self, name: str, unsure: Iterable[Mapping[str, Any]] = ()) -> None:
+        """One step more, with a campaign.toml that an import has written, which keeps the campaign's `name`, and what was
+        written by hand since an earlier import; what it was `unsure` of is remembered."""
         content = self.content()
         if content and isinstance(content.get("campaign"), dict):
-            self.write_content({**content, "campaign": {**content["campaign"], "name": name}})
+            content = {**content, "campaign": {**content["campaign"], "name": name}}
+            self.write_content(carried(self._since_an_import(), content))
+        guesses.remember(self.folder, self.content() or {}, unsure)
         history = self.history()
         steps = history["steps"][: history["at"] + 1]
-        self._append(steps, "files read anew", self.variant_file.name, None)
+        self._append(steps, READ_ANEW, self.variant_file.name, None)
+
+    def _since_an_import(self) -> dict[str, Any]:
+        """campaign.toml as it was before the import that is just done, where an earlier one had written it."""
+        history = self.history()
+        steps = history["steps"][: history["at"] + 1]
+        kept = str(steps[-1].get("campaign")) if steps else ""
+        if not any(step["label"] == READ_ANEW for step in steps) or not (self.campaigns / kept).is_file():
+            return {}
+        return tomllib.loads((self.campaigns / kept).read_text(encoding="utf-8-sig"))
 
     def at_hand(self) -> list[str | None]:
         """Which model and which campaign.toml there are now, by their names."""

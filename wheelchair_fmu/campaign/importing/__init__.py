@@ -26,6 +26,7 @@ from .deciding import RADIUS, decide
 from .frames import AXES_CURE
 from .gathering import opened, sources
 from .taking import taken
+from .unsure import Unsure, unsure
 from .writing import SIZES, Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "Choice",
     "Found",
     "Plan",
+    "Unsure",
     "Wanted",
     "axes_of",
     "find",
@@ -43,6 +45,7 @@ __all__ = [
     "open_axes",
     "still",
     "text",
+    "unsure",
 ]
 
 HOLDOUT = "holdout"

@@ -12,6 +12,7 @@ from ...units import same_dimension
 from .gathering import Column, Series, Source
 
 NAMED = "by its name"
+CHECK_IT = "check it"  # ends what was only guessed
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,11 @@ class Choice:
     beside: str = ""
     column: Column | None = None
     si: str = ""
+
+    @property
+    def guessed(self) -> bool:
+        """Is a part of it to be looked at by the user?"""
+        return self.settled and not self.beside and CHECK_IT in self.why
 
     def because(self, why: str, **more: Any) -> Choice:
         """With one more reason."""
@@ -92,7 +98,7 @@ def sized(
     unit = by_size(values) if values.size else ""
     if not unit:
         return "?", f"{says}: write the right one"
-    return unit, f"{says}; {unit} by the size of its numbers, up to {np.percentile(np.abs(values), 99.5):.3g}: check it"
+    return unit, f"{says}; {unit} by the size of its numbers, up to {np.percentile(np.abs(values), 99.5):.3g}: {CHECK_IT}"
 
 
 def torque_size(values: np.ndarray) -> str:

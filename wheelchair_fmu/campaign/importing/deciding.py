@@ -8,7 +8,7 @@ from functools import partial
 
 from ..channels import BY_NAME, SOURCES
 from . import frames, markers, wheels
-from .choices import Choice, Plan, given, nothing, sized
+from .choices import CHECK_IT, Choice, Plan, given, nothing, sized
 from .gathering import Column, Series, Source
 from .together import Together, Told, spread, together
 
@@ -86,7 +86,7 @@ def _own(plan: Plan, column: Column) -> Choice:
     unit, why = sized(column, units, nothing, wheels.everything(plan.source, column))
     si = units[1] if len(units) > 1 and given(column, units[1:]) and not given(column, units[:1]) else units[0]
     if unit == "?" and not column.unit:
-        unit, why = known.unit.name, f"the file gives no unit; {known.unit.name} is what a column of this name has: check it"
+        unit, why = known.unit.name, f"the file gives no unit; {known.unit.name} is what a column of this name has: {CHECK_IT}"
     chosen = Choice(channel, column.header, unit=unit, settled=unit != "?", column=column, si=si)
     return chosen.because(why) if why else chosen
 

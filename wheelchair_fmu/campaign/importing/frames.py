@@ -15,7 +15,7 @@ import numpy as np
 
 from ..axes import ISO, SAE
 from ..clocks import Signal, alike
-from .choices import NAMED, Choice, Plan, acceleration_size, given, rate_size, sized
+from .choices import CHECK_IT, NAMED, Choice, Plan, acceleration_size, given, rate_size, sized
 from .gathering import Column, Series
 from .together import Fit, Together
 from .turning import AXES, axes, gravity, upright
@@ -150,7 +150,7 @@ def _by_gain(choice: Choice, plan: Plan, fit: Fit, units: Mapping[str, float], r
         if choice.column and choice.column.unit
         else "the file gives no unit"
     )
-    why = f"{says}: {unit}, as it is then as large as {by}: check it"
+    why = f"{says}: {unit}, as it is then as large as {by}: {CHECK_IT}"
     return replace(
         choice,
         unit=unit,
@@ -181,7 +181,7 @@ def _accelerations(plan: Plan, seen: Together) -> None:
     why = (
         f"by its signal: follows how the speed changes, {fit.words}"
         if fit
-        else f"{NAMED}: no speed tells which way is forward, check it"
+        else f"{NAMED}: no speed tells which way is forward, {CHECK_IT}"
     )
     _put(plan, "a_x", columns[ahead], sign, why, fit)
     side, right = _right(plan, ahead, sign)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ...units import same_dimension
 from ..angles import TURN, cleaned
 from ..clocks.signals import rate
-from .choices import Choice, Plan, angle_size, force_size, nothing, rate_size, sized, torque_size
+from .choices import CHECK_IT, Choice, Plan, angle_size, force_size, nothing, rate_size, sized, torque_size
 from .gathering import Column, Series, Source
 from .turning import Lean, axes, forward, on_spokes, pushing
 
@@ -135,7 +135,7 @@ def _side_told(plan: Plan, column: Column, side: str) -> str:
 def _said(lean: Lean, does: str, what: str, by: str = "by its signal: ") -> str:
     """Which way is forward, and what tells that."""
     if not lean.plain:
-        return f"{by}{does} as much back as forward, so its sign is not sure: check it"
+        return f"{by}{does} as much back as forward, so its sign is not sure: {CHECK_IT}"
     return f"{by}{'turned round, as ' if lean.sign < 0 else ''}{what}"
 
 

@@ -98,7 +98,7 @@ def open_axes(plans: Sequence[Plan]) -> bool:
 
 def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     count = sum(map(len, files.values()))
-    why = _why_axes(plans, wanted)
+    why = why_axes(plans, wanted)
     other = next((a for a in AXES if a != axes_of(plans, wanted)), "")
     return "\n".join(
         [
@@ -112,7 +112,7 @@ def _head(plans: Sequence[Plan], files: Mapping[str, Mapping[str, str]], wanted:
     )
 
 
-def _why_axes(plans: Sequence[Plan], wanted: Wanted) -> str:
+def why_axes(plans: Sequence[Plan], wanted: Wanted) -> str:
     """What told the campaign's axes; nothing where there is nothing to tell."""
     told = next((plan for plan in plans if plan.axes), None)
     if told and (len(plans) == 1 or not wanted.axes):
@@ -140,9 +140,15 @@ def _rider(plans: Sequence[Plan], wanted: Wanted) -> str:
     meaning = f"the person alone, kg, whose body {', '.join(names)} show"
     if wanted.person is None and wanted.mass is None:
         return f"[rider]\n# m =   # {meaning}: fill in"
-    assumed = f"{meaning}: assumed to be all but {CHAIR_ALONE:g} kg of chair, correct it"
+    assumed = assumed_person(plans, wanted)
     person = wanted.person if wanted.person is not None else max((wanted.mass or 0.0) - CHAIR_ALONE, 1.0)
-    return "\n".join(["[rider]", _line(f"m = {person:g}", meaning if wanted.person is not None else assumed)])
+    return "\n".join(["[rider]", _line(f"m = {person:g}", f"{meaning}: {assumed}" if assumed else meaning)])
+
+
+def assumed_person(plans: Sequence[Plan], wanted: Wanted) -> str:
+    """What the mass of the person was assumed to be, where that was needed and nobody said it."""
+    needed = any(plan.body for plan in plans) and wanted.person is None and wanted.mass is not None
+    return f"the rider is assumed to be all but {CHAIR_ALONE:g} kg of chair: correct it" if needed else ""
 
 
 def needs_radius(plans: Sequence[Plan]) -> bool:

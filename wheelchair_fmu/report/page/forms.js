@@ -3,7 +3,7 @@
 import { h, symbols } from "page/dom";
 import { course, extent, svg } from "page/draw";
 import { significant, unitText } from "page/numbers";
-import { capital, channelOf } from "page/words";
+import { capital, channelOf, listed } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
 const ROLLING = /^(F_r|wheel_)/; // channels that may be logged as torques or as turning
@@ -31,14 +31,17 @@ const text = (label, value, changed, more = {}) => {
   return made;
 };
 
-/** What is wrong with a run or a column, where it is mended: filled by `mark`. */
+/** What is wrong with a run, a column or a value, or was only guessed, where it is mended: filled by `mark`. */
 const wrong = (of) => h("small", { class: "wrong", ...of });
 
-/** Put what is wrong with a run or a column beside it. */
+/** Put what is wrong, or to be looked at, beside what it is of. */
 export function mark(faults) {
+  const told = faults.filter((f) => f.severity === "error" || f.severity === "guess");
   for (const place of document.querySelectorAll("#forms .wrong")) {
-    const { column } = place.dataset, files = place.dataset.files.split("\n");
-    const of = faults.filter((f) => f.severity === "error" && files.includes(f.file) && (f.column ?? undefined) === column), said = [...new Set(of.map((f) => f.what))];
+    const { column, at } = place.dataset, files = place.dataset.files?.split("\n") ?? [];
+    const of = told.filter((f) => (at ? f.at === at : files.includes(f.file) && (f.column ?? undefined) === column)), bad = of.some((f) => f.severity === "error"), said = [...new Set(of.map((f) => f.what))];
+    place.classList.toggle("guess", !bad);
+    for (const typed of place.parentElement.querySelectorAll("input")) typed.toggleAttribute("aria-invalid", bad && Boolean(at));
     place.textContent = said.slice(0, SAID).map((what) => `${capital(what)}.`).join(" ") + (said.length > SAID ? ` And ${said.length - SAID} more.` : "");
   }
 }
@@ -57,7 +60,7 @@ export function runs(bench) {
   const axes = select("axes", { "SAE-J670": "y to the right (SAE J670)", "ISO-8855": "y to the left (ISO 8855)" }, campaign.campaign?.axes, (value) => bench.save((c) => { c.campaign.axes = value; }));
   const kept = list.filter((run) => run.role === "holdout").length;
   return h("details", { open: errors.some((f) => f.file && !f.column) && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
-    h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes)),
+    h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes), wrong({ "data-at": "campaign.axes" })),
     table("runs", ["run", "role", "manoeuvre", "pushes", "speed at the start, about [m/s]", "take it out"], rows));
 }
 
@@ -77,14 +80,15 @@ function pushed(bench, run, i, name, files, errors) {
 export function columns(bench) {
   const { campaign, headers, channels } = bench.state, devices = Array.isArray(campaign.recording) ? campaign.recording : null;
   const options = { "": "not used", ...Object.fromEntries(channels.map((c) => [c.name, `${c.meaning}${bracket(c.unit)} · ${c.name}`])) };
-  const tables = devices ? devices.map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }))
-    : [{ name: "", files: null, of: (content) => (content.columns ??= {}), explicit: false }];
+  const known = (devices ?? []).map((device, i) => ({ name: device.device, files: filesOf(campaign, device.device), of: (content) => (content.recording[i].columns ??= {}), explicit: true }));
+  const owned = new Set(known.flatMap(({ files }) => [...files])), others = devices ? bench.state.files.filter((file) => !owned.has(file)) : [];
+  const plain = { name: "", files: devices ? new Set(others) : null, of: (content) => (content.columns ??= {}), explicit: false };
+  const tables = devices ? [...known, ...(others.length ? [plain] : [])] : [plain];
   const needed = bench.state.faults.some((f) => f.severity === "error" && (f.column || f.what.includes("Columns and their units"))); // which are mended here
   return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
-    const given = (devices ? devices.find((d) => d.device === one.name).columns : campaign.columns) ?? {};
-    const record = devices?.find((d) => d.device === one.name), rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
-    const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => "used" in row.dataset === there)), all = !devices && rest.length <= MANY;
-    return h("div", {}, record ? device(bench, devices.indexOf(record)) : null, all || used.length ? table("columns", heads, all ? rows : used) : null,
+    const record = devices?.find((d) => one.name && d.device === one.name), given = (record ?? campaign).columns ?? {}, rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
+    const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => "used" in row.dataset === there)), all = !record && rest.length <= MANY;
+    return h("div", {}, record ? device(bench, devices.indexOf(record)) : devices ? h("h3", {}, "Of no device", h("small", {}, `${listed(others)}: “find out” above looks for the device too`)) : null, all || used.length ? table("columns", heads, all ? rows : used) : null,
       rest.length && !all ? h("details", {}, h("summary", {}, `${rest.length} ${used.length ? "more " : ""}column${rest.length > 1 ? "s" : ""}${record?.markers ? ": markers, from which position, heading and the motion of the body are worked out" : ", which nothing is taken from"}`), table("columns", heads, rest)) : null);
   }));
 }
@@ -156,10 +160,10 @@ export function noise(bench) {
   }
   const fields = channels.filter((c) => (c.name in columnUnit || c.name in found) && c.name !== "time").map((c) => {
     const seen = found[c.name];
-    return field(c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
+    return field(`noise.${c.name}`, c.name, c.meaning + bracket(columnUnit[c.name] || c.unit), campaign.noise?.[c.name], (value) => bench.save((content) => { put((content.noise ??= {}), c.name, value); }),
       seen === undefined ? "" : `${significant(seen, 2)} ${c.unit === "1" ? "" : c.unit}`.trim());
   });
-  return h("details", {}, h("summary", {}, "Noise of the sensors"),
+  return h("details", { open: faulty(bench, "noise.") }, h("summary", {}, "Noise of the sensors"),
     h("p", { class: "hint" }, "One standard deviation, in the unit shown or with one of its own, as in 0.2 deg/s. Where none is given, the one in grey is used: it is estimated from the samples."),
     h("div", { class: "grid" }, fields));
 }
@@ -168,10 +172,10 @@ export function chair(bench) {
   const { campaign, parameters } = bench.state;
   const fields = parameters.map((p) => {
     const [group, key] = grouped(p.name);
-    return field(p.name, p.meaning + bracket(p.unit), campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
+    return field(p.name, p.name, p.meaning + bracket(p.unit), campaign[group]?.[key], (value) => bench.save((c) => { put((c[group] ??= {}), key, value); }), p.default);
   });
   const open = Array.isArray(campaign.recording) && ["m", "a", "b"].some((key) => campaign.chair?.[key] === undefined); // which no file tells
-  return h("details", { open }, h("summary", {}, "What is known of the chair"),
+  return h("details", { open: open || faulty(bench, ...parameters.map((p) => p.name)) }, h("summary", {}, "What is known of the chair"),
     h("p", { class: "hint" }, "What you leave empty is taken as in grey, and calibrated where runs tell it."), h("div", { class: "grid" }, fields));
 }
 
@@ -185,10 +189,10 @@ export function priors(bench) {
       delete all[p.name];
       put((all[group] ??= {}), key, sd);
     });
-    return field(p.name, p.meaning + bracket(p.unit), campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
+    return field(`prior.${p.name}`, p.name, p.meaning + bracket(p.unit), campaign.prior?.[p.name] ?? campaign.prior?.[group]?.[key], change,
       significant(p.uncertainty * (Math.abs(value) || 1), 2), ` = ${value} ±`, `prior of ${p.name}`);
   });
-  return h("details", {}, h("summary", {}, "How sure these values are"),
+  return h("details", { open: faulty(bench, "prior.") }, h("summary", {}, "How sure these values are"),
     h("p", { class: "hint" }, "These values are calibrated, and stay as near to what you gave as you are sure of it. Where you do not say, the standard deviation in grey is used."),
     h("div", { class: "grid" }, fields));
 }
@@ -204,8 +208,11 @@ const parted = (header) => {
   return { bare, own };
 };
 
-const field = (name, says, value, changed, placeholder, more = "", label = name) =>
-  h("label", {}, h("span", {}, symbols(capital(says)), h("small", {}, h("code", {}, name), more)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }));
+const field = (at, name, says, value, changed, placeholder, more = "", label = name) =>
+  h("label", {}, h("span", {}, symbols(capital(says)), h("small", {}, h("code", {}, name), more)), text(`${label}: ${says}`, value, changed, { placeholder, inputmode: "decimal" }), wrong({ "data-at": at }));
+
+/** Is something wrong with a value of one of these names? */
+const faulty = ({ state }, ...names) => state.faults.some((f) => f.severity === "error" && names.some((name) => f.at?.startsWith(name)));
 
 /** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
 function put(table, key, value) {

@@ -10,7 +10,7 @@ const TYPED = 300; // ms without a key after which an expression is checked
 const LATEST = 3; // pieces of earlier work that are in sight
 const LOST = 2000; // ms between looks where the last one had no answer
 const SLOW = 250; // ms after which it is said that an answer is waited for
-const STEPS = { diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen
+const STEPS = { import: 4, calibrate: 1, diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen; to calibrate also one for each run
 const FEW_STEPS = 3; // before which nobody can tell how long the rest takes
 const GONE = "The workbench does not answer. Is it still running? Start it again by “wheelchair workbench” and open the address that it prints: your work is kept.";
 const TYPING = "q is the size that is estimated. A number may have its unit behind it, as in -q * tanh(u / 3 [km/h]).";
@@ -131,14 +131,14 @@ class Workbench {
   }
 
   showFaults() {
-    const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), remarks = faults.filter((f) => f.severity !== "error");
+    const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), guesses = faults.filter((f) => f.severity === "guess").length, remarks = faults.filter((f) => f.severity !== "error").sort((a, b) => (b.severity === "guess") - (a.severity === "guess"));
     const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), unread = files.length > 0 && errors.length > 0 && this.unread;
     const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), by = raw && anew ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed, and writes over the others
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
     if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
       h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
     else byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
-      remarks.length ? h("details", {}, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}`), causes(remarks)) : "");
+      remarks.length ? h("details", { open: this.reading ?? guesses > 0, ontoggle: ({ target }) => { this.reading = target.open; } }, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}${guesses ? `, of which ${guesses} to look at: what a file did not say was guessed` : ""}`), causes(remarks)) : "");
     byId("forms").hidden = unread && !this.byHand;
     mark(faults);
     byId("there").hidden = !files.length;
@@ -248,7 +248,7 @@ class Workbench {
 
   /** Which step it is, of how many, and how long the rest takes: as the last one of its kind did, or else as its steps so far. */
   progressed({ kind, lines, steps, seconds, usual }, bar) {
-    const many = usual?.steps ?? STEPS[kind], length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
+    const many = usual?.steps ?? STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0), length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
     if (length) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
       late ? usual ? "longer than the last time" : "these recordings take longer than most" : length >= seconds + 1 ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
