@@ -30,12 +30,22 @@ class Fault:
     in_run: bool = False  # the file is a recording of a campaign
     place: str = ""
 
-    def __str__(self) -> str:
-        kind = "" if self.severity == ERROR else f"{self.severity}: "
+    @property
+    def where(self) -> str:
+        """Its file, line and column in words."""
         place = f"run {self.file}" if self.in_run else self.file
         line = f" line {self.line}" if self.line is not None else ""
         column = f" column {short(repr(self.column))}" if self.column is not None else ""
-        return f"{kind}{place}{line}{column}: {short(self.fact)}; {self.cure}"
+        return f"{place}{line}{column}"
+
+    @property
+    def what(self) -> str:
+        """The fact and its cure."""
+        return f"{short(self.fact)}; {self.cure}"
+
+    def __str__(self) -> str:
+        kind = "" if self.severity == ERROR else f"{self.severity}: "
+        return f"{kind}{self.where}: {self.what}"
 
 
 def short(text: str) -> str:

@@ -295,7 +295,8 @@ def test_columns_of_devices_are_told_by_what_they_serve(page: Any) -> None:
         const state = structuredClone(workbench.state), [first] = Object.keys(state.headers), [run] = state.campaign.run;
         state.files.push("late.csv");
         state.headers = {...state.headers, [first]: [...state.headers[first], "late.csv"]};
-        state.faults.push({severity: "guess", file: run.file, column: first, what: "rad by its size: check it", where: "rim", text: ""});
+        const guess = {severity: "guess", what: "rad by its size: check it", where: "rim", text: ""};
+        state.faults.push({...guess, file: run.file, column: first});
         workbench.show(state);
     }""")
     lone = page.locator("#forms div", has=page.locator("> h3", has_text="Of no device"))
@@ -364,6 +365,11 @@ def test_an_effect_of_ones_own_is_judged_as_it_is_typed(page: Any) -> None:
     page.wait_for_function("() => window.workbench?.state")
     page.fill("#own [name=expression]", "q * (u + m)")
     page.wait_for_selector("#unit[data-state=bad]")
+    known = "[...document.querySelectorAll('#words code')].map((e) => e.textContent)"
+    assert {"F_w", "u", "a_x"} < set(page.evaluate(known)) and "F_y" not in page.evaluate(known)  # of F_x
+    page.select_option("#own [name=to]", "delta")
+    assert "u" in page.evaluate(known) and "F_xf" not in page.evaluate(known)
+    page.select_option("#own [name=to]", "F_x")
     page.fill("#own [name=expression]", "-q * u")
     page.wait_for_selector("#unit[data-state=good]")
     assert "N s/m" in page.inner_text("#unit")

@@ -7,9 +7,10 @@ from math import pi
 import pytest
 
 from wheelchair_fmu.errors import UsageError
-from wheelchair_fmu.model.dimensions import unit_of_q
+from wheelchair_fmu.model.dimensions import orders, unit_of_q, vocabulary
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.expression import law
+from wheelchair_fmu.model.wheelchair import assemble
 
 
 @pytest.mark.parametrize(
@@ -49,8 +50,21 @@ EXPONENTS = {
     ("expression", "to", "why"),
     [
         ("q * (u + psi_dot)", "F_x", "the units do not fit"),
-        ("q * magnitude(u, 0.01)", "F_x", "a plain number stands where"),
-        ("q + u", "F_x", "q must be a factor"),
+        ("q * (u + m)", "F_x", r"u \(m/s\) and m \(kg\) are added"),
+        ("q * magnitude(u, 0.01)", "F_x", r"0.01 \(a plain number\) are compared by magnitude; a number may have its unit"),
+        ("q * sin(u)", "F_x", "sin takes a plain number, and u is in m/s"),
+        ("q * tanh(u / 0.1)", "F_x", r"u / 0.1 is in m/s: divide it by something in m/s; a number may .* 0.1 \[m/s\]"),
+        ("q * exp(-psi_dot * 2 [s] / 1 [m])", "F_x", r"exp takes a plain number, and -psi_dot \* 2 \[s\] / 1 \[m\] is in 1/m"),
+        ("q * u**m", "F_x", "an exponent takes a plain number, and m is in kg"),
+        ("q * u**psi", "F_x", "has an exponent that is not one number"),
+        ("q * sqrt(u)", "F_x", "a root of a unit is left over$"),
+        ("q * u^2", "F_x", r"write \*\* for a power"),
+        ("q * 2,5 * u", "F_x", "decimals of a number behind a point"),
+        ("q * chair.m", "F_x", "chair.m has a point in it"),
+        ("q *", "F_x", "breaks off at its end"),
+        ("q * mass", "F_x", r"reads 'mass', which is no quantity of this model; did you mean .*m \(total mass m of chair"),
+        ("q * yawrate", "F_x", "did you mean"),
+        ("q + u", "F_x", "the size q must be a factor"),
         ("u", "F_x", "no q in it"),
         ("q * foo", "F_x", "reads 'foo', which is no quantity"),
         ("q * F_y", "F_x", "only known further down the line"),
@@ -78,3 +92,23 @@ def test_the_catalogues_own_drag_agrees():
     record = bundled()["rolling_resistance_speed"].parameters[0].unit
     found = unit_of_q("-q * u", "F_x")
     assert (found.kg, found.m, found.s) == (record.kg, record.m, record.s)
+
+
+def test_signs_of_print_are_those_of_the_keyboard():
+    assert law("−q × u · 2").expression == law("-q * u * 2").expression
+
+
+def test_a_term_may_read_what_is_known_before_what_it_acts_on():
+    """Places in the line say so: below its own it can be evaluated, from there on it is refused."""
+    model = assemble()
+    place, known = orders(model), vocabulary(model)
+    for to in ("F_x", "delta", "N_f"):
+        refused = []
+        for name in known:
+            part = name if known[name].size == 1 else f"{name}[0]"
+            try:
+                unit_of_q(f"q * {part}" if known[to].size == 1 or known[name].size == 1 else f"q * {name}", to)
+            except UsageError as error:
+                refused += [name] if "further down the line" in str(error) else []
+        assert set(refused) == {name for name in known if place[name] >= place[to]}, to
+        assert len(refused) > 20

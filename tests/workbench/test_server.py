@@ -216,7 +216,7 @@ def test_an_expression_is_judged_as_it_is_typed(client):
     assert judged("-q * tanh(u / 3 [km/h])") == {"unit": "N"}
     assert "units do not fit" in judged("q * (u + m)")["why"]
     assert "is no expression" in judged("q *")["why"]
-    assert "not allowed" in judged("q * u.__class__")["why"]
+    assert "has a point in it" in judged("q * u.__class__")["why"]
 
 
 def test_an_effect_of_ones_own_joins_the_catalogue(client):

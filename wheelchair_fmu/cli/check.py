@@ -81,7 +81,7 @@ def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Pat
         figure.set_layout_engine("none")  # where things are is found: the page need not look for it again
         print(out / name, file=sys.stderr)
     with written(out / "preview.html") as beside:
-        beside.write_text(preview.page(title, drawn, [(f.severity, str(f)) for f in faults]), encoding="utf-8")
+        beside.write_text(preview.page(title, drawn, [(f.severity, f.where, f.what) for f in faults]), encoding="utf-8")
     print(out / "preview.html", file=sys.stderr)
 
 

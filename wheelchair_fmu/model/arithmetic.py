@@ -9,6 +9,7 @@ import ast
 import re
 import sys
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -57,6 +58,13 @@ ALLOWED = (
 )
 NUMBER = r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.]))"
 TOKEN = re.compile(rf"{NUMBER}|[A-Za-z_]\w*|\*\*|[-+*/(),.\[\]]|[ \t]+", re.ASCII)
+SIGNS = {ord(sign): plain for sign, plain in {"−": "-", "×": "*", "·": "*"}.items()}  # as they are set in print
+INSTEAD = {
+    "^": "write ** for a power, as in u**2",
+    "²": "write **2 for a square",
+    "³": "write **3 for a cube",
+    "|": "write abs(...)",
+}
 BRACKET = re.compile(r"[ \t]*\[([^\[\]]*)\]")
 
 
@@ -78,14 +86,15 @@ def parsed(text: str) -> tuple[ast.expr, Numbers]:
 
     Raises UsageError with the reason in a sentence.
     """
-    text = text.strip()
+    text = text.strip().translate(SIGNS)
     if len(text) > LONGEST:
         raise UsageError(f"an expression of {len(text)} characters is too long; write it in {LONGEST} at most")
     plain, numbers = _without_units(text)
     try:
         tree = ast.parse(plain, mode="eval").body
     except SyntaxError as error:
-        raise UsageError(f"{shown(text)} is no expression: {error.msg} at place {error.offset}") from None
+        where = f"{error.msg} at place {error.offset}" if error.offset else "it breaks off at its end"
+        raise UsageError(f"{shown(text)} is no expression: {where}") from None
     except (RecursionError, MemoryError):
         raise _too_deep(text) from None
     except ValueError as error:  # Python's, for an integer of thousands of digits
@@ -107,6 +116,16 @@ def names(tree: ast.expr) -> tuple[str, ...]:
     called = {id(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)}
     found = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and id(node) not in called]
     return tuple(dict.fromkeys(node.id for node in sorted(found, key=lambda node: node.col_offset)))
+
+
+def written(node: ast.expr, words: Mapping[int, str]) -> str:
+    """The text of a checked tree, with these words for the numbers that have units, by their place."""
+
+    class Worded(ast.NodeTransformer):
+        def visit_Constant(self, node: ast.Constant) -> ast.expr:
+            return ast.Name(words[node.col_offset]) if node.col_offset in words else node
+
+    return ast.unparse(Worded().visit(deepcopy(node)))
 
 
 def value(node: ast.expr, known: Mapping[str, Any], numbers: Mapping[int, Any]) -> Any:
@@ -155,10 +174,8 @@ def _without_units(text: str) -> tuple[str, Numbers]:
     while at < len(text):
         token = TOKEN.match(text, at)
         if not token:
-            raise UsageError(
-                f"{shown(text)} is no expression: {text[at]!r} at place {at + 1} is not allowed; use numbers, "
-                f"+ − * / **, quantities and {', '.join(FUNCTIONS)}"
-            )
+            cure = INSTEAD.get(text[at], f"use numbers, + − * / **, quantities and {', '.join(FUNCTIONS)}")
+            raise UsageError(f"{shown(text)} is no expression: {text[at]!r} at place {at + 1} is not allowed; {cure}")
         end = token.end()
         plain.append(token[0])
         if token["number"] and (bracket := BRACKET.match(text, end)):
@@ -201,6 +218,12 @@ def _too_deep(text: str) -> UsageError:
 
 
 def _check(node: ast.AST, text: str) -> None:
+    if isinstance(node, ast.Tuple):
+        raise UsageError(f"{shown(text)} has a comma where none belongs; write the decimals of a number behind a point")
+    if isinstance(node, ast.Attribute):
+        raise UsageError(
+            f"{shown(text)}: {ast.unparse(node)} has a point in it; name a quantity by its symbol alone, as m or psi_dot"
+        )
     if not isinstance(node, ALLOWED):
         raise UsageError(
             f"{shown(text)}: {type(node).__name__} is not allowed; use numbers, + − * / **, "

@@ -7,7 +7,9 @@ same at every place; what is missing to the quantity it acts on is the unit of q
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
+from difflib import get_close_matches
 from inspect import signature
 from math import log
 from typing import Any
@@ -20,11 +22,13 @@ from ..quantities import ONE, UNITS, Parameter, Quantity, Unit
 from . import expression
 from .arithmetic import shown
 from .stage import Effect, adds
-from .wheelchair import Choice, Model, assemble
+from .unlike import unlike
+from .wheelchair import FORESEEN, Choice, Model, assemble
 
 FACTOR = 1.7  # by which a unit is made smaller
 PLACES = 4  # random places, at which all must agree
 NEAR = 1e-6  # of a whole exponent
+NUMBER_IN = re.compile(r"(?<![\w.])\d")  # a number, not the end of a name
 SYMBOLS = ("kg", "m", "s")
 
 
@@ -37,6 +41,13 @@ def vocabulary(model: Model) -> dict[str, Quantity]:
 def targets(model: Model) -> dict[str, Quantity]:
     """Quantities that an effect may act on: those that the stages define."""
     return dict(model.records)
+
+
+def orders(model: Model) -> dict[str, int]:
+    """When each quantity becomes known: 0 from the beginning, else its place in the line. A term that acts on one may read
+    those before it."""
+    line = {symbol: 1 + i for i, symbol in enumerate(model.records)}
+    return {symbol: 0 if symbol in FORESEEN else line.get(symbol, 0) for symbol in (*vocabulary(model), *line)}
 
 
 def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
@@ -62,9 +73,27 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
     except ModelError as error:
-        raise UsageError(str(error).partition("; known here")[0].replace("effect typed", "the expression")) from None
+        said = str(error).partition("; known here")[0].replace("effect typed", "the expression")
+        raise UsageError(f"{said}{_meant(said, vocabulary(assemble(choice)))}") from None
     except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
         raise UsageError(f"{shown(text)} cannot be evaluated: {str(error).splitlines()[-1]}") from None
+
+
+def _meant(said: str, known: Mapping[str, Quantity]) -> str:
+    """The quantities that a name which is none may mean, by what they are called or by their meaning."""
+    name = said.partition("'")[2].partition("'")[0]
+    if "is no quantity" not in said:
+        return ""
+    word = name.replace("_", " ").lower()
+    called = re.compile(rf"\b{re.escape(word)}\b", re.IGNORECASE)
+    told = sorted((n for n, q in known.items() if called.search(_briefly(q))), key=lambda n: len(_briefly(known[n])))
+    close = told[:3] or get_close_matches(name, known, n=3)
+    return f"; did you mean {' or '.join(f'{n} ({_briefly(known[n])})' for n in close)}?" if close else ""
+
+
+def _briefly(quantity: Quantity) -> str:
+    """The first part of its meaning."""
+    return re.split(r" \(|[,;:]", quantity.meaning)[0]
 
 
 @np.errstate(all="ignore")  # what is not finite is refused in words
@@ -81,15 +110,18 @@ def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]
         if not np.all(np.isfinite(whole)):
             raise UsageError(f"{shown(text)} has no finite value: something is divided by zero, or grows without bound")
         if np.any(abs(_value(law, place, 2.0) - 2 * whole) > NEAR * abs(whole)):
-            raise UsageError("q must be a factor of the whole: write q times something")
+            raise UsageError("the size q must be a factor of the whole: write q times something")
         found.append([_power(law, place, units, whole, **{unit: FACTOR}) for unit in SYMBOLS])
     spread = np.array(found)
     whole_numbers = np.round(spread[0])
     if not np.all(abs(spread - whole_numbers) < NEAR):
-        raise UsageError(
-            "the units do not fit: unlike quantities are added, or a plain number stands where a quantity "
-            "with a unit belongs (write its unit behind it, as in 0.1 [m/s])"
+        where = unlike(text, known, lambda kg, m, s: named(kg, m, s).name) or "a root of a unit is left over"
+        cure = (
+            "; a number may have its unit behind it, as in 0.1 [m/s]"
+            if "plain number" in where and NUMBER_IN.search(text)
+            else ""
         )
+        raise UsageError(f"the units do not fit: {where}{cure}")
     kg, m, s = (int(e) for e in whole_numbers)
     return kg, m, s
 

@@ -77,12 +77,7 @@ def canonical(expression: str) -> str:
 def _written(expression: str, words: Callable[[arithmetic.Number], str]) -> str:
     """The text of the checked tree, with these words for the numbers that have units."""
     tree, numbers = arithmetic.parsed(expression)
-
-    class Worded(ast.NodeTransformer):
-        def visit_Constant(self, node: ast.Constant) -> ast.expr:
-            return ast.Name(words(numbers[node.col_offset])) if node.col_offset in numbers else node
-
-    return ast.unparse(Worded().visit(tree))
+    return arithmetic.written(tree, {place: words(number) for place, number in numbers.items()})
 
 
 FILE = """{heading!r}

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import html
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..campaign import BY_NAME, Recorded
+from ..faults import ERROR
 from .canvas import blank
 from .figures import BLUE, GREY, ORANGE
 from .saving import save_svg
@@ -33,7 +34,7 @@ h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a520
 svg{background:#fff}}"""
 
 
-LEGEND = "Each row is a channel, each column a run; all rows have one scale. Crosses are readings that were left out."
+LEGEND = "Each row is a channel, each column a run; a row has one scale. Crosses are readings that were left out."
 NOTHING = "No signal of these files is known yet: which column is what has to be found out, or written down, first."
 
 
@@ -73,12 +74,21 @@ def _signals(run: Recorded) -> Iterator[tuple[str, Signal]]:
 
 
 def figures(runs: Sequence[Run]) -> list[Figure]:
-    """One picture for each ABREAST runs."""
-    return [_figure(runs[i : i + ABREAST]) for i in range(0, len(runs), ABREAST)]
+    """One picture for each ABREAST runs; a channel has one scale in all of them."""
+    within = {name: _extent(run.signals[name] for run in runs if name in run.signals) for run in runs for name in run.signals}
+    return [_figure(runs[i : i + ABREAST], within) for i in range(0, len(runs), ABREAST)]
 
 
-def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str]]) -> str:
-    """The pictures and all faults (severity, text) as one HTML file that needs nothing else."""
+def _extent(signals: Iterable[Signal]) -> tuple[float, float]:
+    """From the least to the greatest value, with some room about them."""
+    values = np.concatenate([signal.values[np.isfinite(signal.values)] for signal in signals])
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
+    room = 0.05 * (high - low) or 0.5
+    return low - room, high + room
+
+
+def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str, str]]) -> str:
+    """The pictures and all faults (severity, where, what) as one HTML file that needs nothing else."""
     region = '<div class="picture" tabindex="0" role="region" aria-label="Every signal of every run">'  # wide on a phone
     pictures = "".join(f"{region}{_svg(figure)}</div>" for figure in drawn)
     said = "".join(f'<li class="{html.escape(kind)}">{told}</li>' for kind, told in _by_cause(faults))
@@ -91,19 +101,18 @@ def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str]])
     )
 
 
-def _by_cause(faults: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+def _by_cause(faults: Iterable[tuple[str, str, str]]) -> Iterator[tuple[str, str]]:
     """(severity, HTML) of each cause: what is wrong alike in many places is said once, with the places behind it."""
-    places: dict[tuple[str, str, str], list[str]] = {}
-    for kind, text in faults:
-        said = f"{kind}: " if text.startswith(f"{kind}: ") else ""
-        where, _, what = text.removeprefix(said).partition(": ")
-        places.setdefault((kind, said, what), []).append(where)
-    for (kind, said, what), (first, *more) in places.items():
-        if more:
-            inside = html.escape("; ".join((first, *more)))
-            yield kind, f"<details><summary>{said}in {1 + len(more)} places: {html.escape(what)}</summary>{inside}</details>"
+    places: dict[tuple[str, str], list[str]] = {}
+    for kind, where, what in faults:
+        places.setdefault((kind, what), []).append(where)
+    for (kind, what), found in places.items():
+        said = "" if kind == ERROR else f"{kind}: "
+        if len(found) > 1:
+            inside = html.escape("; ".join(found))
+            yield kind, f"<details><summary>{said}in {len(found)} places: {html.escape(what)}</summary>{inside}</details>"
         else:
-            yield kind, html.escape(f"{said}{first}: {what}" if what else f"{said}{first}")
+            yield kind, html.escape(f"{said}{found[0]}: {what}" if found[0] else f"{said}{what}")
 
 
 def _svg(figure: Figure) -> str:
@@ -112,7 +121,7 @@ def _svg(figure: Figure) -> str:
     return held.getvalue().partition("<svg")[1] + held.getvalue().partition("<svg")[2]
 
 
-def _figure(runs: Sequence[Run]) -> Figure:
+def _figure(runs: Sequence[Run], within: Mapping[str, tuple[float, float]]) -> Figure:
     names = list(dict.fromkeys(name for run in runs for name in run.signals))
     figure = blank(2.2 + 2.4 * len(runs), 0.8 + 1.1 * max(len(names), 1))
     axes = figure.subplots(max(len(names), 1), max(len(runs), 1), sharex="col", sharey="row", squeeze=False)
@@ -124,6 +133,7 @@ def _figure(runs: Sequence[Run]) -> Figure:
     for row, name in enumerate(names):
         one = next(run.signals[name] for run in runs if name in run.signals)
         of = f"\n{one.device}" if one.device else ""
+        axes[row][0].set_ylim(within[name])
         axes[row][0].set_ylabel(f"{name}\n[{one.unit}]{of}", fontsize=8, rotation=0, ha="right", va="center")
     return figure
 

@@ -31,12 +31,13 @@ from ..inference.estimation.fit import AT_BOUND
 from ..inference.models.factory import CALIBRATED
 from ..inference.subject import known_parameters
 from ..model.arithmetic import shown as cut
-from ..model.dimensions import targets, unit_of_q, vocabulary
+from ..model.dimensions import orders, targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import assemble
+from ..quantities import Quantity
 from ..report import preview
 from ..report.page import ASSETS, asset
 from ..report.words import value_text
@@ -87,9 +88,10 @@ class Workbench:
             if p.name.startswith(KNOWN)
         ]
         model = assemble()
+        known = orders(model)
         self.words = {
-            "targets": [{"name": n, "unit": q.unit.name, "meaning": q.meaning} for n, q in targets(model).items()],
-            "readable": [{"name": n, "unit": q.unit.name, "meaning": q.meaning} for n, q in vocabulary(model).items()],
+            "targets": [_word(n, q, known) for n, q in targets(model).items()],
+            "readable": [_word(n, q, known) for n, q in vocabulary(model).items()],
         }
 
     def app(self) -> Starlette:
@@ -191,7 +193,8 @@ class Workbench:
         def drawn() -> str:
             seen = session.seen(self.bounds)
             pictures = preview.figures(preview.seen(seen.runs))
-            return preview.page(session.name, pictures, [(f.severity, faults.told(f)["text"]) for f in seen.faults])
+            told = map(faults.told, seen.faults)
+            return preview.page(session.name, pictures, [(f["severity"], f["where"], f["what"]) for f in told])
 
         policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
         return HTMLResponse(
@@ -428,6 +431,11 @@ class Workbench:
         with TemporaryDirectory() as folder:
             content = build(session.variant(), Path(folder) / name).read_bytes()
         return Response(content, media_type="application/octet-stream", headers=_attached(name))
+
+
+def _word(name: str, quantity: Quantity, known: Mapping[str, int]) -> dict[str, Any]:
+    """What an expression may name or act on, and when it becomes known."""
+    return {"name": name, "unit": quantity.unit.name, "meaning": quantity.meaning, "order": known[name]}
 
 
 def _added(effect: str, printed: str, session: Session) -> dict[str, Any]:

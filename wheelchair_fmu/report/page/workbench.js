@@ -203,12 +203,18 @@ class Workbench {
     select.replaceChildren(...(order.size ? [] : [h("option", { value: "" }, "choose one, or diagnose first")]), ...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
     if (this.ranked === (outcome?.order ?? []).join() && all.some((e) => e.id === chosen)) select.value = chosen;
     this.ranked = (outcome?.order ?? []).join();
-    if (byId("readable").childElementCount) return;
-    byId("readable").append(...words.readable.map((q) => h("option", { value: q.name })));
+    if (byId("own").elements.to.options.length) return;
     const group = (label, some) => h("optgroup", { label }, some.map((q) => h("option", { value: q.name }, `${q.name} [${unitText(q.unit) || "1"}] ${q.meaning}`)));
     byId("own").elements.to.append(group("forces and moment on the chair", words.targets.filter((q) => MOSTLY.includes(q.name))), group("any other quantity", words.targets.filter((q) => !MOSTLY.includes(q.name))));
     byId("own").elements.to.value = "F_x";
-    byId("words").append(...words.readable.map((q) => h("div", {}, h("code", {}, q.name), ` [${unitText(q.unit) || "1"}] ${q.meaning}`)));
+    this.showWords();
+  }
+
+  /** The quantities that a term may name: those that are known before what it acts on. */
+  showWords() {
+    const { targets, readable } = this.state.words, { order } = targets.find((q) => q.name === byId("own").elements.to.value), known = readable.filter((q) => q.order < order);
+    byId("readable").replaceChildren(...known.map((q) => h("option", { value: q.name })));
+    byId("words").replaceChildren(...known.map((q) => h("div", {}, h("code", {}, q.name), ` [${unitText(q.unit) || "1"}] ${q.meaning}`)));
   }
 
   showJob(job) {
@@ -415,7 +421,7 @@ class Workbench {
     };
     const soon = () => { clearTimeout(this.typing); this.typing = setTimeout(check, TYPED); };
     form.elements.expression.addEventListener("input", soon);
-    form.elements.to.addEventListener("change", check);
+    form.elements.to.addEventListener("change", () => { this.showWords(); check(); });
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
       const text = (name) => form.elements[name].value.trim(), number = (name) => form.elements[name].valueAsNumber;
