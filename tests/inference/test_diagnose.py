@@ -292,6 +292,11 @@ def test_a_tie_beside_other_effects_is_broken_with_these_in(tmp_path):
     found = diagnose(campaign, chair, experiments=experiments())
     assert found.verdict == "tie" and found.already == ("rolling_resistance_asymmetry",)
     assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
+    sizes = {r["effect"]: r["parameters"]["k"] for r in as_json(found)["ranking"] if r["effect"] in found.effects}
+    assert len(sizes) == 2, "each is told with an interval, which allows for what nobody named"
+    for size in sizes.values():
+        low, high = size["interval"]
+        assert low < size["estimate"] < high and high - low > 2 * 1.96 * size["se"]
 
 
 def test_another_form_of_a_cause_makes_no_catalogue_larger():

@@ -99,9 +99,11 @@ def show(d: Diagnosis, content: dict[str, Any]) -> None:
     for words in d.unexplained.words if d.unexplained else ():
         out.print(words)
     out.print(_ranking(content, set(d.models.factory.catalogue) - set(bundled())))
-    for name, (low, high) in d.intervals.items():
-        unit = d.models.factory.records[name].unit.name
-        out.print(f"{name.removeprefix('effect.')} = {d.final.values[name]:.4g} {unit}, 95 % within {low:.4g} to {high:.4g}")
+    for row in content["ranking"]:
+        for name, size in row["parameters"].items():
+            if ends := size.get("interval"):
+                told = f"{row['effect']}.{name} = {size['estimate']:.4g} {size['unit']}"
+                out.print(f"{told}, 95 % within {ends[0]:.4g} to {ends[1]:.4g}")
     if d.next_experiment:
         n = d.next_experiment
         times = "" if n["repeats"] == 1 else f", {n['repeats']} times"

@@ -19,6 +19,7 @@ from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts
 from ..estimation.fit import Fit
 from ..estimation.interval import interval_by_errors, profile_interval, widened
+from ..estimation.score import Score
 from ..estimation.statistics import correlation_time
 from ..estimation.unnamed import allowance
 from ..evidence.disturbance import Strength, acting, strength
@@ -27,6 +28,7 @@ from ..evidence.likelihood import MASS
 from ..evidence.limits import beyond
 from ..evidence.noise_model import NoiseModel
 from ..models.factory import CALIBRATED, MEASURED, ModelFactory
+from ..models.hypothesis import Model
 from ..models.models import Models, quiet
 from ..models.setting import Setting
 from ..policy import DEFAULT, SearchPolicy
@@ -58,8 +60,8 @@ class Diagnosis:
     `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
     "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood, or by
     standard errors where forces that nobody recorded lead the runs, and as much wider as effects that nobody named may move an
-    estimate, by `allowance`, a standard deviation. `models` are those that were searched, `retimed` and
-    `clocks` what is known of time, and `heard` sentences on columns and clocks.
+    estimate, by `allowance`, a standard deviation; of what is tied with an effect, in the model that has it instead. `models`
+    are those that were searched, `retimed` and `clocks` what is known of time, and `heard` sentences on columns and clocks.
     """
 
     campaign: str
@@ -242,7 +244,7 @@ def _diagnosed(
         proposal=proposal,
         final=base,
         calibration=tuple(values),
-        intervals=_intervals(models, included, effects, base, allowed) if proposal is None else {},
+        intervals=_intervals(models, included, effects, base, allowed) | _of_rivals(found, groups) if proposal is None else {},
         allowance=allowed,
         models=models,
         retimed=beginning.retimed,
@@ -302,13 +304,16 @@ def _allowance(found: Selection) -> dict[str, float]:
     """By how much (a standard deviation, by name) the estimates of the last model may be off by causes that nobody named. Those
     that a nuisance of the campaign stands for are allowed for by it. A model with as many effects as are put in was not
     searched for more, so that it is screened for this."""
-    models, effects = found.models, found.effects
-    last = next((r for r in reversed(found.rounds) if r.effects == effects), None)
-    scores = last.scores if last else [s.score for s in screen(models, found.top)]
+    last = next((r for r in reversed(found.rounds) if r.effects == found.effects), None)
+    return _allowed(found.models, found.top, last.scores if last else [s.score for s in screen(found.models, found.top)])
+
+
+def _allowed(models: Models, model: Model, scores: Sequence[Score]) -> dict[str, float]:
+    """The same of any model, with the scores of what it lacks."""
     causes = {e: record.cause for e, record in models.factory.catalogue.items()}
-    named = {causes[e] for e in effects}
+    named = {causes[e] for e in model.effects}
     others = [s for s in scores if causes[s.effect] not in named and s.effect not in models.doubles]
-    names = found.top.fit.names
+    names = model.fit.names
     covariance = allowance(others, causes, len(names), models.policy)
     return dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
 
@@ -326,6 +331,18 @@ def _intervals(
         return widened(profile_interval(likelihood, found, name), found.values[name], more, record)
 
     return {n: interval(n) for n in names if n in found.names}
+
+
+def _of_rivals(found: Selection, ties: Sequence[tuple[Sequence[str], Round]]) -> dict[str, tuple[float, float]]:
+    """Intervals of what is tied with an effect of the last model, each in the model that has it instead."""
+    models, intervals = found.models, dict[str, tuple[float, float]]()
+    for group, r in ties:
+        fits = {c.effect: c.fit for c in r.candidates}
+        for rival in (e for e in group if e not in found.effects):
+            model = models.model((*r.effects, rival), fits[rival].values)
+            allowed = _allowed(models, model, [s.score for s in screen(models, model)])
+            intervals |= _intervals(models, model.effects, (rival,), model.fit, allowed)
+    return intervals
 
 
 def _next(
