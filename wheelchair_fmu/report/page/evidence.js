@@ -77,11 +77,12 @@ function became(group, campaign) {
 }
 
 function columns(ranking) {
-  const out = { effect: [], parameter: [], estimate: [], se: [], unit: [], smallest_interesting: [], probability: [], p: [], power: [],
+  const out = { effect: [], parameter: [], estimate: [], se: [], interval_low: [], interval_high: [], unit: [], smallest_interesting: [], probability: [], p: [], power: [],
     hidden_in_fit: [], heldout_before: [], heldout_after: [], rivals: [], verdict: [] };
   for (const row of ranking)
     for (const [parameter, v] of Object.entries(row.parameters)) {
-      const all = { ...row, ...v, parameter, rivals: row.rivals.map((r) => `${r.effect} ${r.cosine}`).join("; ") };
+      const [interval_low, interval_high] = v.interval ?? [];
+      const all = { ...row, ...v, interval_low, interval_high, parameter, rivals: row.rivals.map((r) => `${r.effect} ${r.cosine}`).join("; ") };
       for (const name of Object.keys(out)) out[name].push(all[name]);
     }
   return out;

@@ -5,11 +5,12 @@ const STEPS = { nominal: "as given", calibrated: "calibrated", "unrecorded force
 /** What an effect is. */
 export const titleOf = (campaign, id) => campaign.effects.find((e) => e.id === id)?.title ?? id.replaceAll("_", " ");
 
-/** A step of the search. */
+/** A step of the search; of what is tied, whichever of these was put in. */
 export function stepOf(campaign, step) {
   if (step in STEPS) return STEPS[step];
-  const added = campaign.diagnosis.ladder.filter((s) => s.step.startsWith("+"));
-  return step.startsWith("+") ? `${added[0]?.step === step ? "with" : "and"} ${titleOf(campaign, step.slice(1))}` : step.replaceAll("_", " ");
+  if (!step.startsWith("+")) return step.replaceAll("_", " ");
+  const { ladder, ties } = campaign.diagnosis, id = step.slice(1), tied = ties.find((group) => group.includes(id));
+  return `${ladder.find((s) => s.step.startsWith("+")).step === step ? "with" : "and"} ${titleOf(campaign, id)}${tied ? `, or ${tied.length > 2 ? "a" : "its"} rival` : ""}`;
 }
 
 /** A term that the search proposes where no effect suffices, as a row of the ranking; null where there is none. */
