@@ -246,3 +246,27 @@ def test_with_at_most_twenty_lines_by_hand_check_is_clean(made_lab):
     (out / "campaign.toml").write_text(written, encoding="utf-8")
     assert [str(f) for f in check(out, known_parameters()) if f.severity != "note"] == []
     assert lines <= 20
+
+
+@pytest.mark.parametrize("person", [67.2, None])
+def test_the_mass_of_what_moves_as_a_measured_position_says_is_written(tmp_path, person):
+    """A position of the body that is called by the channel's own name is used, with its mass or a place to fill it in."""
+    t = np.arange(0, 6, 0.02)
+    frame = {
+        "time [s]": t,
+        "u [m/s]": 1 + 0.1 * np.sin(t),
+        "rider.s [m]": 0.05 * np.sin(5 * t),
+        "F_rl [N]": 0 * t,
+        "F_rr [N]": 0 * t,
+    }
+    pd.DataFrame(frame).to_csv(tmp_path / "run01_coast.csv", index=False)
+    words = ("--mass", 90, "--json", *(() if person is None else ("--person", person)))
+    done = imported(tmp_path / "run01_coast.csv", "-o", tmp_path / "made", *words)
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert "rider.s" in [column["channel"] for device in found["devices"] for column in device["columns"]]
+    content = tomllib.loads((tmp_path / "made" / "campaign.toml").read_text(encoding="utf-8"))
+    assert content["columns"]["rider.s"] == "rider.s [m]"
+    assert content.get("rider", {}).get("m") == person
+    faults = [f for f in check(tmp_path / "made", known_parameters()) if f.severity == "error"]
+    assert ["mass that moves" in f.fact for f in faults] == ([] if person else [True])

@@ -58,7 +58,8 @@ def import_(
     output: Annotated[Path, typer.Option("-o", "--output", metavar="CAMPAIGN", help="The folder to make.")],
     mass: Annotated[float | None, typer.Option(metavar="KG", help="Of chair and rider.")] = None,
     person: Annotated[
-        float | None, typer.Option(metavar="KG", help="Of the rider alone, where markers are on the body.")
+        float | None,
+        typer.Option(metavar="KG", help="Of the rider alone, where markers are on the body; of what moves as rider.s."),
     ] = None,
     radius: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,
     track: Annotated[float | None, typer.Option(metavar="M", help="Of the rear wheels.")] = None,

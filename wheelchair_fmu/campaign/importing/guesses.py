@@ -141,8 +141,9 @@ def sides(devices: list[str]) -> dict[str, str]:
 
 def guess(header: str, unit: str | None) -> Guess | None:
     """What a column is by its header; None where nothing is known by such a name."""
-    path, _, bare = split(header)[0].rpartition(".")  # of a structure's fields, or a group's columns, the last
-    if (own := OWN.get("_".join(words(bare)))) and own != "time":
+    whole = split(header)[0]
+    path, _, bare = whole.rpartition(".")  # of a structure's fields, or a group's columns, the last
+    if (own := OWN.get(whole.lower()) or OWN.get("_".join(words(bare)))) and own != "time":
         return Guess(own, own=True)
     for text in dict.fromkeys((bare, suffixed(bare)[0])):
         if found := _read(words(text), unit):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..axes import AXES, SAE
-from ..channels import BY_NAME
+from ..channels import BY_NAME, POSITION
 from .choices import NAMED, Choice, Plan
 from .guesses import OWN
 
@@ -133,12 +133,14 @@ def _chair(wanted: Wanted) -> str:
 
 
 def _rider(plans: Sequence[Plan], wanted: Wanted) -> str:
-    """The mass of the person, where markers show how the body moves."""
+    """The mass of the person, where markers show how the body moves, or of the part of it whose position was measured."""
     names = [name for plan in plans for name in plan.body.values()]
-    if not names:
+    part = any(plan.find(POSITION) for plan in plans)
+    if not names and not part:
         return ""
-    meaning = f"the person alone, kg, whose body {', '.join(names)} show"
-    if wanted.person is None and wanted.mass is None:
+    shown = f"the person alone, kg, whose body {', '.join(names)} show"
+    meaning = shown if names else f"what moves as {POSITION} says, kg"
+    if wanted.person is None and (wanted.mass is None or not names):
         return f"[rider]\n# m =   # {meaning}: fill in"
     assumed = assumed_person(plans, wanted)
     person = wanted.person if wanted.person is not None else max((wanted.mass or 0.0) - CHAIR_ALONE, 1.0)
@@ -219,11 +221,12 @@ def _entry(before: str, choice: Choice) -> str:
     unit = choice.unit or ""
     extra = ([f"unit = {quoted(unit)}"] if unit else []) + (["sign = -1"] if choice.sign < 0 else [])
     value = f"{{ column = {quoted(choice.header)}, {', '.join(extra)} }}" if extra else quoted(choice.header)
+    key = before + (quoted(choice.channel) if "." in choice.channel else choice.channel)
     if not choice.beside:
-        return _line(f"{'' if choice.settled else '# '}{before}{choice.channel} = {value}", choice.why)
+        return _line(f"{'' if choice.settled else '# '}{key} = {value}", choice.why)
     if OWN.get(choice.header.partition("[")[0].strip().lower()) == choice.channel:  # it would be taken for it by its name
-        return _line(f'{before}{choice.channel} = ""', f"{choice.beside} measures it too")
-    return _line(f"# {before}{choice.channel} = {value}", f"{choice.beside} measures it too")
+        return _line(f'{key} = ""', f"{choice.beside} measures it too")
+    return _line(f"# {key} = {value}", f"{choice.beside} measures it too")
 
 
 def _run(run: str, files: Mapping[str, str], wanted: Wanted, alone: bool) -> str:
