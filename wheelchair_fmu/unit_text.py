@@ -26,6 +26,7 @@ ALIASES = {
     "rev": "revolution",
     "revs": "revolution",
     "°": "deg",
+    "Grad": "deg",
     "%": "percent",
     "kph": "km/h",
     "lbft": "lbf.ft",

@@ -301,7 +301,7 @@ def test_columns_of_devices_are_told_by_what_they_serve(page: Any) -> None:
     }""")
     lone = page.locator("#forms div", has=page.locator("> h3", has_text="Of no device"))
     assert "late.csv" in lone.locator("h3").inner_text() and lone.locator("> .wide > table tbody tr").count() == 1
-    assert "Rad by its size: check it." in page.locator("#forms .guess").all_text_contents()
+    assert "rad by its size: check it." in page.locator("#forms .guess").all_text_contents()
     assert "1 to look at" in page.inner_text("#faults details[open] > summary")
     assert "turned round" in used.first.inner_text() and not rest.first.is_visible()
     assert "how far the rear axle is behind it" in page.inner_text("#assumed")
@@ -353,12 +353,67 @@ def test_noise_and_priors_are_a_form_whose_changes_can_be_undone(page: Any) -> N
     typed(prior, "0.2")
     page.wait_for_function("() => workbench.state.campaign.prior?.chair?.I_z === 0.2")
     assert page.inner_text("#history li[aria-current]") == "The model as given"  # forms make no models
-    assert page.get_attribute("#undo", "title") == "undo: prior.chair.I z = 0.2"
+    assert page.get_attribute("#undo", "title") == "undo: prior of chair.I_z = 0.2"
     page.click("#undo")
     page.wait_for_function("() => workbench.state.campaign.prior?.chair?.I_z === undefined")
     assert page.evaluate("workbench.state.campaign.noise.yaw_rate") == "0.5 deg/s"
     page.click("#undo")
     page.wait_for_function("() => !workbench.state.campaign.noise")
+
+
+def test_values_that_are_typed_fast_are_all_kept(page: Any) -> None:
+    """Each change is sent on its own, after the one before it: what was typed meanwhile is not lost."""
+    take_in(page, *recordings())
+    page.click("text=What is known of the chair")
+    values = {"chair.I_z": 3.3, "tyre.C_lambda": 5047, "resistance.f_r": 0.011, "resistance.f_f": 0.019}
+    for name, value in values.items():
+        page.locator(f'input[aria-label^="{name}:"]').fill(str(value))
+    page.keyboard.press("Tab")
+    page.wait_for_function("() => workbench.saving === 0 && workbench.state.campaign.resistance?.f_f === 0.019")
+    page.reload()
+    page.wait_for_function("() => window.workbench?.state?.files.length")
+    kept = page.evaluate("(({chair, tyre, resistance}) => ({...chair, ...tyre, ...resistance}))(workbench.state.campaign)")
+    assert kept == {name.rpartition(".")[2]: value for name, value in values.items()}
+
+
+def test_a_signal_that_goes_to_another_column_is_said(page: Any, tmp_path: Path) -> None:
+    time = np.arange(0, 4, 0.02)
+    names = ("time [s]", "first [m/s]", "second [m/s]")
+    np.savetxt(tmp_path / "a.csv", np.c_[time, 1 + 0 * time, 1 + 0 * time], delimiter=",", header=",".join(names), comments="")
+    take_in(page, tmp_path / "a.csv")
+    if page.locator("#faults details > summary").count():
+        page.click("#faults details > summary")
+    for name in names[1:]:
+        page.select_option(f'select[aria-label="channel of {name}"]', "u")
+        page.wait_for_function("() => workbench.saving === 0")
+    assert "“first [m/s]” was the u before, and is not used now." in page.inner_text("#remark")
+    assert page.input_value(f'select[aria-label="channel of {names[1]}"]') == ""
+    assert page.input_value(f'select[aria-label="channel of {names[2]}"]') == "u"
+
+
+def test_sizes_that_no_chair_has_are_said_beside_their_fields(page: Any, tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    lab.rim(tmp_path / "run01_SWL.csv", lab.rides(1)[0], 0.7, "l", rng)
+    take_in(page, tmp_path / "run01_SWL.csv")
+    for words, size in {
+        "mass of chair and rider": "-95,5",
+        "radius of": "30.7",
+        "A rear axle": "0.4",
+        "B centre": "0.5",
+    }.items():
+        typed(page.locator("#lab label", has_text=words).locator("input"), size)
+    page.click("#import")
+    said = page.locator("#lab .wrong").all_inner_texts()
+    assert "Give 10 to 400 kg." in said and "Give 0.05 to 1 m; is it 0.307 m?" in said
+    assert page.evaluate("workbench.state.job") is None
+    typed(page.locator("#lab [name=mass]"), "95,5")
+    typed(page.locator("#lab [name=radius]"), "0,307")
+    page.click("#import")
+    assert "cannot be ahead of the casters" in page.inner_text("#lab")
+    typed(page.locator("#lab [name=cm_ahead]"), "0,1")
+    page.click("#import")
+    done(page, "import")
+    assert page.evaluate("workbench.state.campaign.chair.m") == 95.5
 
 
 def test_an_effect_of_ones_own_is_judged_as_it_is_typed(page: Any) -> None:

@@ -70,8 +70,8 @@ def check(
         raise typer.Exit(1)
 
 
-def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Path) -> None:
-    """preview.html and preview.png in `out`, and their names on stderr: what was printed before may be JSON."""
+def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Path, *, told: bool = True) -> None:
+    """preview.html and preview.png in `out`, and their names on stderr if `told`: what was printed before may be JSON."""
     seen = preview.seen(runs)
     drawn = preview.figures(seen)
     for i, figure in enumerate(drawn):
@@ -79,10 +79,12 @@ def draw(title: str, runs: Sequence[Recorded], faults: Sequence[Fault], out: Pat
         with written(out / name) as beside:
             save(figure, beside)
         figure.set_layout_engine("none")  # where things are is found: the page need not look for it again
-        print(out / name, file=sys.stderr)
+        if told:
+            print(out / name, file=sys.stderr)
     with written(out / "preview.html") as beside:
         beside.write_text(preview.page(title, drawn, [(f.severity, f.where, f.what) for f in faults]), encoding="utf-8")
-    print(out / "preview.html", file=sys.stderr)
+    if told:
+        print(out / "preview.html", file=sys.stderr)
 
 
 def _show(campaign: Path, faults: list[Fault], counts: dict[str, int]) -> None:

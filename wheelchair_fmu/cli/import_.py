@@ -94,7 +94,7 @@ def import_(
     with working("finding the clocks", lines=progress) as say:
         seen, clocks = _on_one_clock(output, found, names, wanted)
         say("drawing every signal")
-        draw(wanted.name, seen.runs, seen.faults, output)
+        draw(wanted.name, seen.runs, seen.faults, output, told=not progress)
     if as_json:
         print_json(_told_as_data(found, wanted))
         return

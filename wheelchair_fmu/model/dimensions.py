@@ -62,7 +62,7 @@ def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
     _refuse_unreadable(text, to, law, choice)
     here, there = _exponents(text, vocabulary(model)), model.records[to].unit
     wanted = [have - own for have, own in zip((there.kg, there.m, there.s), here, strict=True)]
-    return named(*wanted)
+    return there if not any(here) else named(*wanted)
 
 
 def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice) -> None:

@@ -112,7 +112,7 @@ class Jobs:
 
     def __init__(self) -> None:
         self._jobs: dict[str, Job] = {}
-        self._took: dict[str, tuple[int, float]] = {}
+        self._took: dict[tuple[str, str], tuple[int, float]] = {}  # by session and kind of work
         self._starting = threading.Lock()
 
     def start(self, session: str, job: Job, folder: Path) -> None:
@@ -121,13 +121,13 @@ class Jobs:
             now = self._jobs.get(session)
             if now and now.state == "running":
                 raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
-            job.usual, self._jobs[session] = self._took.get(job.kind), job
-        threading.Thread(target=self._run, args=(job, folder), daemon=True).start()
+            job.usual, self._jobs[session] = self._took.get((session, job.kind)), job
+        threading.Thread(target=self._run, args=(session, job, folder), daemon=True).start()
 
-    def _run(self, job: Job, folder: Path) -> None:
+    def _run(self, session: str, job: Job, folder: Path) -> None:
         job.run(folder)
         if job.state == "done":
-            self._took[job.kind] = (len(job.lines), job.seconds)
+            self._took[session, job.kind] = (len(job.lines), job.seconds)
 
     def told(self, session: str) -> dict[str, Any] | None:
         job = self._jobs.get(session)

@@ -34,6 +34,7 @@ from ..model.arithmetic import shown as cut
 from ..model.dimensions import orders, targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
+from ..model.generic import library
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import assemble
@@ -91,6 +92,7 @@ class Workbench:
         known = orders(model)
         self.words = {
             "targets": [_word(n, q, known) for n, q in targets(model).items()],
+            "terms": {e.id: e.title for e in library().values()},
             "readable": [_word(n, q, known) for n, q in vocabulary(model).items()],
         }
 
@@ -273,7 +275,9 @@ class Workbench:
         return await self.change(session, partial(session.drop, request.path_params["name"]))
 
     async def set_campaign(self, request: Request, session: Session) -> Response:
-        return await self.change(session, partial(session.edit, await json_object(request)))
+        return await self.change(
+            session, partial(session.edit, await json_object(request), request.query_params.get("said", ""))
+        )
 
     # -- work -----------------------------------------------------------------------------------------------
 

@@ -164,8 +164,10 @@ class Session:
         if not isinstance(runs, list) or not isinstance(columns, dict):
             return
         content["run"] = self._every_run(runs)
-        for header in self.headers():
-            channel = _guess(header)
+        devices = [run for run in content["run"] if isinstance(run, Mapping) and isinstance(run.get("files"), Mapping)]
+        of_devices = {name for run in devices for name in _files_of(run)}
+        for header, files in self.headers().items():
+            channel = _guess(header) if set(files) - of_devices else None
             if channel and channel != split(header)[0] and channel not in columns:
                 columns[channel] = {"column": header}
         if not columns:
@@ -331,8 +333,8 @@ class Session:
         write(file, text.encode())
         self._append(steps, label, file.name, ladder)
 
-    def edit(self, content: Mapping[str, Any]) -> None:
-        """Another campaign.toml: one step more, with the same variant, where anything is different.
+    def edit(self, content: Mapping[str, Any], said: str = "") -> None:
+        """Another campaign.toml: one step more, with the same variant, where anything is different; `said` is that in words.
 
         Recordings that came while it was written, so that it does not know them, are added to its runs.
         """
@@ -341,7 +343,7 @@ class Session:
         steps, before = self._steps_so_far(), self.content() or {}
         self.write_content(content)
         if label := _difference(before, content):
-            self._append(steps, label, variant, None)
+            self._append(steps, said[:LONGEST_NAME] if said.isprintable() and said else label, variant, None)
 
     def go(self, by: int) -> None:
         """Undo (−1) or redo (1)."""

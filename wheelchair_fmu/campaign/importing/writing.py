@@ -218,12 +218,12 @@ def _time(before: str, plan: Plan) -> Iterator[str]:
 def _entry(before: str, choice: Choice) -> str:
     if choice.beside and not choice.settled:
         return ""
-    unit = choice.unit or ""
+    unit = choice.unit.replace("?", "")  # of one that nobody can tell, the check says that it lacks its unit
     extra = ([f"unit = {quoted(unit)}"] if unit else []) + (["sign = -1"] if choice.sign < 0 else [])
     value = f"{{ column = {quoted(choice.header)}, {', '.join(extra)} }}" if extra else quoted(choice.header)
     key = before + (quoted(choice.channel) if "." in choice.channel else choice.channel)
     if not choice.beside:
-        return _line(f"{'' if choice.settled else '# '}{key} = {value}", choice.why)
+        return _line(f"{key} = {value}", choice.why)
     if OWN.get(choice.header.partition("[")[0].strip().lower()) == choice.channel:  # it would be taken for it by its name
         return _line(f'{key} = ""', f"{choice.beside} measures it too")
     return _line(f"# {key} = {value}", f"{choice.beside} measures it too")

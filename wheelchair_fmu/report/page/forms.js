@@ -99,8 +99,8 @@ function device(bench, i) {
   const title = h("h3", {}, name, first && first !== name ? h("small", {}, more.length ? `${first} and ${more.length} more` : first) : null);
   if (!("a_x" in columns || "a_y" in columns)) return title; // of which it makes no difference
   const change = (words) => bench.save((c) => {
-    const place = words.split(/[,;\s]+/).filter(Boolean).map(Number);
-    if (place.length) c.recording[i].at = place;
+    const place = words.split(/[;\s]+|,\s*(?!\d*$)|,(?=\s)/).filter(Boolean).map((v) => Number(v.replace(",", ".")));
+    if (place.length) c.recording[i].at = place.length === 2 && place.every(Number.isFinite) ? place : words;
     else delete c.recording[i].at;
   });
   return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" }))));
@@ -137,9 +137,10 @@ function signal(values) {
 /** Three digits, also of what is rounded up to the next power of ten. */
 const shown = (value) => significant(Number(value.toPrecision(3)), 3);
 
-/** Writes into the columns of a campaign or device that `header` is `channel`; what its header says by itself needs no entry. */
+/** Writes into the columns of a campaign or device that `header` is `channel`; what its header says by itself needs no entry. A
+ *  sentence where another column was that. */
 function map(content, place, header, bare, own, channel, unit, radius) {
-  const all = place.of(content), was = Object.values(all).find((v) => (v.column ?? v) === header);
+  const all = place.of(content), before = all[channel], other = before && (before.column ?? before), was = Object.values(all).find((v) => (v.column ?? v) === header);
   for (const [name, value] of Object.entries(all)) if ((value.column ?? value) === header) delete all[name];
   if (channel && (place.explicit || channel !== bare || unit !== own || radius)) {
     all[channel] = { ...(typeof was === "object" ? was : {}), column: header };
@@ -148,6 +149,7 @@ function map(content, place, header, bare, own, channel, unit, radius) {
     put(all[channel], "radius", radius);
   }
   if (!place.explicit && Object.keys(all).length === 0) delete content.columns;
+  return other && other !== header ? `“${other}” was the ${channelOf(channel)} before, and is not used now.` : "";
 }
 
 /** What sensors are worth: one standard deviation for each that is in the recordings. */

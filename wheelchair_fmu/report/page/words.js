@@ -31,7 +31,8 @@ export function shortOf(name) {
   return /^\p{L}_[\p{L}\d]+$/u.test(own) ? own : own.replaceAll("_", " ");
 }
 
-export const capital = (words) => words.slice(0, 1).toUpperCase() + words.slice(1);
+/** A sentence from its first letter on; one that begins with a name or a unit, as yaw_rate or m/s2, keeps that as it is. */
+export const capital = (words) => (/^(?:\S*[\d_./]\S|(?:rad|deg|turn|kg|mg|mm|cm|ms|us|ns|[gms])(?![a-z]))/.test(words) ? words : words.slice(0, 1).toUpperCase() + words.slice(1));
 export const channelOf = (name) => name.replace(/^wheel_(speed|angle)_([lr])$/, (_, what, side) => `${side === "l" ? "left" : "right"} wheel ${what}`).replace(/^a_x$/, "forward acceleration").replace(/^a_y$/, "sideways acceleration").replace(/^([xy])$/, "position along $1").replace(/^yaw$/, "heading").replaceAll("_", " ");
 
 /** A name in a sentence: one that is written from right to left leaves the order of the words about it as it is. */

@@ -11,6 +11,7 @@ const LATEST = 3; // pieces of earlier work that are in sight
 const LOST = 2000; // ms between looks where the last one had no answer
 const SLOW = 250; // ms after which it is said that an answer is waited for
 const STEPS = { import: 4, calibrate: 1, diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen; to calibrate also one for each run
+const EVEN = ["diagnose", "add", "try"]; // whose steps take about as long as one another
 const FEW_STEPS = 3; // before which nobody can tell how long the rest takes
 const GONE = "The workbench does not answer. Is it still running? Start it again by “wheelchair workbench” and open the address that it prints: your work is kept.";
 const TYPING = "q is the size that is estimated. A number may have its unit behind it, as in -q * tanh(u / 3 [km/h]).";
@@ -70,6 +71,7 @@ async function tried(act) {
 
 class Workbench {
   before = Promise.resolve();
+  saving = 0; // changes of forms that are on their way
 
   async open() {
     this.listen();
@@ -124,6 +126,16 @@ class Workbench {
     byId("forms").replaceChildren(...forms.map(([, form]) => form));
   }
 
+  /** The same about a field that somebody is in, who is not disturbed while typing. */
+  showFormsAbout(field) {
+    const inside = byId("forms").contains(field), label = inside && field.getAttribute("aria-label");
+    if (inside && field.matches("input") && field.value !== field.defaultValue) return;
+    const opened = [...byId("forms").querySelectorAll("details details")].map((d) => d.open);
+    this.showForms();
+    [...byId("forms").querySelectorAll("details details")].forEach((d, i) => { d.open = opened[i] ?? d.open; });
+    if (label) [...byId("forms").querySelectorAll("[aria-label]")].find((e) => e.getAttribute("aria-label") === label)?.focus({ preventScroll: true });
+  }
+
   /** Are these files as loggers write them, of which no column is known but for the time? */
   get unread() {
     const { campaign, headers, channels } = this.state, known = new Set(channels.map((c) => c.name).filter((name) => name !== "time"));
@@ -146,7 +158,7 @@ class Workbench {
     byId("lab").hidden = !files.length || (!anew && raw);
     byId("lab").firstElementChild.textContent = raw ? "What is in these files?" : "Read the files again, with other sizes";
     if (this.asked !== (this.asked = anew)) byId("lab").open = this.asked; // else as the reader left it
-    for (const [name, of] of Object.entries(SIZES)) sizeField(name).value ||= of(campaign ?? {}) ?? "";
+    for (const [name, of] of Object.entries(SIZES)) follow(sizeField(name), of(campaign ?? {}));
     sizeField("person").placeholder = campaign?.rider?.m ?? ""; // it may be assumed: who does not give it has it assumed again
     byId("import").setAttribute("aria-pressed", anew);
     byId("sample").hidden = byId("sample-hint").hidden = files.length > 0;
@@ -179,8 +191,7 @@ class Workbench {
   /** What a step did, in words. */
   labelOf(step) {
     if (step.label === "nominal") return "the model as given";
-    if (step.label.startsWith("+ ")) return `with ${this.titleOf(step.label.slice(2))}`;
-    return step.label.replaceAll("_", " ");
+    return step.label.startsWith("+ ") ? `with ${this.titleOf(step.label.slice(2))}` : step.label;
   }
 
   titleOf(id) {
@@ -198,11 +209,11 @@ class Workbench {
 
   /** The likeliest effects of the last diagnosis come first. */
   showEffects() {
-    const { effects, words, outcome } = this.state, select = byId("effect"), chosen = select.value, order = new Map((outcome?.order ?? []).map((id, i) => [id, i]));
+    const { effects, words, outcome } = this.state, select = byId("effect"), order = new Map((outcome?.order ?? []).map((id, i) => [id, i]));
     const there = new Set(this.state.history.steps.slice(0, this.state.history.at + 1).map((s) => s.label)), all = effects.filter((e) => !there.has(`+ ${e.id}`)).sort((a, b) => (order.get(a.id) ?? 1e9) - (order.get(b.id) ?? 1e9));
     select.replaceChildren(...(order.size ? [] : [h("option", { value: "" }, "choose one, or diagnose first")]), ...all.map((e) => h("option", { value: e.id }, `${capital(e.title)}${e.own ? " (your own)" : ""}`)));
-    if (this.ranked === (outcome?.order ?? []).join() && all.some((e) => e.id === chosen)) select.value = chosen;
-    this.ranked = (outcome?.order ?? []).join();
+    if (this.ranked !== (this.ranked = (outcome?.order ?? []).join())) this.picked = null;
+    if (all.some((e) => e.id === this.picked)) select.value = this.picked;
     if (byId("own").elements.to.options.length) return;
     const group = (label, some) => h("optgroup", { label }, some.map((q) => h("option", { value: q.name }, `${q.name} [${unitText(q.unit) || "1"}] ${q.meaning}`)));
     byId("own").elements.to.append(group("forces and moment on the chair", words.targets.filter((q) => MOSTLY.includes(q.name))), group("any other quantity", words.targets.filter((q) => !MOSTLY.includes(q.name))));
@@ -254,8 +265,8 @@ class Workbench {
 
   /** Which step it is, of how many, and how long the rest takes: as the last one of its kind did, or else as its steps so far. */
   progressed({ kind, lines, steps, seconds, usual }, bar) {
-    const many = usual?.steps ?? STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0), length = usual?.seconds ?? (many && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
-    if (length) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
+    const many = usual?.steps ?? STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0), length = usual?.seconds ?? (EVEN.includes(kind) && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
+    if (usual || (many && steps <= many)) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
       late ? usual ? "longer than the last time" : "these recordings take longer than most" : length >= seconds + 1 ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
   }
@@ -273,8 +284,8 @@ class Workbench {
 
   /** What a command says, with effects by their titles. */
   plain(line) {
-    const titles = new Map(this.state.effects.map((e) => [e.id, e.title]));
-    return line.replace(/^refitting (?!with )/, "refitting with ").replace(/\w+/g, (word) => titles.get(word) ?? word);
+    const titles = new Map([...Object.entries(this.state.words.terms), ...this.state.effects.map((e) => [e.id, e.title])]);
+    return line.replace(/^refitting (?!with )/, "refitting with ").replace(/(\w)\+(?=\w)/g, "$1 and ").replace(/\w+/g, (word) => titles.get(word) ?? word);
   }
 
   showTried(job) {
@@ -312,13 +323,28 @@ class Workbench {
     this.enable();
   }
 
-  /** A form changed the campaign: send it, and show what the checks say. The forms stand as they are. */
-  async save(change) {
-    const content = structuredClone(this.state.campaign);
-    change(content);
-    const state = await tried(() => send("PUT", "campaign", content));
+  /** A form changed the campaign: send it, and show what the checks say. One after the other, each change to what those before
+   *  it left: who types fast loses nothing. */
+  save(change) {
+    const said = this.words(touched), mine = this.before.then(() => this.saved(change, said)).finally(() => { this.saving -= 1; });
+    this.saving += 1;
+    this.before = mine.catch(() => null);
+    return mine;
+  }
+
+  /** What a field says, in words: "role of run05 = held out". */
+  words(field) {
+    const label = field?.getAttribute?.("aria-label");
+    return label ? `${label.split(": ")[0]} = ${field.selectedOptions?.[0]?.textContent ?? field.value}` : "";
+  }
+
+  async saved(change, said) {
+    const content = structuredClone(this.state.campaign), remark = change(content);
+    const state = await tried(() => send("PUT", `campaign?said=${encodeURIComponent(said)}`, content));
     if (!state) return;
+    write(byId("remark"), typeof remark === "string" ? remark : "");
     this.state = { ...state, job: this.state.job };
+    if (this.saving === 1) this.showFormsAbout(document.activeElement);
     this.showFaults();
     this.showHistory();
     this.showEffects();
@@ -369,9 +395,10 @@ class Workbench {
 
   listen() {
     document.addEventListener("focusin", ({ target }) => { this.used = { element: target, section: target.closest("section") }; });
-    const drop = byId("drop"), sizes = () => Object.fromEntries(Object.keys(SIZES).map((n) => [n, sizeField(n).valueAsNumber]).filter(([, v]) => Number.isFinite(v)));
+    const drop = byId("drop"), sizes = () => Object.fromEntries(Object.keys(SIZES).map((n) => [n, sizeOf(sizeField(n))]).filter(([, v]) => v !== null));
     byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {}), "Taking in the sample …"));
-    byId("import").addEventListener("click", () => this.job("import", sizes()));
+    byId("import").addEventListener("click", () => { if (allSizes()) this.job("import", sizes()); });
+    for (const name of Object.keys(SIZES)) sizeField(name).addEventListener("change", ({ target }) => wrongSize(target));
     for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled, for a minute or less …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
       byId(`export-${id}`).addEventListener("click", () => this.export(name, making));
     for (const id of ["files", "folder"]) byId(id).addEventListener("change", ({ target }) => this.upload([...target.files].map((f) => [f.webkitRelativePath || f.name, f])));
@@ -380,14 +407,13 @@ class Workbench {
     drop.addEventListener("drop", async (event) => { event.preventDefault(); drop.classList.remove("over"); this.upload(await dropped(event.dataTransfer)); });
     byId("calibrate").addEventListener("click", () => this.job("calibrate"));
     byId("diagnose").addEventListener("click", () => this.job("diagnose"));
-    byId("effect").addEventListener("change", () => this.enable());
+    byId("effect").addEventListener("change", ({ target }) => { this.picked = target.value; this.enable(); });
     byId("shut").addEventListener("click", () => this.putAway());
     byId("see").addEventListener("click", () => this.putAway());
     document.addEventListener("visibilitychange", () => this.lookAgain());
     byId("add").addEventListener("click", () => this.job("add", { effect: byId("effect").value }));
     byId("cancel").addEventListener("click", () => this.take(() => ask("jobs", { method: "DELETE" })));
-    byId("undo").addEventListener("click", () => this.take(() => send("POST", "history", { by: -1 })));
-    byId("redo").addEventListener("click", () => this.take(() => send("POST", "history", { by: 1 })));
+    for (const [id, by] of [["undo", -1], ["redo", 1]]) byId(id).addEventListener("click", () => { this.putAway(); this.take(() => send("POST", "history", { by })); });
     this.listenToExpression(byId("own"));
   }
 
@@ -430,7 +456,7 @@ class Workbench {
       const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
       byId("tried").textContent = there && !this.ready ? "It is in the catalogue, and can be tried once there are recordings that can be read." : "";
       if (!there) return;
-      byId("effect").value = content.id;
+      byId("effect").value = this.picked = content.id;
       if (this.ready) this.job("try", { effect: content.id });
     });
   }
@@ -448,8 +474,39 @@ class Workbench {
 }
 
 const sizeField = (name) => byId("lab").querySelector(`[name=${name}]`);
+
+/** A field has what the campaign says, unless the reader has written something else. */
+function follow(field, value) {
+  const told = String(value ?? "");
+  if (!field.value || field.value === field.dataset.told) field.value = told;
+  field.dataset.told = told;
+}
+
+/** What a field of a size says, null where it is empty; NaN where it is no number. */
+const sizeOf = (field) => (field.value.trim() ? Number(field.value.replace(",", ".")) : null);
+
+/** Say beside a size what is wrong with it; is something? */
+function wrongSize(field) {
+  const value = sizeOf(field), [least, most] = [field.dataset.least, field.dataset.most].map(Number), unit = field.dataset.unit, place = field.parentElement.querySelector(".wrong") ?? field.parentElement.appendChild(h("small", { class: "wrong" }));
+  const bad = value !== null && !(value >= least && value <= most), other = [value / 100, value / 1000].find((v) => unit === "m" && v >= least && v <= most);
+  field.toggleAttribute("aria-invalid", bad);
+  place.textContent = bad ? `Give ${least} to ${most} ${unit}${other ? `; is it ${Number(other.toFixed(4))} m?` : "."}` : "";
+  return bad;
+}
+
+/** Are all sizes such as a chair has? What is wrong is said beside each. */
+function allSizes() {
+  const bad = Object.keys(SIZES).filter((name) => wrongSize(sizeField(name))), [a, b] = ["wheelbase", "cm_ahead"].map((name) => sizeOf(sizeField(name)));
+  if (!bad.length && a !== null && b !== null && b >= a) {
+    sizeField("cm_ahead").parentElement.querySelector(".wrong").textContent = "The centre of mass cannot be ahead of the casters’ pivots: measure both from the rear axle.";
+    bad.push("cm_ahead");
+  }
+  if (bad.length) sizeField(bad[0]).focus();
+  return !bad.length;
+}
+
 const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
-const whole = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
+const whole = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.floor(seconds / 60)} min ${String(Math.round(seconds % 60)).padStart(2, "0")} s`);
 
 /** Where to look once it has ended: [address, words]. */
 const SEE = { import: ["#measurements-title", "see what is in them"], diagnose: ["#outcome", "read the verdict"], calibrate: ["#history", "see the models"], add: ["#history", "see the models"], try: ["#tried", "see what it does"] };
