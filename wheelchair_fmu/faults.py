@@ -17,7 +17,8 @@ class Fault:
     """What is wrong, where, and what to do about it.
 
     `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
-    `column` is a whole header; `place` is the dotted key of campaign.toml that it is of, as in `chair.m`.
+    `column` is a whole header; `place` is the dotted key of campaign.toml that it is of, as in `chair.m`,
+    and of the first run `run.0.u0`.
     An error stops `read`; a warning does not; of a note nothing is to be done.
     """
 

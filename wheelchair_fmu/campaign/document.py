@@ -126,7 +126,8 @@ class Document:
         return None
 
     def fault(self, path: str, fact: str, cure: str, run: int | None = None, severity: str = ERROR) -> Fault:
-        place = path if run is None else ""  # which of several tables alike it is of, a key does not say
+        table, _, key = path.partition(".")
+        place = path if run is None else f"{table}.{run}.{key}"
         return Fault(self.path.name, self.line(path, run), None, fact, cure, severity, place=place)
 
 

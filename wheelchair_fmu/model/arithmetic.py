@@ -65,6 +65,7 @@ INSTEAD = {
     "³": "write **3 for a cube",
     "|": "write abs(...)",
 }
+BESIDE = re.compile(r"[\w)] +[\w(]|\d[A-Za-z_(]|\)[\w(]")  # what has no sign between
 BRACKET = re.compile(r"[ \t]*\[([^\[\]]*)\]")
 
 
@@ -93,7 +94,7 @@ def parsed(text: str) -> tuple[ast.expr, Numbers]:
     try:
         tree = ast.parse(plain, mode="eval").body
     except SyntaxError as error:
-        where = f"{error.msg} at place {error.offset}" if error.offset else "it breaks off at its end"
+        where = _where(error, plain)
         raise UsageError(f"{shown(text)} is no expression: {where}") from None
     except (RecursionError, MemoryError):
         raise _too_deep(text) from None
@@ -104,6 +105,15 @@ def parsed(text: str) -> tuple[ast.expr, Numbers]:
         _check(node, text)
     _varies(tree, {place: number.value for place, number in numbers.items()}, text)
     return tree, numbers
+
+
+def _where(error: SyntaxError, plain: str) -> str:
+    """What is wrong, and at which place; between two names or numbers a sign lacks."""
+    if not error.offset:
+        return "it breaks off at its end"
+    if BESIDE.search(plain):
+        return "between two numbers or names a sign is missing, as * is in q u"
+    return f"{error.msg} at place {error.offset}"
 
 
 def shown(text: str) -> str:
@@ -249,7 +259,9 @@ def _finite(number: object) -> bool:
 def _check_call(call: ast.Call, text: str) -> None:
     name = call.func.id if isinstance(call.func, ast.Name) else ast.unparse(call.func)
     if name not in FUNCTIONS or not isinstance(call.func, ast.Name):
-        raise UsageError(f"{shown(text)}: no function {name!r}; known: {', '.join(FUNCTIONS)}")
+        known = f"known: {', '.join(FUNCTIONS)}"
+        cure = "write tanh(u / v), which passes from −1 to 1 over about v" if name in ("sgn", "sign") else known
+        raise UsageError(f"{shown(text)}: no function {name!r}; {cure}")
     takes, given = FUNCTIONS[name][1], len(call.args)
     if call.keywords or (given != takes if takes else not 1 <= given <= MOST_COMPONENTS):
         wanted = f"{takes} value{'s' * (takes > 1)}" if takes else f"1 to {MOST_COMPONENTS} values"

@@ -28,6 +28,7 @@ from .wheelchair import FORESEEN, Choice, Model, assemble
 FACTOR = 1.7  # by which a unit is made smaller
 PLACES = 4  # random places, at which all must agree
 NEAR = 1e-6  # of a whole exponent
+SHAPE = re.compile(r"of shape \((\d+), 1\), not \((\d+), 1\)")
 NUMBER_IN = re.compile(r"(?<![\w.])\d")  # a number, not the end of a name
 SYMBOLS = ("kg", "m", "s")
 
@@ -73,6 +74,11 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
     except ModelError as error:
+        if shape := SHAPE.search(str(error)):
+            many = "one value" if shape[1] == "1" else f"{shape[1]} values"
+            raise UsageError(
+                f"{shown(text)} has {many}, where {to} has {shape[2]}; take one of them, as in N_r[0], or all, as in sum1(N_r)"
+            ) from None
         said = str(error).partition("; known here")[0].replace("effect typed", "the expression")
         raise UsageError(f"{said}{_meant(said, vocabulary(assemble(choice)))}") from None
     except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
@@ -87,7 +93,8 @@ def _meant(said: str, known: Mapping[str, Quantity]) -> str:
     word = name.replace("_", " ").lower()
     called = re.compile(rf"\b{re.escape(word)}\b", re.IGNORECASE)
     told = sorted((n for n, q in known.items() if called.search(_briefly(q))), key=lambda n: len(_briefly(known[n])))
-    close = told[:3] or get_close_matches(name, known, n=3)
+    other = [n for n in known if n.lower() == name.lower()]
+    close = other or told[:3] or get_close_matches(name, known, n=3)
     return f"; did you mean {' or '.join(f'{n} ({_briefly(known[n])})' for n in close)}?" if close else ""
 
 

@@ -260,7 +260,7 @@ class Workbench:
             except NoRecording as error:
                 other[file.filename or ""] = error
         if not taken:
-            raise next(iter(other.values()))
+            raise UsageError("; ".join(str(error) for error in list(other.values())[:NAMED]))
         for file in taken:
             session.put(file.filename or "", file.file, self.most_upload)
         session.draft(name)

@@ -16,7 +16,7 @@ export function h(tag, attributes = {}, ...children) {
 }
 
 /** Words whose symbols have their index below the line, C_λ, and whose sizes stay on one: 1.22 ± 0.19 N. */
-export const symbols = (words) => indexed(words.replace(/ ± ([\d.]+)( (?=\S))?/g, (_, error, unit) => `\u00a0±\u00a0${error}${unit ? "\u00a0" : ""}`)).map(([t, below]) => (below ? h("sub", {}, t) : t));
+export const symbols = (words) => indexed(words.replace(/(\d) (?=(?:N|m|kg|rad|s|°)(?![\p{L}\d]))/gu, "$1\u00a0").replace(/ ± ([\d.]+)( (?=\S))?/g, (_, error, unit) => `\u00a0±\u00a0${error}${unit ? "\u00a0" : ""}`)).map(([t, below]) => (below ? h("sub", {}, t) : t));
 
 /** Words in pieces [[text, whether it is an index]]. */
 export function indexed(words) {

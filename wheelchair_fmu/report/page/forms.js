@@ -54,12 +54,12 @@ export function runs(bench) {
       h("td", {}, select(`role of ${name}`, ROLES, run.role, (role) => bench.save((c) => { c.run[i].role = role; }))),
       h("td", {}, text(`manoeuvre of ${name}`, run.manoeuvre, (words) => bench.save((c) => { c.run[i].manoeuvre = words; }))),
       h("td", {}, pushed(bench, run, i, name, files, errors)),
-      h("td", {}, text(`speed at the start of ${name} [m/s]`, run.u0, (value) => bench.save((c) => { put(c.run[i], "u0", value); }), { size: 6, inputmode: "decimal" })),
+      h("td", {}, text(`speed at the start of ${name} [m/s]`, run.u0, (value) => bench.save((c) => { put(c.run[i], "u0", value); }), { size: 6, inputmode: "decimal" }), wrong({ "data-at": `run.${i}.u0` })),
       h("td", {}, h("button", { type: "button", class: "quiet", "aria-label": `remove ${name}`, onclick: () => bench.remove(files) }, "remove")));
   });
   const axes = select("axes", { "SAE-J670": "y to the right (SAE J670)", "ISO-8855": "y to the left (ISO 8855)" }, campaign.campaign?.axes, (value) => bench.save((c) => { c.campaign.axes = value; }));
   const kept = list.filter((run) => run.role === "holdout").length;
-  return h("details", { open: errors.some((f) => f.file && !f.column) && list.length <= FEW }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
+  return h("details", { open: (errors.some((f) => f.file && !f.column) && list.length <= FEW) || faulty(bench, "run.") }, h("summary", {}, `Runs: ${list.length - kept} to fit, ${kept} held out`),
     h("p", { class: "row" }, h("label", {}, "campaign ", text("name of the campaign", campaign.campaign?.name, (name) => bench.save((c) => { c.campaign.name = name; }))), h("label", {}, "axes ", axes), wrong({ "data-at": "campaign.axes" })),
     table("runs", ["run", "role", "manoeuvre", "pushes", "speed at the start, about [m/s]", "take it out"], rows));
 }
@@ -103,7 +103,7 @@ function device(bench, i) {
     if (place.length) c.recording[i].at = place.length === 2 && place.every(Number.isFinite) ? place : words;
     else delete c.recording[i].at;
   });
-  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" }))));
+  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" })), wrong({ "data-at": `recording.${i}.at` })));
 }
 
 /** The files of a device, in all runs. */

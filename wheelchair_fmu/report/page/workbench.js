@@ -139,7 +139,7 @@ class Workbench {
   /** Are these files as loggers write them, of which no column is known but for the time? */
   get unread() {
     const { campaign, headers, channels } = this.state, known = new Set(channels.map((c) => c.name).filter((name) => name !== "time"));
-    return Boolean(campaign) && !Array.isArray(campaign.recording) && !Object.keys(campaign.columns ?? {}).some((name) => known.has(name)) && !Object.keys(headers).some((header) => known.has(header.replace(/\s*\[.*\]\s*$/, "")));
+    return Boolean(campaign) && Object.keys(headers).length > 0 && !Array.isArray(campaign.recording) && !Object.keys(campaign.columns ?? {}).some((name) => known.has(name)) && !Object.keys(headers).some((header) => known.has(header.replace(/\s*\[.*\]\s*$/, "")));
   }
 
   showFaults() {
