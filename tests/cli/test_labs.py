@@ -18,7 +18,7 @@ from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 
-DRAWN = 2  # a seed
+DRAWN, HIDES = 2, 23  # seeds
 WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
 
 
@@ -147,3 +147,16 @@ def test_wheels_of_two_loggers_tell_which_way_a_yaw_rate_is_positive(seeded):
     """Which asks for the clocks of all three, and an accelerometer whose column has a channel's own name says the frame's."""
     text = (seeded[1] / "campaign.toml").read_text(encoding="utf-8")
     assert 'axes = "SAE-J670"  # by its yaw rate' in text and "follows the wheels' difference" in text
+
+
+@pytest.mark.nightly
+def test_what_uneven_floors_cover_is_found_beside_what_is_slight(tmp_path):
+    """A floor that falls to one side, under casters and a body that each do too little to be named: with these in, and effects
+    weighed by their standard errors, it shows, and no more force is left over than the floor's own."""
+    lab = drawn(tmp_path / "raw", HIDES)
+    diagnosis = diagnose(read(imported(lab, tmp_path / "chair")))
+    named = {*diagnosis.effects, *(effect for group in diagnosis.ties for effect in group)}
+    assert diagnosis.verdict in ("missing", "tie") and "floor_cross_slope" in named
+    hidden = lab.answer["hidden"]
+    floor = 9.81 * hidden["floor_slope_rms"] * hidden["m"]
+    assert 1 / 1.5 < diagnosis.unexplained.after.along / floor < 1.5

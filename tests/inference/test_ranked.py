@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import special
 
 from wheelchair_fmu.inference.decision.verdict import _instead_of_small
 from wheelchair_fmu.inference.estimation.fit import Fit
@@ -19,9 +20,9 @@ from wheelchair_fmu.inference.search.ties import probable
 NONE = Fit((), {}, np.zeros((0, 0)), Evidence((), ()), 0.0, np.zeros(0))
 
 
-def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, dispersion=1.0) -> Candidate:
+def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, dispersion=1.0, by_errors=False) -> Candidate:
     """Of sizes in δ; `fall` of squares."""
-    known = dict(p=0.0, heldout=None, lawful=True)
+    known = dict(p=0.0, heldout=None, lawful=True, by_errors=by_errors)
     one = np.ones(len(estimate))
     scale = dict(delta=one, one_sided=one < 0, dispersion=dispersion, correlation=correlation, gain=gain)
     return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, covariance, **scale, **known)
@@ -69,6 +70,32 @@ def test_what_held_out_runs_say_counts_as_fitted_ones_do():
         candidate(e, f, np.array([2.0]), certain, gain=(g, 0.0, 0.0)) for e, f, g in (("a", 50.0, 20.0), ("b", 60.0, 0.0))
     )
     assert [c.effect for c in ranked([behind, ahead])] == ["a", "b"]
+
+
+def test_odds_are_right_where_standard_errors_allow_for_residuals_that_last():
+    """Of 2000 effects, slight or large, whose fall is their size in standard errors that allow for everything: what lasts in
+    the residuals says no more of them."""
+    rng, error = np.random.default_rng(8), 0.5
+    large = rng.random(2000) < 0.5
+    found = rng.normal(0, np.where(large, DEFAULT.large, DEFAULT.slight)) + rng.normal(0, error, 2000)
+    some = (
+        candidate("a", (x / error) ** 2, np.array([x]), np.array([[error**2]]), correlation=8.0, dispersion=0.7, by_errors=True)
+        for x in found
+    )
+    said = np.array([special.expit(c.support.large - c.support.slight) for c in some])
+    for low, high in ((0.1, 0.3), (0.3, 0.7), (0.7, 0.99)):
+        among = (said > low) & (said < high)
+        assert among.sum() > 60
+        assert large[among].mean() == pytest.approx(said[among].mean(), abs=3 * np.sqrt(0.25 / among.sum()))
+
+
+def test_a_fall_by_standard_errors_is_no_more_than_runs_agree_on():
+    """What runs would have apart by much more than their moments say is as little sure as they have it."""
+    size, tight, wide = np.array([6.5]), np.array([[0.27]]), np.array([[4.9]])
+    alike = candidate("a", 6.5**2 / 0.27, size, tight, by_errors=True)
+    apart = replace(alike, between=wide)
+    assert alike.fall == pytest.approx(6.5**2 / 0.27) and apart.fall == pytest.approx(6.5**2 / 4.9)
+    assert alike.support.large > 50 > 5 > apart.support.large
 
 
 def test_all_are_judged_by_the_residuals_that_the_likeliest_leaves():

@@ -209,7 +209,10 @@ class Evaluator:
             raise SimulationError("what a clock or a baseline would do grows beyond all numbers; try other parameters")
         if status:
             raise SimulationError(stopped(status, run.time, ctypes.c_long.from_address(place.record.reached).value))
-        return place.evaluation()
+        found = place.evaluation()
+        if not np.isfinite(found.whitener.logdet):  # a covariance that is none any more: readings drop out, and all seems well
+            raise SimulationError("slopes along it grow beyond what a filter can follow; try other parameters")
+        return found
 
 
 class _Place:

@@ -228,6 +228,8 @@ def _diagnosed(
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
+    if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
+        effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *beginning.heard(in_time))
     allowed = _allowance(found)
     return Diagnosis(
@@ -398,8 +400,9 @@ def _verdict(
     """The verdict, and the share of causes that would have been seen, where it rests on that."""
     if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
         return "outside", None
-    lasting = correlation_time(left) > models.policy.lasting
-    if effects and not models.factory.leads and insufficient(ladder, models.policy) and lasting:
+    # Where forces lead the runs, what lasts is theirs: whether anything is behind that is asked of them (see `Unexplained`).
+    lasting = not models.factory.leads and correlation_time(left) > models.policy.lasting
+    if effects and insufficient(ladder, models.policy) and lasting:
         return "outside", None
     if effects:
         return ("tie" if ties else "missing"), None

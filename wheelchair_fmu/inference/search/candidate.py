@@ -37,6 +37,7 @@ class Candidate:
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
     bounded: float = 0.0  # −2 log likelihood that its lack costs by its own slopes, all other values being within their bounds
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
+    by_errors: bool = False  # its fall is by standard errors, which allow for how large and how correlated residuals are
     policy: SearchPolicy = DEFAULT
 
     @property
@@ -51,9 +52,19 @@ class Candidate:
         return dispersion * correlation
 
     @property
+    def unit(self) -> float:
+        """What counts as one of a misfit's fall: `scale`, but of one by standard errors."""
+        return 1.0 if self.by_errors else self.scale
+
+    @property
     def fall(self) -> float:
-        """Of −2 log likelihood, in units of `scale`."""
-        return max(self.drop, 0.0) * self.dispersion / self.scale
+        """Of −2 log likelihood, in `unit`s; by standard errors no more than the widest of them have it: runs that would have an
+        effect apart say less of it than their moments do."""
+        whole = max(self.drop, 0.0) * self.dispersion / self.unit
+        if not self.by_errors:
+            return whole
+        scale = np.outer(self.delta, self.delta)
+        return min(whole, *(squared(self.size / self.delta, c / scale) for c in (self.covariance, self.between)))
 
     @cached_property
     def support(self) -> Support:

@@ -52,6 +52,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         policy=models.policy,
         bounded=bounded(fit, names, without),
+        by_errors=w.leads,
     )
 
 

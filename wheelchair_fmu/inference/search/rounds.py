@@ -99,8 +99,8 @@ class Round:
     @property
     def _of_laws(self) -> float:
         """Log likelihood that may be gained for no other reason than that the laws of what was found before are not exact."""
-        scale = self.every[0].scale if self.every else 1.0
-        return 0.5 * self.policy.inexact**2 * max(self.explained, 0.0) / scale
+        unit = self.every[0].unit if self.every else 1.0
+        return 0.5 * self.policy.inexact**2 * max(self.explained, 0.0) / unit
 
 
 def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:

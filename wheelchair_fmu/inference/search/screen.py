@@ -80,8 +80,8 @@ def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
 
 def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
     """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
-    deviations."""
-    if base.evidence.rms < AT_THE_FLOOR:
+    deviations. None where forces lead the runs, which make up for what values would be bent for."""
+    if likelihood.leads or base.evidence.rms < AT_THE_FLOOR:
         return []
     prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
     off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)

@@ -22,7 +22,7 @@ from .screen import AT_THE_FLOOR
 from .search import searched
 from .ties import beside, overtaker
 
-MOST_EFFECTS = 4  # that are put in: whoever lacks more needs another model
+MOST_EFFECTS = 4  # that are put in, beside what only helps: whoever lacks more needs another model
 MOST_STEPS = 8  # that put one in, or one in the place of another
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
@@ -66,7 +66,7 @@ class Selection:
         now = self
         for _ in range(MOST_STEPS):
             before = now
-            now, best = now._found() if len(now.added) < MOST_EFFECTS else (now, None)
+            now, best = now._found() if len({*now.added} - now.helping) < MOST_EFFECTS else (now, None)
             higher = now._with(best) if best else None
             if higher is None:
                 now, overtaken = replace(now, ladder=before.ladder, helping=before.helping)._looked_beside()
@@ -86,8 +86,11 @@ class Selection:
 
     def _with(self, best: Candidate) -> Selection | None:
         """The model with what the last round found, and without what that makes needless; None if the error rises once runs
-        start where this model wants them."""
-        models, top = self.models.settled((*self.rounds[-1].effects, best.effect), best.fit)
+        start where this model wants them, or it cannot run from there."""
+        try:
+            models, top = self.models.settled((*self.rounds[-1].effects, best.effect), best.fit)
+        except SimulationError:
+            return None
         if top.fit.evidence.rms > RISEN * self.top.fit.evidence.rms:
             return None
         return replace(self, models=models, top=top)._step()._pruned()
@@ -137,7 +140,7 @@ class Selection:
             self.models.say("trying effects of one law together")
             now, joined = replace(now, tried_together=True), together(self.models, r)
             now, best = now._parted(r, joined) if joined else (now, None)
-        if best is None and now.ladder[-1].fit > AT_THE_FLOOR and r.slight:
+        if best is None and (self.models.factory.leads or now.ladder[-1].fit > AT_THE_FLOOR) and r.slight:
             best = r.slight[0]
             now = replace(now, helping=now.helping | {best.effect})
         return now, best
