@@ -138,7 +138,7 @@ def test_a_value_that_is_no_number_is_no_reason_to_read_the_files_anew(page: Any
     assert "find out" not in page.inner_text("#faults") and page.is_hidden("#lab")
     told = page.locator("[data-at='chair.m']")
     assert "'heavy' is not a finite number" in told.text_content() and "guess" not in told.get_attribute("class")
-    assert page.locator("input[aria-label^='chair.m:']").get_attribute("aria-invalid") is not None
+    assert page.locator("input[aria-label^='chair.m:']").get_attribute("aria-invalid") == "true"
     page.click("#undo")
     page.wait_for_function("() => document.getElementById('faults').innerText.includes('can be read')")
 
@@ -389,6 +389,15 @@ def test_a_signal_that_goes_to_another_column_is_said(page: Any, tmp_path: Path)
     assert "“first [m/s]” was the u before, and is not used now." in page.inner_text("#remark")
     assert page.input_value(f'select[aria-label="channel of {names[1]}"]') == ""
     assert page.input_value(f'select[aria-label="channel of {names[2]}"]') == "u"
+
+
+def test_where_a_device_sits_is_understood_with_points_and_with_commas(page: Any) -> None:
+    said = {"0.09, 0.04": [0.09, 0.04], "0.09,4": [0.09, 4], "0,09 0,04": [0.09, 0.04], "0,09; -0,04": [0.09, -0.04]}
+    none = ("9 cm, 4 cm", "left", "0.09", "1 2 3")
+    found = page.evaluate(
+        "async (all) => { const { pointOf } = await import('page/forms'); return all.map(pointOf); }", [*said, *none]
+    )
+    assert found == [*said.values(), *(None for _ in none)]
 
 
 def test_sizes_that_no_chair_has_are_said_beside_their_fields(page: Any, tmp_path: Path) -> None:

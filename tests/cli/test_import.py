@@ -264,6 +264,7 @@ def test_the_mass_of_what_moves_as_a_measured_position_says_is_written(tmp_path,
     done = imported(tmp_path / "run01_coast.csv", "-o", tmp_path / "made", *words)
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
+    assert any("mass that moves" in fault["fact"] for fault in found["faults"]) == (person is None)
     assert "rider.s" in [column["channel"] for device in found["devices"] for column in device["columns"]]
     content = tomllib.loads((tmp_path / "made" / "campaign.toml").read_text(encoding="utf-8"))
     assert content["columns"]["rider.s"] == "rider.s [m]"

@@ -181,6 +181,15 @@ def test_nothing_hidden_nothing_found(tmp_path):
     assert np.isfinite(found.ladder[-1].fit)
 
 
+@pytest.mark.nightly
+def test_an_uneven_floor_is_nobodys_effect(tmp_path):
+    """On its way the search comes by values at which a filter loses readings, and in the end its residuals last."""
+    campaign = read(make(tmp_path / "floor", {"uneven_floor": {"slope": 0.003}}, seed=1))
+    found = diagnose(campaign, generic=library())
+    assert found.verdict in ("adequate", "cannot_see") and not found.effects
+    assert 1.5 < found.unexplained.after.along < 3.5  # N, as 80 kg feel it
+
+
 def test_drag_hidden_in_straight_runs_is_named_or_tied(tmp_path):
     hidden = {"aerodynamic_drag": usual("aerodynamic_drag", 3.0)}
     campaign = read(make(tmp_path / "air", hidden, manoeuvres="straight", seed=12))

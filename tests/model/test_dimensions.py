@@ -97,6 +97,12 @@ def test_the_catalogues_own_drag_agrees():
     assert (found.kg, found.m, found.s) == (record.kg, record.m, record.s)
 
 
+def test_a_long_sum_is_refused_as_soon_as_a_short_one():
+    """What a part is in is found once, and not twice for every sum that it is within."""
+    with pytest.raises(UsageError, match=r"\(m/s\) and m \(kg\) are added"):
+        unit_of_q(f"q * ({' + '.join(['u'] * 50)} + m)", "F_x")
+
+
 def test_signs_of_print_are_those_of_the_keyboard():
     assert law("−q × u · 2").expression == law("-q * u * 2").expression
 

@@ -19,13 +19,13 @@ from ..campaign.axes import AXES
 from ..campaign.document import FILE
 from ..campaign.formats import format_of
 from ..campaign.importing import (
-    AXES_CURE,
     RADIUS,
     SIZES,
     Choice,
     Found,
     Plan,
     Wanted,
+    doubts,
     find,
     held_out,
     needs_radius,
@@ -96,7 +96,7 @@ def import_(
         say("drawing every signal")
         draw(wanted.name, seen.runs, seen.faults, output, told=not progress)
     if as_json:
-        print_json(_told_as_data(found, wanted))
+        print_json(_told_as_data(found, wanted, seen.faults))
         return
     said = [*show(clocks), *_needing_radius(output, found, wanted)]
     _show(found)
@@ -105,8 +105,8 @@ def import_(
     _conclude(output, found, wanted, seen.faults, link)
 
 
-def _told_as_data(found: Found, wanted: Wanted) -> dict[str, Any]:
-    """What was found, column by column, and what is to be looked at."""
+def _told_as_data(found: Found, wanted: Wanted, faults: Sequence[Fault]) -> dict[str, Any]:
+    """What was found, column by column, what is to be looked at, and all faults, those of files that were left out first."""
     devices = [
         {
             "name": plan.name,
@@ -118,7 +118,9 @@ def _told_as_data(found: Found, wanted: Wanted) -> dict[str, Any]:
         }
         for plan in found.plans
     ]
-    return {"runs": list(found.runs), "devices": devices, "unsure": [asdict(one) for one in unsure(found.plans, wanted)]}
+    looked_at = [asdict(one) for one in unsure(found.plans, wanted)]
+    told = [asdict(fault) for fault in (*found.faults, *faults)]
+    return {"runs": list(found.runs), "devices": devices, "unsure": looked_at, "faults": told}
 
 
 def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | None]) -> None:
@@ -224,7 +226,7 @@ def _on_one_clock(
         with written(output / FILE) as beside:
             beside.write_text(text(found.plans, found.runs, names, how), encoding="utf-8")
 
-    standing_in = wanted.radius is None and needs_radius(found.plans)
+    standing_in = _lacks_radius(found, wanted)
     known = replace(wanted, radius=RADIUS) if standing_in else wanted
     write(known)
     seen = judged(output, known_parameters())
@@ -238,8 +240,13 @@ def _on_one_clock(
     return seen, clocks
 
 
+def _lacks_radius(found: Found, wanted: Wanted) -> bool:
+    return wanted.radius is None and needs_radius(found.plans)
+
+
 def _needing_radius(output: Path, found: Found, wanted: Wanted) -> list[str]:
-    if wanted.radius is not None or not needs_radius(found.plans):
+    """A sentence where the wheels' radius is missing."""
+    if not _lacks_radius(found, wanted):
         return []
     return [
         "the wheels' radius is missing, by which angles, angular speeds and torques of wheels become m/s and N: write "
@@ -287,8 +294,7 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
         out.print(str(fault))
     if len(warnings) > MOST:
         out.print(f"and {len(warnings) - MOST} more warnings; see `wheelchair check {output}`")
-    doubts = [doubt for plan in found.plans for doubt in plan.doubts]
-    for doubt in (d for d in doubts if not (wanted.axes and d.endswith(AXES_CURE))):
+    for doubt in (doubt for plan in found.plans for doubt in doubts(plan, wanted)):
         out.print(f"look at this: {doubt}")
     how = "linked to" if link else "copied into"
     out.print(

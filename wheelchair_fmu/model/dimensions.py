@@ -70,6 +70,9 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
     """An expression must assemble: it reads only what is known, and has the shape of what it acts on."""
     if "q" not in signature(law).parameters:
         raise UsageError(f"{shown(text)} has no q in it; q is the size that is estimated, as in -q * u")
+    known = vocabulary(assemble(choice))
+    if strange := next((n for n in signature(law).parameters if n != "q" and n not in known), None):
+        raise UsageError(f"the expression reads {strange!r}, which is no quantity of this model{_meant(strange, known)}")
     q = Parameter("q", ONE, off=0.0, smallest_interesting=1.0)
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
@@ -79,17 +82,13 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
             raise UsageError(
                 f"{shown(text)} has {many}, where {to} has {shape[2]}; take one of them, as in N_r[0], or all, as in sum1(N_r)"
             ) from None
-        said = str(error).partition("; known here")[0].replace("effect typed", "the expression")
-        raise UsageError(f"{said}{_meant(said, vocabulary(assemble(choice)))}") from None
+        raise UsageError(str(error).partition("; known here")[0].replace("effect typed", "the expression")) from None
     except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
         raise UsageError(f"{shown(text)} cannot be evaluated: {str(error).splitlines()[-1]}") from None
 
 
-def _meant(said: str, known: Mapping[str, Quantity]) -> str:
+def _meant(name: str, known: Mapping[str, Quantity]) -> str:
     """The quantities that a name which is none may mean, by what they are called or by their meaning."""
-    name = said.partition("'")[2].partition("'")[0]
-    if "is no quantity" not in said:
-        return ""
     word = name.replace("_", " ").lower()
     called = re.compile(rf"\b{re.escape(word)}\b", re.IGNORECASE)
     told = sorted((n for n, q in known.items() if called.search(_briefly(q))), key=lambda n: len(_briefly(known[n])))

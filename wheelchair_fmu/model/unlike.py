@@ -33,8 +33,14 @@ def unlike(text: str, known: Mapping[str, Quantity], named: Callable[..., str]) 
 class _Units:
     def __init__(self, known: Mapping[str, Quantity], numbers: arithmetic.Numbers, named: Callable[..., str]):
         self.known, self.numbers, self.named = known, numbers, named
+        self._told: dict[ast.expr, Exponents] = {}  # each part is asked for once by what it is in, and again by its message
 
     def of(self, node: ast.expr) -> Exponents:
+        if node not in self._told:
+            self._told[node] = self._found(node)
+        return self._told[node]
+
+    def _found(self, node: ast.expr) -> Exponents:
         match node:
             case ast.Constant():
                 number = self.numbers.get(node.col_offset)

@@ -23,14 +23,12 @@ from ...faults import Fault
 from . import wheels
 from .choices import Choice, Plan
 from .deciding import RADIUS, decide
-from .frames import AXES_CURE
 from .gathering import opened, sources
 from .taking import taken
-from .unsure import Unsure, unsure
+from .unsure import Unsure, doubts, unsure
 from .writing import SIZES, Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
-    "AXES_CURE",
     "RADIUS",
     "SIZES",
     "Choice",
@@ -39,6 +37,7 @@ __all__ = [
     "Unsure",
     "Wanted",
     "axes_of",
+    "doubts",
     "find",
     "held_out",
     "needs_radius",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .choices import CHECK_IT, Plan
 from .frames import AXES_CURE
-from .writing import Wanted, assumed_person, open_axes, why_axes
+from .writing import Wanted, assumed_person, of_one_device, open_axes, why_axes
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,16 @@ def _campaign(plans: Sequence[Plan], wanted: Wanted) -> Iterator[Unsure]:
 
 
 def _device(plan: Plan, plans: Sequence[Plan], wanted: Wanted) -> Iterator[Unsure]:
-    alone = len(plans) == 1 and not plan.markers
+    alone = of_one_device(plans)
     table = ("columns",) if alone else ("recording", plan.name, "columns")
     for choice in plan.choices:
         if choice.guessed:
             guessed = "; ".join(part for part in choice.why.split("; ") if CHECK_IT in part)
             yield Unsure(guessed, ((*table, choice.channel),), plan.name, choice.header)
-    for doubt in plan.doubts:
-        if not (wanted.axes and doubt.endswith(AXES_CURE)):
-            yield Unsure(doubt, (table if alone else table[:2], ("campaign", "axes")), plan.name)
+    for doubt in doubts(plan, wanted):
+        yield Unsure(doubt, (table if alone else table[:2], ("campaign", "axes")), plan.name)
+
+
+def doubts(plan: Plan, wanted: Wanted) -> list[str]:
+    """What is doubtful about a device, but for axes that the user has said."""
+    return [doubt for doubt in plan.doubts if not (wanted.axes and doubt.endswith(AXES_CURE))]

@@ -76,11 +76,16 @@ CHAIR = (
 
 def text(plans: Sequence[Plan], runs: Sequence[str], files: Mapping[str, Mapping[str, str]], wanted: Wanted) -> str:
     """The whole file. `files` are by run and device, as campaign.toml is to name them."""
-    alone = len(plans) == 1 and not plans[0].markers
+    alone = of_one_device(plans)
     parts = [_head(plans, files, wanted), _chair(wanted), _rider(plans, wanted), _noise(wanted), _nuisance(plans)]
     parts += [_columns(plans[0])] if alone else [_recording(plan, wanted) for plan in plans]
     parts += [_run(run, files[run], wanted, alone) for run in runs]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def of_one_device(plans: Sequence[Plan]) -> bool:
+    """Has the campaign one device, whose columns need no table of their own?"""
+    return len(plans) == 1 and not plans[0].markers
 
 
 def axes_of(plans: Sequence[Plan], wanted: Wanted) -> str:

@@ -61,10 +61,11 @@ class Candidate:
         """Of −2 log likelihood, in `unit`s; by standard errors no more than the widest of them have it: runs that would have an
         effect apart say less of it than their moments do."""
         whole = max(self.drop, 0.0) * self.dispersion / self.unit
-        if not self.by_errors:
-            return whole
-        scale = np.outer(self.delta, self.delta)
-        return min(whole, *(squared(self.size / self.delta, c / scale) for c in (self.covariance, self.between)))
+        return min(whole, self._away(self.covariance), self._away(self.between)) if self.by_errors else whole
+
+    def _away(self, covariance: np.ndarray) -> float:
+        """How far its size is from none, squared, in the standard errors of a covariance (k, k)."""
+        return squared(self.size / self.delta, covariance / np.outer(self.delta, self.delta))
 
     @cached_property
     def support(self) -> Support:
@@ -82,8 +83,7 @@ class Candidate:
     def excess(self) -> float:
         """Log likelihood that is gained, and neither by the estimate, as its standard errors have it, nor for other values'
         bounds: of a model that is not exact a parameter may take up what it did not do."""
-        away = squared(self.size / self.delta, self.covariance / np.outer(self.delta, self.delta))
-        return 0.5 * max(0.0, self.fall - max(away, self.bounded))
+        return 0.5 * max(0.0, self.fall - max(self._away(self.covariance), self.bounded))
 
     @property
     def se(self) -> np.ndarray:

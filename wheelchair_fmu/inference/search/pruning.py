@@ -16,7 +16,7 @@ def pruned(models: Models, effects: tuple[str, ...], found: Fit, keep: Container
     leads = models.factory.leads
     for effect in effects[:-1]:
         weight = models.weight(found, effect)
-        plain = models.policy.tied if leads else PLAINLY * models.policy.tied
+        plain = models.policy.tied * (1.0 if leads else PLAINLY)
         if effect in keep or weight > plain:
             continue  # by its standard errors it is so far from zero that nobody needs to try without
         fewer = tuple(e for e in effects if e != effect)

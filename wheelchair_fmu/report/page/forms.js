@@ -2,7 +2,7 @@
 
 import { h, symbols } from "page/dom";
 import { course, extent, svg } from "page/draw";
-import { significant, unitText } from "page/numbers";
+import { decimal, significant, unitText } from "page/numbers";
 import { capital, channelOf, listed } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
@@ -41,7 +41,8 @@ export function mark(faults) {
     const { column, at } = place.dataset, files = place.dataset.files?.split("\n") ?? [];
     const of = told.filter((f) => (at ? f.at === at : files.includes(f.file) && (f.column ?? undefined) === column)), bad = of.some((f) => f.severity === "error"), said = [...new Set(of.map((f) => f.what))];
     place.classList.toggle("guess", !bad);
-    for (const typed of place.parentElement.querySelectorAll("input")) typed.toggleAttribute("aria-invalid", bad && Boolean(at));
+    const beside = place.previousElementSibling, typed = beside?.matches("input, select") ? beside : beside?.querySelector("input, select");
+    if (at) typed.setAttribute("aria-invalid", bad);
     place.textContent = said.slice(0, SAID).map((what) => `${capital(what)}.`).join(" ") + (said.length > SAID ? ` And ${said.length - SAID} more.` : "");
   }
 }
@@ -99,11 +100,16 @@ function device(bench, i) {
   const title = h("h3", {}, name, first && first !== name ? h("small", {}, more.length ? `${first} and ${more.length} more` : first) : null);
   if (!("a_x" in columns || "a_y" in columns)) return title; // of which it makes no difference
   const change = (words) => bench.save((c) => {
-    const place = words.split(/[;\s]+|,\s*(?!\d*$)|,(?=\s)/).filter(Boolean).map((v) => Number(v.replace(",", ".")));
-    if (place.length) c.recording[i].at = place.length === 2 && place.every(Number.isFinite) ? place : words;
+    if (words) c.recording[i].at = pointOf(words) ?? words;
     else delete c.recording[i].at;
   });
-  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : "", change, { size: 12, placeholder: "as at the centre" })), wrong({ "data-at": `recording.${i}.at` })));
+  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : at, change, { size: 12, placeholder: "as at the centre" })), wrong({ "data-at": `recording.${i}.at` })));
+}
+
+/** Two numbers, as "0.09, 0.04" or "0,09 0,04": a comma parts them where nothing else does. Null for any other words. */
+export function pointOf(words) {
+  const parts = /[;\s]/.test(words) ? words.split(/,?[;\s]+/) : words.split(","), point = parts.map(decimal);
+  return point.length === 2 && point.every(Number.isFinite) ? point : null;
 }
 
 /** The files of a device, in all runs. */
@@ -218,7 +224,7 @@ const faulty = ({ state }, ...names) => state.faults.some((f) => f.severity === 
 
 /** A number where it is one; the text as it is where not, so that the check can say so; nothing where nothing is. */
 function put(table, key, value) {
-  const number = Number(String(value).replace(",", "."));
+  const number = decimal(value);
   if (value === "") delete table[key];
   else table[key] = Number.isFinite(number) ? number : value;
 }

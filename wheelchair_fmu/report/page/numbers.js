@@ -100,3 +100,6 @@ export const rms = (value) => (value === null || value === undefined || Number.i
 
 const minus = (text) => text.replace(/^-/, "−");
 const unsigned = (text) => text.replace(/^−(0(\.0*)?)$/, "$1"); // zero has no sign
+
+/** A number as people type it, with a point or a comma; NaN where it is none. */
+export const decimal = (words) => Number(String(words).replace(",", "."));

@@ -2,7 +2,7 @@
 
 import { byId, h, save, symbols, write } from "page/dom";
 import { chair, columns, mark, noise, priors, runs } from "page/forms";
-import { rms, unitText } from "page/numbers";
+import { decimal, rms, unitText } from "page/numbers";
 import { capital, listed } from "page/words";
 
 const POLL = 400; // ms between looks at a running job
@@ -81,7 +81,13 @@ class Workbench {
   /** Ask the server for something that answers with the new state, and show it all. One after the other: an answer that was
    *  overtaken on its way would show an older state over a newer one. */
   take(act, doing = "Looking at the recordings …") {
-    const late = setTimeout(() => this.waiting(doing), SLOW), mine = this.before.then(() => this.taken(act)).finally(() => { clearTimeout(late); this.waiting(""); });
+    const late = setTimeout(() => this.waiting(doing), SLOW);
+    return this.queued(() => this.taken(act), () => { clearTimeout(late); this.waiting(""); });
+  }
+
+  /** Do something once all that was asked before is done, and then what `ends` it. */
+  queued(act, ends) {
+    const mine = this.before.then(act).finally(ends);
     this.before = mine.catch(() => null);
     return mine;
   }
@@ -145,7 +151,7 @@ class Workbench {
   showFaults() {
     const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), guesses = faults.filter((f) => f.severity === "guess").length, remarks = faults.filter((f) => f.severity !== "error").sort((a, b) => (b.severity === "guess") - (a.severity === "guess"));
     const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), unread = files.length > 0 && errors.length > 0 && this.unread;
-    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), by = raw && anew ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed, and writes over the others
+    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), by = raw && anew ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
     if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
       h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
@@ -326,10 +332,9 @@ class Workbench {
   /** A form changed the campaign: send it, and show what the checks say. One after the other, each change to what those before
    *  it left: who types fast loses nothing. */
   save(change) {
-    const said = this.words(touched), mine = this.before.then(() => this.saved(change, said)).finally(() => { this.saving -= 1; });
+    const said = this.words(touched);
     this.saving += 1;
-    this.before = mine.catch(() => null);
-    return mine;
+    return this.queued(() => this.saved(change, said), () => { this.saving -= 1; });
   }
 
   /** What a field says, in words: "role of run05 = held out". */
@@ -483,13 +488,13 @@ function follow(field, value) {
 }
 
 /** What a field of a size says, null where it is empty; NaN where it is no number. */
-const sizeOf = (field) => (field.value.trim() ? Number(field.value.replace(",", ".")) : null);
+const sizeOf = (field) => (field.value.trim() ? decimal(field.value) : null);
 
 /** Say beside a size what is wrong with it; is something? */
 function wrongSize(field) {
   const value = sizeOf(field), [least, most] = [field.dataset.least, field.dataset.most].map(Number), unit = field.dataset.unit, place = field.parentElement.querySelector(".wrong") ?? field.parentElement.appendChild(h("small", { class: "wrong" }));
   const bad = value !== null && !(value >= least && value <= most), other = [value / 100, value / 1000].find((v) => unit === "m" && v >= least && v <= most);
-  field.toggleAttribute("aria-invalid", bad);
+  field.setAttribute("aria-invalid", bad);
   place.textContent = bad ? `Give ${least} to ${most} ${unit}${other ? `; is it ${Number(other.toFixed(4))} m?` : "."}` : "";
   return bad;
 }
