@@ -22,6 +22,6 @@ def rows() -> Iterator[Row]:
 
 def seconds(tree: Path) -> list[float]:
     """Of each repeat, by the package and the sample in this tree."""
-    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "diagnose", "examples/sample-campaign"]
+    words = [sys.executable, "-m", "wheelchair_fmu", "diagnose", "examples/sample-campaign"]
     call = lambda: subprocess.run(words, cwd=tree, check=True, capture_output=True)  # noqa: E731
     return [ms / 1e3 for ms in timed(call, REPEATS)]

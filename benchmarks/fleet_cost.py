@@ -83,7 +83,7 @@ def outcome(folder: Path, out: Path, workers: int) -> Outcome:
 
 
 def _command(folder: Path, table: Path, *words: str) -> list[str]:
-    return [sys.executable, "-m", "wheelchair_fmu.cli.main", "fleet", str(folder), "-o", str(table), *words]
+    return [sys.executable, "-m", "wheelchair_fmu", "fleet", str(folder), "-o", str(table), *words]
 
 
 def _wait_for(table: Path, parts: int, process: subprocess.Popen[bytes]) -> None:

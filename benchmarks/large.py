@@ -134,9 +134,7 @@ def _recorded(simulator: Simulator, seconds: float, rng: np.random.Generator) ->
 def cost(words: Sequence[str | Path]) -> Cost:
     """Run the `wheelchair` command in a process of its own (POSIX)."""
     start = perf_counter()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "wheelchair_fmu.cli.main", *map(str, words)], stdout=subprocess.PIPE, text=True
-    )
+    process = subprocess.Popen([sys.executable, "-m", "wheelchair_fmu", *map(str, words)], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     output = process.stdout.read()
     _, status, used = os.wait4(process.pid, 0)

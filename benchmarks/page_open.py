@@ -37,7 +37,7 @@ def opened(report: Path | None = None) -> Iterator[Any]:
     with tempfile.TemporaryDirectory() as place, sync_playwright() as running:
         file = report or Path(place) / "report.html"
         if not report:
-            words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "report", str(SAMPLE), "--diagnosis", str(DIAGNOSIS)]
+            words = [sys.executable, "-m", "wheelchair_fmu", "report", str(SAMPLE), "--diagnosis", str(DIAGNOSIS)]
             subprocess.run([*words, "-o", str(file)], check=True, stdout=subprocess.DEVNULL)
         browser = running.chromium.launch(executable_path=chromium, args=OPTIONS)
         page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme="light")

@@ -28,7 +28,7 @@ from .kit import descendants, gone
 ROOT = Path(__file__).parents[1]
 SEED = int(os.environ.get("NIGHTLY_SEED", "1"))
 OLD = b"what was there before"
-WHEELCHAIR = (sys.executable, "-m", "wheelchair_fmu.cli.main")
+WHEELCHAIR = (sys.executable, "-m", "wheelchair_fmu")
 PLAN = """
 [sweep]
 method = "random"

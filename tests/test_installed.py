@@ -54,7 +54,7 @@ def _ran(words: list[str], folder: Path) -> str:
 
 
 def wheelchair(home: Path, *words: str) -> str:
-    return _ran([str(_bin(home) / "python"), "-m", "wheelchair_fmu.cli.main", *words], home)
+    return _ran([str(_bin(home) / "python"), "-m", "wheelchair_fmu", *words], home)
 
 
 def test_it_has_all_but_the_tests(wheel):
@@ -105,6 +105,6 @@ def test_it_diagnoses_its_sample_and_reports(home):
 
 def test_nothing_is_written_over(home):
     wheelchair(home, "sample", "rig", "--kind", "tyre")
-    again = [str(_bin(home) / "python"), "-m", "wheelchair_fmu.cli.main", "sample", "rig", "--kind", "tyre"]
+    again = [str(_bin(home) / "python"), "-m", "wheelchair_fmu", "sample", "rig", "--kind", "tyre"]
     done = subprocess.run(again, cwd=home, capture_output=True, text=True)
     assert done.returncode == 1 and "rotating-disc.csv: is there already; give a new folder" in done.stderr

@@ -103,7 +103,7 @@ def work(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def address(work: Path) -> Iterator[str]:
     """A workbench that runs, with its token, which a browser keeps as a cookie."""
     pytest.importorskip("uvicorn", reason="the workbench's libraries are not installed")
-    words = [sys.executable, "-m", "wheelchair_fmu.cli.main", "workbench", "--port", "0", "--no-open", "--folder", str(work)]
+    words = [sys.executable, "-m", "wheelchair_fmu", "workbench", "--port", "0", "--no-open", "--folder", str(work)]
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=env, cwd=work) as server:
         assert server.stdout

@@ -18,7 +18,7 @@ def test_the_page_s_channel_passes_the_page_s_test(tmp_path):
 @pytest.mark.nightly
 def test_the_fmu_has_it(tmp_path):
     its_test_passes(PAGE, tmp_path)
-    assert "out/slalom.csv" in run(tmp_path, "-m", "wheelchair_fmu.cli.main", "simulate", "slalom")
+    assert "out/slalom.csv" in run(tmp_path, "-m", "wheelchair_fmu", "simulate", "slalom")
     header = (tmp_path / "out" / "slalom.csv").read_text(encoding="utf-8").partition("\n")[0]
     assert "sensor.ground_speed [m/s]" in header
 
@@ -28,7 +28,7 @@ def test_names_of_a_campaign_s_own_channels_and_inputs_are_refused_in_a_sentence
     channels.mkdir(parents=True)
     (channels / "F_rl.py").write_text("")
     (channels / "yaw_rate.py").write_text("")
-    done = attempt(tmp_path, "-m", "wheelchair_fmu.cli.main", "check", "my-campaign")
+    done = attempt(tmp_path, "-m", "wheelchair_fmu", "check", "my-campaign")
     says = "is the name of a channel or an input that there is already; give the file and its record another name"
     assert done.returncode == 1 and [line.partition(": ")[2] for line in done.stderr.splitlines()] == [
         f"'F_rl' {says}",

@@ -70,7 +70,7 @@ def test_a_full_disk_names_the_file(tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs pipes of a shell")
 def test_a_reader_that_has_seen_enough_ends_it_without_a_word():
-    command = [sys.executable, "-m", "wheelchair_fmu.cli.main", "effects", "list", "--json"]
+    command = [sys.executable, "-m", "wheelchair_fmu", "effects", "list", "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdout and process.stderr
         process.stdout.close()
@@ -95,6 +95,16 @@ def test_an_interrupt_while_the_command_loads_ends_with_one_line_and_130():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 128 + signal.SIGINT
     assert done.stderr.splitlines() == ["interrupted; files already there are as they were"]
+
+
+def test_python_runs_the_package_as_the_command(tmp_path):
+    said = [
+        subprocess.run([sys.executable, "-m", "wheelchair_fmu", *words], capture_output=True, text=True, cwd=tmp_path)
+        for words in (["--version"], ["check", "nowhere"], ["check", "--help"])
+    ]
+    assert said[0].stdout.startswith("wheelchair-fmu ") and [done.returncode for done in said] == [0, 1, 0]
+    assert said[1].stdout.splitlines()[0].startswith("nowhere: no such folder or file")
+    assert said[2].stdout.startswith("Usage: wheelchair check")
 
 
 def test_what_could_command_a_terminal_is_written_out():

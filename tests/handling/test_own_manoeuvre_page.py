@@ -18,7 +18,7 @@ def test_the_page_s_manoeuvre_passes_the_page_s_test(tmp_path):
 @pytest.mark.nightly
 def test_it_is_known_by_name(tmp_path):
     its_test_passes(PAGE, tmp_path)
-    lanes = ("-m", "wheelchair_fmu.cli.main", "simulate", "lane-change", "--period", "3", "--straight", "0.5")
+    lanes = ("-m", "wheelchair_fmu", "simulate", "lane-change", "--period", "3", "--straight", "0.5")
     assert "out/lane-change.csv" in run(tmp_path, *lanes)
 
 
@@ -37,5 +37,5 @@ def test_a_table_is_enough():
 )
 def test_an_option_that_it_has_not_is_refused_in_a_sentence(tmp_path, words, says):
     with_example(PAGE, tmp_path)
-    done = attempt(tmp_path, "-m", "wheelchair_fmu.cli.main", "simulate", "lane-change", *words)
+    done = attempt(tmp_path, "-m", "wheelchair_fmu", "simulate", "lane-change", *words)
     assert done.returncode == 2 and done.stderr.strip() == says

@@ -129,7 +129,7 @@ def test_another_text_is_another_chair():
 
 def wheelchair(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "WHEELCHAIR_CONFIG": str(folder / "config")}
-    command = [sys.executable, "-m", "wheelchair_fmu.cli.main", *words]
+    command = [sys.executable, "-m", "wheelchair_fmu", *words]
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
 
 

@@ -47,7 +47,7 @@ def started(folder: Path, *options: str) -> Iterator[Server]:
     words = [
         sys.executable,
         "-m",
-        "wheelchair_fmu.cli.main",
+        "wheelchair_fmu",
         "workbench",
         "--port",
         "0",

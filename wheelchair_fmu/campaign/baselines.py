@@ -149,13 +149,13 @@ def _baseline(pool: _Pool, i: int, off: np.ndarray, found: np.ndarray, covarianc
     seconds = float((own & off).sum() * pool.interval[i])
     share = float((own & off).sum() / max(own.sum(), 1))
     at = [i, n, n + 1]
-    se, where = float(np.sqrt(covariance[i, i])), f" of {pool.names[i]}" if pool.names[i] else ""
+    se = float(np.sqrt(covariance[i, i]))
     cure = "let the chair stand, hands in the lap, before the first push"
     why = ""
     if seconds < ENOUGH:
-        why = f"only {seconds:.1f} s{where} are without a hand on the rim, and {ENOUGH:g} s are needed: {cure}"
+        why = f"only {seconds:.1f} s are without a hand on the rim, and {ENOUGH:g} s are needed: {cure}"
     elif not se < SURE:
-        why = f"no stretch{where} is plainly without a hand on the rim (the baseline would be known to {se:.2g} N m): {cure}"
+        why = f"no stretch is plainly without a hand on the rim (the baseline would be known to {se:.2g} N m): {cure}"
     offset, sine, cosine = (float(found[j]) for j in at)
     return Baseline(offset, sine, cosine, covariance[np.ix_(at, at)], share, not why, why)
 

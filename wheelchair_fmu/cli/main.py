@@ -98,7 +98,3 @@ def main(words: list[str] | None = None) -> None:
     """Run the command line, or these words of one, and exit with its code."""
     gc.set_threshold(COLLECTED)
     app(words, prog_name="wheelchair")
-
-
-if __name__ == "__main__":
-    main()

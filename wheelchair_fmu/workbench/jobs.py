@@ -18,7 +18,7 @@ from typing import Any
 from ..children import child
 from ..errors import UsageError, WheelchairError
 
-COMMAND = (sys.executable, "-m", "wheelchair_fmu.cli.main")
+COMMAND = (sys.executable, "-m", "wheelchair_fmu")
 SEARCHED = os.pathsep.join(p for p in sys.path if p)  # the child finds what this process found, wherever it runs
 KEPT = 200  # lines of a job that are kept
 

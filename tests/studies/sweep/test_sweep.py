@@ -193,7 +193,7 @@ LONG_ENOUGH = {"kernel": LONG.replace("4096", "16384"), "fmu": SMALL.replace("sa
 
 
 def command(folder, out, *words):
-    return [sys.executable, "-m", "wheelchair_fmu.cli.main", "sweep", str(folder / "plan.toml"), "-o", str(out), *words]
+    return [sys.executable, "-m", "wheelchair_fmu", "sweep", str(folder / "plan.toml"), "-o", str(out), *words]
 
 
 def wait_for_parts(out, n, process):
