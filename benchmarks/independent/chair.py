@@ -40,6 +40,8 @@ OUTPUTS = (
 )
 STATES = 21
 STEPS_PER_SAMPLE = 50
+STANDING = 0.01  # s, of the carcass of a standing tyre: DAMPING of chair.c
+STABLE = 1.5  # of the fourth-order method's 2.78: a step times the fastest rate
 
 
 class Diverged(RuntimeError):
@@ -171,6 +173,13 @@ def _library() -> ctypes.CDLL:
     return library
 
 
+def _steps(chair: Chair, interval: float) -> int:
+    """How many steps a sample takes where a caster stands: its carcass damps the swivel faster than anything else moves, and the
+    more the longer the trail is. Larger steps do not diverge, as friction limits the force, but chatter, and read as a force."""
+    rate = STANDING * chair.C_caster / chair.sigma_caster * chair.trail**2 / chair.I_swivel
+    return int(np.ceil(interval * rate / STABLE))
+
+
 def simulate(
     chair: Chair,
     F_rl: np.ndarray,
@@ -181,7 +190,8 @@ def simulate(
     interval: float = 0.01,
     steps: int = STEPS_PER_SAMPLE,
 ) -> dict[str, np.ndarray]:
-    """All outputs at the samples of the pushes, which are linear between samples.
+    """All outputs at the samples of the pushes, which are linear between samples, by as many steps from one to the next as
+    the chair asks for, and these at least.
 
     Where the chair has a `lean`, `urge` is how far forward (m) the rider means to have the CM, whatever the hands push.
     """
@@ -189,7 +199,7 @@ def simulate(
     push = np.ascontiguousarray(np.column_stack([F_rr, F_rl, by_itself]), dtype=np.float64)
     out = np.empty((len(push), len(OUTPUTS)))
     parameters = np.array(astuple(chair), dtype=np.float64)
-    _library().simulate(parameters, start.states(), len(push), push, interval, steps, out)
+    _library().simulate(parameters, start.states(), len(push), push, interval, max(steps, _steps(chair, interval)), out)
     if not np.all(np.isfinite(out)):
         raise Diverged("the simulated chair left the finite numbers: spun away by its push, or more steps are needed")
     return {name: out[:, i].copy() for i, name in enumerate(OUTPUTS)}

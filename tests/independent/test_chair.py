@@ -31,6 +31,14 @@ def test_rest_stays_at_rest():
     assert all(np.all(out[name] == 0) for name in ("x", "y", "yaw", "u", "v", "yaw_rate"))
 
 
+def test_a_caster_of_long_trail_does_not_chatter_where_it_stands():
+    """A step longer than a standing carcass takes to yield read as 0.9 m/s2 across the chair, for half a second."""
+    chair, (left, right) = replace(CHAIR, trail=0.14), pushes("spin-left")
+    out, finer = (simulate(chair, left, right, Start(u=0.05), steps=steps) for steps in (50, 400))
+    assert np.abs(out["a_y"]).max() < 0.4
+    assert np.abs(out["a_y"] - finer["a_y"]).max() < 0.02
+
+
 def test_rest_holds_on_a_gentle_slope():
     out = simulate(replace(CHAIR, slope_x=0.003, slope_y=0.003), nothing(5), nothing(5))
     assert np.hypot(out["x"][-1], out["y"][-1]) < 0.01
