@@ -174,8 +174,8 @@ def _library() -> ctypes.CDLL:
 
 
 def _steps(chair: Chair, interval: float) -> int:
-    """How many steps a sample takes where a caster stands: its carcass damps the swivel faster than anything else moves, and the
-    more the longer the trail is. Larger steps do not diverge, as friction limits the force, but chatter, and read as a force."""
+    """How many steps a sample takes where a caster stands: its carcass damps the swivel faster than anything else moves, the
+    more so the longer the trail. Larger steps do not diverge, as friction limits the force, but chatter, and read as one."""
     rate = STANDING * chair.C_caster / chair.sigma_caster * chair.trail**2 / chair.I_swivel
     return int(np.ceil(interval * rate / STABLE))
 
