@@ -32,6 +32,7 @@ static const double TURN_LENGTH = 0.6, CASTER_TURN_LENGTH = 0.1; /* m, radius of
 static const double PIVOT_LENGTH = 0.04; /* m, the same of a patch that slides easily */
 static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
+static const double STABLE = 1.5;       /* of the 2.78 that the method bears: a step times the fastest rate */
 static const double ALONG_STIFFNESS = 2e4, ALONG_LENGTH = 0.1; /* N, m: of the bristles along a rear wheel that slips */
 static const double RIM_MASS = 1.457;   /* kg, spin inertia of a rear wheel, 0.14 kg m2, over its radius squared, 0.31 m */
 static const double SOFTENED = 0.32;    /* share of rolling resistance that goes as one over the pressure: a third more at half of it */
@@ -242,9 +243,18 @@ static void rates(const double *p, const double *s, const double *F, const doubl
     }
 }
 
-/* Outputs at n samples, interval apart; the pushes are linear between samples. The accelerations of a sample are the mean of
- * those just before and just after it, as the pushes bend there. */
+/* How many steps a sample takes where a caster stands: its carcass damps the swivel faster than anything else moves, and the more so
+ * the longer the trail. Larger steps do not diverge, as friction limits the force, but chatter, and read as a force. */
+static int fewest(const double *p, double interval) {
+    double rate = DAMPING * p[P_C_caster] / p[P_sigma_caster] * p[P_trail] * p[P_trail] / p[P_I_swivel];
+    return (int)ceil(interval * rate / STABLE);
+}
+
+/* Outputs at n samples, interval apart, by `steps` from one to the next, or by more where this chair asks for more; the pushes are
+ * linear between samples. The accelerations of a sample are the mean of those just before and just after it, as the pushes bend
+ * there. */
 EXPORT void simulate(const double *p, const double *start, int n, const double *push, double interval, int steps, double *out) {
+    if (steps < fewest(p, interval)) steps = fewest(p, interval);
     double s[STATES], k1[STATES], k2[STATES], k3[STATES], k4[STATES], w[STATES], h = interval / steps, none[GIVEN] = {0};
     memcpy(s, start, sizeof s);
     memset(k1, 0, sizeof k1);

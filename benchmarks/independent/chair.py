@@ -40,8 +40,6 @@ OUTPUTS = (
 )
 STATES = 21
 STEPS_PER_SAMPLE = 50
-STANDING = 0.01  # s, of the carcass of a standing tyre: DAMPING of chair.c
-STABLE = 1.5  # of the fourth-order method's 2.78: a step times the fastest rate
 
 
 class Diverged(RuntimeError):
@@ -173,13 +171,6 @@ def _library() -> ctypes.CDLL:
     return library
 
 
-def _steps(chair: Chair, interval: float) -> int:
-    """How many steps a sample takes where a caster stands: its carcass damps the swivel faster than anything else moves, the
-    more so the longer the trail. Larger steps do not diverge, as friction limits the force, but chatter, and read as one."""
-    rate = STANDING * chair.C_caster / chair.sigma_caster * chair.trail**2 / chair.I_swivel
-    return int(np.ceil(interval * rate / STABLE))
-
-
 def simulate(
     chair: Chair,
     F_rl: np.ndarray,
@@ -199,7 +190,7 @@ def simulate(
     push = np.ascontiguousarray(np.column_stack([F_rr, F_rl, by_itself]), dtype=np.float64)
     out = np.empty((len(push), len(OUTPUTS)))
     parameters = np.array(astuple(chair), dtype=np.float64)
-    _library().simulate(parameters, start.states(), len(push), push, interval, max(steps, _steps(chair, interval)), out)
+    _library().simulate(parameters, start.states(), len(push), push, interval, steps, out)
     if not np.all(np.isfinite(out)):
         raise Diverged("the simulated chair left the finite numbers: spun away by its push, or more steps are needed")
     return {name: out[:, i].copy() for i, name in enumerate(OUTPUTS)}

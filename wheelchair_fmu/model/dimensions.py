@@ -60,17 +60,17 @@ def unit_of_q(text: str, to: str, choice: Choice = Choice()) -> Unit:
     law, model = expression.law(text), assemble(choice)
     if to not in model.records:
         raise unknown("quantity to act on", to, targets(model))
-    _refuse_unreadable(text, to, law, choice)
-    here, there = _exponents(text, vocabulary(model)), model.records[to].unit
+    known = vocabulary(model)
+    _refuse_unreadable(text, to, law, choice, known)
+    here, there = _exponents(text, known), model.records[to].unit
     wanted = [have - own for have, own in zip((there.kg, there.m, there.s), here, strict=True)]
     return there if not any(here) else named(*wanted)
 
 
-def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice) -> None:
+def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choice, known: Mapping[str, Quantity]) -> None:
     """An expression must assemble: it reads only what is known, and has the shape of what it acts on."""
     if "q" not in signature(law).parameters:
         raise UsageError(f"{shown(text)} has no q in it; q is the size that is estimated, as in -q * u")
-    known = vocabulary(assemble(choice))
     if strange := next((n for n in signature(law).parameters if n != "q" and n not in known), None):
         raise UsageError(f"the expression reads {strange!r}, which is no quantity of this model{_meant(strange, known)}")
     q = Parameter("q", ONE, off=0.0, smallest_interesting=1.0)
