@@ -73,6 +73,14 @@ class ModelError(Failure):
     """A model that cannot be assembled."""
 
 
+class ShapeError(ModelError):
+    """A term of another shape than what it is added to: `given` and `wanted`, as (rows, columns)."""
+
+    def __init__(self, message: str, given: tuple[int, int], wanted: tuple[int, int]):
+        super().__init__(message)
+        self.given, self.wanted = given, wanted
+
+
 class SimulationError(Failure):
     """A simulation that cannot go on."""
 

@@ -17,7 +17,7 @@ from typing import Any
 import casadi as cs
 import numpy as np
 
-from ..errors import ModelError, UsageError, unknown
+from ..errors import ModelError, ShapeError, UsageError, unknown
 from ..quantities import ONE, UNITS, Parameter, Quantity, Unit
 from . import expression
 from .arithmetic import shown
@@ -28,8 +28,7 @@ from .wheelchair import FORESEEN, Choice, Model, assemble
 FACTOR = 1.7  # by which a unit is made smaller
 PLACES = 4  # random places, at which all must agree
 NEAR = 1e-6  # of a whole exponent
-SHAPE = re.compile(r"of shape \((\d+), 1\), not \((\d+), 1\)")
-NUMBER_IN = re.compile(r"(?<![\w.])\d")  # a number, not the end of a name
+ROOT = "a root of a unit is left over; make what is under the root a plain number, as in sqrt(u / 1 [m/s])"
 SYMBOLS = ("kg", "m", "s")
 
 
@@ -76,12 +75,13 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
     q = Parameter("q", ONE, off=0.0, smallest_interesting=1.0)
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
+    except ShapeError as error:
+        given, wanted = error.given[0], error.wanted[0]
+        many = "one value" if given == 1 else f"{given} values"
+        raise UsageError(
+            f"{shown(text)} has {many}, where {to} has {wanted}; take one of them, as in N_r[0], or all, as in sum1(N_r)"
+        ) from None
     except ModelError as error:
-        if shape := SHAPE.search(str(error)):
-            many = "one value" if shape[1] == "1" else f"{shape[1]} values"
-            raise UsageError(
-                f"{shown(text)} has {many}, where {to} has {shape[2]}; take one of them, as in N_r[0], or all, as in sum1(N_r)"
-            ) from None
         raise UsageError(str(error).partition("; known here")[0].replace("effect typed", "the expression")) from None
     except (TypeError, RuntimeError, IndexError) as error:  # casadi's, for shapes and arguments that do not fit
         raise UsageError(f"{shown(text)} cannot be evaluated: {str(error).splitlines()[-1]}") from None
@@ -121,13 +121,8 @@ def _exponents(text: str, known: Mapping[str, Quantity]) -> tuple[int, int, int]
     spread = np.array(found)
     whole_numbers = np.round(spread[0])
     if not np.all(abs(spread - whole_numbers) < NEAR):
-        where = unlike(text, known, lambda kg, m, s: named(kg, m, s).name) or "a root of a unit is left over"
-        cure = (
-            "; a number may have its unit behind it, as in 0.1 [m/s]"
-            if "plain number" in where and NUMBER_IN.search(text)
-            else ""
-        )
-        raise UsageError(f"the units do not fit: {where}{cure}")
+        where = unlike(text, known, lambda kg, m, s: named(kg, m, s).name) or ROOT
+        raise UsageError(f"the units do not fit: {where}")
     kg, m, s = (int(e) for e in whole_numbers)
     return kg, m, s
 

@@ -15,6 +15,9 @@ OF_LIKES = ("atan2", "fmin", "fmax", "min", "max", "magnitude", "direction")  # 
 RATIOS = ("atan2", "direction")  # whose value is a plain number
 
 
+NUMBERS = "a number may have its unit behind it, as in 0.1"
+
+
 class _Unlike(Exception):
     """The first part that does not fit, in words."""
 
@@ -83,14 +86,22 @@ class _Units:
         return (found[0][0] / 2, found[0][1] / 2, found[0][2] / 2) if name == "sqrt" else found[0]
 
     def _alike(self, left: ast.expr, right: ast.expr, what: str) -> None:
-        if self.of(left) != self.of(right):
-            raise _Unlike(f"{self.told(left)} and {self.told(right)} {what}")
+        a, b = self.of(left), self.of(right)
+        if a == b:
+            return
+        said = f"{self.told(left)} and {self.told(right)} {what}"
+        for one, other in ((left, right), (right, left)):
+            if self.of(one) == PLAIN and _has_number(one):
+                raise _Unlike(f"{said}; {NUMBERS} [{self._unit(other)}]")
+        ratio = self.named(*map(round, _sum(b, a, -1.0)))
+        raise _Unlike(f"{said}; multiply {self._text(left)} by something in {ratio}")
 
     def _plain(self, node: ast.expr, what: str) -> None:
-        own = self.of(node)
-        if own != PLAIN:
-            text, unit = self._text(node), self._unit(node)
-            raise _Unlike(f"{what} takes a plain number, and {text} is in {unit}: divide it by something in {unit}")
+        if self.of(node) == PLAIN:
+            return
+        text, unit = self._text(node), self._unit(node)
+        cure = f"; {NUMBERS} [{unit}]" if _has_number(node) else ""
+        raise _Unlike(f"{what} takes a plain number, and {text} is in {unit}: divide it by something in {unit}{cure}")
 
     def told(self, node: ast.expr) -> str:
         """A part with its unit."""
@@ -103,6 +114,10 @@ class _Units:
         if isinstance(node, ast.Name) and node.id in self.known:
             return self.known[node.id].unit.name
         return self.named(*map(round, self.of(node)))
+
+
+def _has_number(node: ast.expr) -> bool:
+    return any(isinstance(part, ast.Constant) for part in ast.walk(node))
 
 
 def _floats(exponents: tuple[int, int, int]) -> Exponents:

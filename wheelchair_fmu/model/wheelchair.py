@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as cs
 
-from ..errors import ModelError, unknown
+from ..errors import ModelError, ShapeError, unknown
 from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output, Parameter, Quantity, State, Table
 from . import chassis, resistance, sensors
 from .choice import Choice, law, laws, serves
@@ -327,7 +327,8 @@ class _Assembly:
                     continue
                 term = cs.SX(self.call(contribution.law, self.own[effect.id], f"effect {effect.id}"))
                 if term.shape not in ((1, 1), base.shape):
-                    raise ModelError(f"effect {effect.id} gives {record.symbol} a term of shape {term.shape}, not {base.shape}")
+                    said = f"effect {effect.id} gives {record.symbol} a term of shape {term.shape}, not {base.shape}"
+                    raise ShapeError(said, term.shape, base.shape)
                 if contribution.factor:
                     factor = factor * term
                 else:
