@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..independent.campaigns import CHANNELS
-from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, usual
+from ..independent.hidden import CATALOGUE, EFFECTS, OUTSIDE, own, usual
 
 SIZES = (0.25, 1.0, 3.0)  # of δ
 PAIRS = (
@@ -50,6 +50,16 @@ class Case:
         if self.only:
             return {e: {self.only: self.times * EFFECTS[e].parameters[self.only].delta} for e in self.effects}
         return {e: usual(e, self.times) for e in self.effects}
+
+    @property
+    def true(self) -> Mapping[str, Mapping[str, float]]:
+        """What the chair has of these effects in all, with what of them is its own."""
+        return {e: {n: EFFECTS[e].parameters[n].whole(v) for n, v in values.items()} for e, values in self.hidden.items()}
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Effects that these runs show of every chair, whatever is hidden."""
+        return own(self.manoeuvres)
 
 
 @dataclass

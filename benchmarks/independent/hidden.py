@@ -117,6 +117,11 @@ class Parameter:
         changed = replace(part, **{n: self.combine(getattr(part, n), share * value) for n, share in shares.items()})
         return replace(truth, chair=changed) if owner == "chair" else replace(truth, instruments=changed)
 
+    def whole(self, value: float) -> float:
+        """What the chair has of it in all where `value` is hidden: its own, which is never off, with that."""
+        owner, _, name = self.where.rpartition(".")
+        return self.combine(getattr(Chair(), name), value) if owner == "chair" and self.sides is None else value
+
 
 @dataclass(frozen=True)
 class Effect:
@@ -290,6 +295,15 @@ OUTSIDE = tuple(name for name, e in EFFECTS.items() if not e.catalogued and not 
 def usual(effect: str, times: float = 1.0) -> dict[str, float]:
     """The parameters of an effect at `times` its smallest interesting size."""
     return {name: times * p.pattern * p.delta for name, p in EFFECTS[effect].parameters.items()}
+
+
+def own(manoeuvres: str) -> tuple[str, ...]:
+    """Effects that are of interest in every chair as it is, where these manoeuvres show them: casters have a trail."""
+    return tuple(
+        name
+        for name, e in EFFECTS.items()
+        if e.sees == manoeuvres and any(p.whole(0.0) >= p.delta for p in e.parameters.values())
+    )
 
 
 def hide(truth: Truth, hidden: Mapping[str, Mapping[str, float]]) -> Truth:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.diagnosis.cases import Case
-from benchmarks.diagnosis.table import covered_by, named
+from benchmarks.diagnosis.table import covered_by, false_alarm, first, named
 from benchmarks.diagnosis.trial import trial
+from benchmarks.independent.chair import Chair
 from benchmarks.independent.hidden import EFFECTS
 
 
@@ -29,6 +30,16 @@ def test_intervals_hold_what_was_hidden(effect):
     for kind in ("profile", "bootstrap"):
         inside = covered_by(found, kind)
         assert inside and all(inside)
-        for name in found["hidden"][effect]:
+        for name in found["true"][effect]:
             low, high = found["intervals"][kind][f"effect.{effect}.{name}"]
             assert high - low < EFFECTS[effect].parameters[name].delta  # and say something
+
+
+def test_what_every_chair_has_is_part_of_the_truth():
+    trail = Case("effect", ("caster_trail",), 3.0, manoeuvres="slow")
+    assert trail.true == {"caster_trail": {"c": pytest.approx(Chair().trail + 3 * 0.03)}}
+    assert Case("effect", ("caster_inertia",), 3.0, manoeuvres="slow").true == {"caster_inertia": {"I": pytest.approx(0.015)}}
+    said = {"verdict": "missing", "found": ["caster_trail"], "ties": [], "order": ["caster_trail", "caster_inertia"]}
+    trial = {**said, "effects": ["caster_inertia"], "own": trail.own}
+    assert first(trial) and not false_alarm(trial)
+    assert false_alarm({**trial, "own": ()}) and false_alarm({**trial, "found": ["caster_trail", "gyro_bias"]})
