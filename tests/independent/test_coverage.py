@@ -35,6 +35,14 @@ def test_intervals_hold_what_was_hidden(effect):
             assert high - low < EFFECTS[effect].parameters[name].delta  # and say something
 
 
+@pytest.mark.nightly
+def test_what_bends_a_given_value_is_looked_for_though_the_error_is_noise():
+    case = Case("effect", ("inflation_pressure",), 3.0, manoeuvres="pressure", seed=733)
+    found = trial(case, with_baselines=False)
+    assert (found["verdict"], found["found"]) == ("missing", ["inflation_pressure"])
+    assert not any("where the search stops" in note for note in found["notes"])
+
+
 def test_what_every_chair_has_is_part_of_the_truth():
     trail = Case("effect", ("caster_trail",), 3.0, manoeuvres="slow")
     assert trail.true == {"caster_trail": {"c": pytest.approx(Chair().trail + 3 * 0.03)}}

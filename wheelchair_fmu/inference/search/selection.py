@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ...errors import SimulationError
+from ..estimation.calibration import calibration
 from ..estimation.fit import Fit
 from ..evidence.initial_state import TUNING
 from ..models.hypothesis import Model
@@ -140,10 +141,16 @@ class Selection:
             self.models.say("trying effects of one law together")
             now, joined = replace(now, tried_together=True), together(self.models, r)
             now, best = now._parted(r, joined) if joined else (now, None)
-        if best is None and (self.models.factory.leads or now.ladder[-1].fit > AT_THE_FLOOR) and r.slight:
+        if best is None and r.slight and now._unsettled():
             best = r.slight[0]
             now = replace(now, helping=now.helping | {best.effect})
         return now, best
+
+    def _unsettled(self) -> bool:
+        """Is a model off the noise floor, or on it only with given values bent as far as they may be?"""
+        if self.models.factory.leads or self.ladder[-1].fit > AT_THE_FLOOR:
+            return True
+        return any(v.beyond for v in calibration(self.models.likelihood(self.effects), self.top.fit))
 
     def _parted(self, r: Round, group: Candidate) -> tuple[Selection, Candidate | None]:
         """The last effect of a group that a round found; the others are steps by then. None where the model cannot run with a
