@@ -344,7 +344,11 @@ def _nearest(t: Told) -> list[str]:
 
 def _beside_it(t: Told) -> list[str]:
     """What was put in as well, and brings nothing more."""
-    tried = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and r["effect"] not in t.found and r["values"]]
+    tried = [
+        r
+        for r in t.diagnosis["ranking"]
+        if r["effect"] in t.titles and r["effect"] not in (*t.found, *t.slightly_in) and r["values"]
+    ]
     idle = [r["effect"] for r in tried if not t.alone(r["effect"]) and t.error(r["effect"]) is not None]
     if t.slight or not idle or any(t.rows[e]["heldout_before"] - t.rows[e]["heldout_after"] > STILL for e in idle):
         return []

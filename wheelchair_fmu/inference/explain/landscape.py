@@ -2,7 +2,7 @@
 
 Everything else is where these sizes let it be. Heights are −2 log likelihood above the lowest, shrunk as intervals are widened
 for residuals that last, runs that disagree and effects that nobody named, so that 95 % of one size lie below 3.84; of two,
-where the last of these does not count, below 5.99.
+where the last of these does not count, below 5.99. Rivals that are tied are drawn to where they would be told apart.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from ...errors import SimulationError
 from ...model.variant import effects_in
-from ..chance import value_beyond
+from ..chance import chance_beyond, value_beyond
 from ..estimation.fit import Fit
 from ..estimation.interval import LEVEL, NORMAL, half_width, profile
 from ..estimation.statistics import finite
@@ -35,8 +35,9 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
 
     A profile has `parameter`, `estimate`, `values` (SI) and their `heights`, and `level`, below which 95 % lie. A pair has
     `effects` and `parameters` of two rivals, `best` (2,), `axes` (2, 2), whose columns are the two directions of the grid in
-    SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, and `middle`,
-    below which 50 % lie. There are neither where the last model cannot be simulated; a height is None where no model can be.
+    SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, below which the
+    `share` lies, and `middle`, below which 50 % lie. There are neither where the last model cannot be simulated;
+    a height is None where no model can be.
     """
     factory = models.factory
     effects, values = [e for e in told["effects"] if e in factory.catalogue], told["models"][-1]["values"]
@@ -118,6 +119,7 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         return (misfit(point) - found.misfit) * shrunk if inside else np.inf
 
     heights = _above(np.array(parallel_map(height, grid)))
+    level = models.policy.tied if any({one, other} <= set(group) for group in told["ties"]) else value_beyond(1 - LEVEL, 2)
     return {
         "effects": [one, other],
         "parameters": list(pair),
@@ -125,7 +127,8 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         "axes": axes.tolist(),
         "about": ABOUT.tolist(),
         "heights": [[finite(float(h)) for h in row] for row in heights.reshape(len(ABOUT), -1)],
-        "level": value_beyond(1 - LEVEL, 2),
+        "level": level,
+        "share": 1 - chance_beyond(level, 2),
         "middle": value_beyond(0.5, 2),
     }
 

@@ -49,23 +49,31 @@ def together(models: Models, now: Round) -> Candidate | None:
 
 
 def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
-    """Rounds that judge each effect of a group that a round found, beside the rest of the group, the most needed last. What the
-    others make needless is left out, so that a group of which one does all comes to that one."""
+    """Rounds that judge each effect of a group that a round found, beside the rest of the group: first the one without which
+    most is left, as steps of the staircase follow. What the others make needless is left out, so that a group of which one does
+    all comes to that one."""
     w, known = models.factory, now.effects
     whole = models.fitted((*known, *group.members), group.fit.values)
     order = sorted(group.members, key=lambda e: models.weight(whole, e))
     every, found = pruned(models, (*known, *order), whole, known)
     near = (c for c in now.candidates if c.lawful and c.drop >= HALFWAY * group.drop)
     contested = bool({c.effect for c in near}.difference(every))
-    top, rounds = _held_out(models, every, found), []
-    for effect in every[len(known) :]:
-        others = tuple(e for e in every if e != effect)
-        fewer = now.fit if others == known else models.fitted(others, found.values)
+    lacking = {e: _without(models, now, every, e, found) for e in every[len(known) :]}
+    needed = sorted(lacking, key=lambda e: -lacking[e].misfit)
+    top, rounds = _held_out(models, (*known, *needed), found), []
+    for effect in needed:
+        others, fewer = tuple(e for e in top.effects if e != effect), lacking[effect]
         without = Model(others, fewer, models.heldout(models.likelihood(others), fewer))
         with_it = replace(top, fit=models.compared(top.fit, effect, fewer))
         judged = judge(models, without, with_it, effect, w.parameters(effect), len(now.scores))
         rounds.append(Round(others, fewer, without.heldout, now.scores, (judged,), contested=contested, policy=models.policy))
     return rounds
+
+
+def _without(models: Models, now: Round, effects: tuple[str, ...], effect: str, found: Fit) -> Fit:
+    """The fit of all these effects but one."""
+    others = tuple(e for e in effects if e != effect)
+    return now.fit if others == now.effects else models.fitted(others, found.values)
 
 
 def _held_out(models: Models, effects: tuple[str, ...], found: Fit) -> Model:

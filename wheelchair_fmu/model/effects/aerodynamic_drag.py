@@ -7,7 +7,16 @@ from ..sketch import Arrow, from_the_side
 from ..smooth import magnitude
 from ..stage import Effect, adds
 
-K = Parameter("k", N_S2_M2, "½ ρ C_d A", off=0.0, smallest_interesting=0.2, lower=0.0, upper=20.0, source="C_d A = 0.5 m²")
+K = Parameter(
+    "k",
+    N_S2_M2,
+    "air resistance by the speed squared, ½ ρ C_d A",
+    off=0.0,
+    smallest_interesting=0.2,
+    lower=0.0,
+    upper=20.0,
+    source="C_d A = 0.5 m²",
+)
 
 EFFECT = Effect(
     "aerodynamic_drag",

@@ -13,7 +13,7 @@ import { beside, rms, significant, unitText } from "page/numbers";
 import { papers } from "page/paper";
 import { Pins } from "page/pins";
 import { Pool } from "page/pool";
-import { refit } from "page/refit";
+import { kept, refit, starts } from "page/refit";
 import { Scene } from "page/scene";
 import { Story } from "page/story";
 import { Timeline } from "page/timeline";
@@ -56,7 +56,7 @@ class App {
     this.scene = new Scene(this.figures.all.path.drawing, campaign);
     this.timeline = new Timeline(this.figures.all.overlay.drawing, this.figures.all.path.drawing, campaign, this.scene, (channel) => this.show(this.shown.run, channel), () => this.write());
     this.timeline.begin(campaign.runs[this.shown.run], state);
-    this.controls = new Controls(byId("controls"), campaign, state.values, (values) => this.set(values), (values) => this.fitTogether(values));
+    this.controls = new Controls(byId("controls"), campaign, state.values, (values) => this.set(values), (values, effects) => this.fitTogether(values, effects));
     this.start = this.controls.start();
     this.opensAtStart = same(this.controls.values, this.start.values);
     this.history = { at: -1, all: [] };
@@ -218,7 +218,7 @@ class App {
     if (from === to) return;
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
-    if (!most || most.ends[0].times - most.ends[1].times < 0.1) return;
+    if (!most || most.ends[0].times <= most.ends[1].times) return;
     const words = `There the ${most.channel} is missed by ${most.ends.map((v) => beside(significant(v.value, 2), most.unit)).join(" before and ")} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
@@ -323,6 +323,7 @@ class App {
     if (other) this.timeline.begin(this.campaign.runs[shown.run]);
     if (other && this.opened) this.foundThere();
     if (other && !this.settled && this.results[shown.run]?.brief) this.set();
+    if (other && this.pins.kept.length) this.pinned();
     this.want("run");
     if (this.settled) this.want("rested");
   }
@@ -386,15 +387,15 @@ class App {
     this.want("run");
   }
 
-  /** The sizes of what is ticked, and the calibrated values, fitted together. */
-  async fitTogether(values) {
+  /** The sizes of what is ticked, and the calibrated values, fitted together; `doubted` are effects that may be far from theirs. */
+  async fitTogether(values, doubted = []) {
     const names = Object.keys(values).filter((n) => (n.startsWith("effect.") ? values[n] !== 0 : n.startsWith("offset."))).concat(this.campaign.calibrated.map((p) => p.name));
     const mine = (this.fitting = { values });
     this.say("fitting the sizes together …", "busy");
-    const found = await refit(this.pool, this.campaign, values, names, () => this.fitting === mine && this.values === values).catch((error) => { this.failed = error.message; return null; });
+    const found = await refit(this.pool, this.campaign, starts(values, doubted), names, () => this.fitting === mine && this.values === values).catch((error) => { this.failed = error.message; return null; });
     if (this.fitting !== mine) return;
     this.fitting = null;
-    if (found && this.values === values) this.put(found);
+    if (found && this.values === values) this.put(kept(found, this.campaign.effects.filter((e) => e.parameters.some((p) => values[p.name]))));
     else this.set();
   }
 

@@ -7,7 +7,8 @@ import { capital, stepOf } from "page/words";
 const STEPS = 400; // of a slider
 
 export class Controls {
-  /** `changed(values)` hears every change, `fit(values, names)` that sizes are to be fitted together. */
+  /** `changed(values)` hears every change, `fit(values, effects)` that sizes are to be fitted together, of which those of these
+   *  effects may be far off. */
   constructor(form, campaign, values, changed, fit) {
     Object.assign(this, { form, campaign, changed, fit });
     this.models = campaign.diagnosis.models;
@@ -41,7 +42,7 @@ export class Controls {
     this.steps = this.models.map((m) => h("button", { type: "button", class: "step", onclick: () => this.put({ ...m.values }) }, stepOf(this.campaign, m.step)));
     const effects = (list) => list.map((e) => this.effect(e, rows.get(e.id)));
     const first = likely.length ? likely : others.slice(0, 5), rest = likely.length ? others : others.slice(5);
-    this.again = h("button", { type: "button", class: "quiet", onclick: () => this.fit(this.values) }, "fit these sizes together");
+    this.again = h("button", { type: "button", class: "quiet", onclick: () => this.fit(this.values, this.ticked()) }, "fit these sizes together");
     this.form.replaceChildren(
       h("fieldset", {}, h("legend", {}, "Put an effect in"),
         h("p", { class: "hint" }, "Sizes of all that is ticked are fitted together, with the calibrated values."),
@@ -92,7 +93,7 @@ export class Controls {
     number.addEventListener("change", () => put(number));
     const found = row?.parameters[p.name.split(".").at(-1)], own = found && seen(found) ? found.estimate : null;
     const fitted = () => (row ? own : (this.stored.get(key(this.values)) ?? this.start().values)[p.name]) ?? null; // of a calibrated value, with the effects that are in
-    const back = h("button", { type: "button", class: "quiet plain", title: "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted() }) }, "↺");
+    const back = h("button", { type: "button", class: "quiet plain", title: row ? "back to the size that the search fitted" : "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted() }) }, "↺");
     const help = h("small", { id: `${id}-help` }), track = h("div", { class: "track" }, range);
     let last;
     const mark = () => {
@@ -100,7 +101,7 @@ export class Controls {
       if (size === last) return;
       last = size;
       back.hidden = size === null;
-      write(help, [p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, size === null ? null : `▲ fitted ${inUnit(size, p)}`].filter(Boolean).join("; "));
+      write(help, [p.delta ? `matters from ${inUnit(p.delta, p, 2)}` : null, size === null ? null : `▲ ${row ? "the search found" : "fitted"} ${inUnit(size, p)}`].filter(Boolean).join("; "));
       track.replaceChildren(range, marks(p, low, high, size));
     };
     mark();
@@ -129,7 +130,12 @@ export class Controls {
     }
     const known = key(values) === key(this.start().values) ? this.start().values : this.stored.get(key(values));
     this.put(known ? { ...known } : values);
-    if (!known) this.fit(this.values);
+    if (!known) this.fit(this.values, on ? [effect] : []);
+  }
+
+  /** The effects that are in. */
+  ticked() {
+    return [...this.boxes.values()].filter(({ box }) => box.checked).map(({ effect }) => effect);
   }
 
   put(values) {

@@ -3,7 +3,7 @@
 import { indexed } from "page/dom";
 
 const NS = "http://www.w3.org/2000/svg", XML = "http://www.w3.org/XML/1998/namespace";
-const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good"];
+const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good", "pin-a", "pin-b", "pin-c"];
 
 /** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
 export const PRINT = {

@@ -5,6 +5,7 @@ import { chance, inUnit, rms, significant, uncertain } from "page/numbers";
 import { capital, channelOf, listed, proposed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
+const PLAIN = 3; // standard errors from nothing, from which the data show something
 const SEEN = 0.05; // a p below which the data show something like an effect that was not chosen
 const KEY = `Sizes are of an effect put in alone, or beside what was put in before it. Would be seen: in how many of such campaigns it would show at the
   smallest size that matters. Hidden in the fit: how much of what it does calibrated values can imitate. Held out: the error on runs held out,
@@ -42,27 +43,33 @@ function table(ranking, records, campaign) {
 function line(campaign, row, record, later) {
   const parameters = record.parameters.map((p) => [p, row.parameters[p.name.split(".").at(-1)]]).filter(([, v]) => v);
   const several = parameters.length > 1, better = campaign.diagnosis.effects.length || campaign.diagnosis.leftover?.proposal;
+  const outside = campaign.diagnosis.verdict === "outside", chosen = campaign.diagnosis.effects.includes(row.effect) || row.verdict === "proposed";
+  const shows = row.p < SEEN || parameters.some(([, v]) => Math.abs(v.estimate) > PLAIN * v.se);
   const slight = parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta);
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, symbols(p.name.split(".").at(-1)), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
     h("th", { scope: "row" }, capital(record.title), row.verdict === "proposed" ? null : h("small", {}, h("code", {}, row.effect))),
-    h("td", { "data-head": "Size" }, parameters.map(([p, v]) => own(uncertain(v, p), p))),
+    h("td", { "data-head": "Size" }, parameters.map(([p, v]) => own(`${uncertain(v, p)}${atBound(v, p) ? ", at its bound" : ""}`, p))),
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
-    h("td", { class: "number", "data-head": "Chance that it matters" }, chance(row.probability)),
+    h("td", { class: "number", "data-head": "Chance that it matters" }, outside && !chosen ? "–" : chance(row.probability)),
     h("td", { class: "number", "data-head": "Would be seen" }, row.power === null ? "–" : `${Math.round(100 * row.power)} %`),
     h("td", { class: "number", "data-head": "Hidden in the fit" }, row.hidden_in_fit === null ? "–" : `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, row.p < SEEN && ["cannot_see", "not needed", "small"].includes(row.verdict) && !campaign.diagnosis.effects.includes(row.effect) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : campaign.diagnosis.verdict === "outside" && row.verdict === "missing" ? "helps, does not suffice" : VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, shows && !chosen && ["cannot_see", "not needed", "small"].includes(row.verdict) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : outside && row.verdict === "missing" ? "helps, does not suffice" : VERDICTS[row.verdict] ?? row.verdict)));
 }
+
+/** Does a size stand where a fit may go no further? */
+const atBound = (v, p) => [p.lower, p.upper].some((b) => b && Math.abs(v.estimate - b) < 1e-3 * Math.abs(p.delta || b));
 
 /** Effects that were refitted several at once. */
 function together(groups, campaign) {
   const sizes = new Map(campaign.effects.flatMap((e) => e.parameters.map((p) => [p.name, p]))), named = (ids) => listed(ids.map((e) => titleOf(campaign, e)));
+  const told = (name) => { const [, effect, short] = name.split("."); return campaign.diagnosis.ranking.find((r) => r.effect === effect)?.parameters[short]; }; // in the last model
   const cell = (head, inner) => h("td", { "data-head": head }, inner);
   const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
-    cell("Size", Object.entries(g.parameters).map(([n, v]) => h("div", {}, uncertain(v, sizes.get(n))))),
+    cell("Size", Object.entries(g.parameters).map(([n, v]) => h("div", {}, uncertain(g.found ? told(n) ?? v : v, sizes.get(n))))),
     cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Verdict", became(g, campaign))));
   return h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Effects that were fitted together" },
     h("table", { class: "evidence several" }, h("caption", {}, "Effects that were fitted together, as one acts through the other and each alone may show nothing"),

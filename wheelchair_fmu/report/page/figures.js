@@ -5,7 +5,7 @@ import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { fitting, forest, panels } from "page/forest";
 import { Heat, QUIET, heat } from "page/heat";
-import { crossings, profiles, together } from "page/landscape";
+import { crossings, profiles, stays, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
 import { UNSEEN, beside, between, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
@@ -147,7 +147,8 @@ export class Figures {
   sure(curve) {
     const { record, name } = this.sizeOf(curve.parameter), ends = this.told(curve.parameter)?.interval ?? crossings(curve.values, curve.heights, curve.level);
     if (!ends.every(Number.isFinite)) return `${name}: ${inUnit(curve.estimate, record, 4)}.`;
-    return `${name}: ${withInterval(curve.estimate, ends, record)}.`;
+    const low = ends.map((end, k) => stays(curve, end, k)), open = low.every(Boolean) ? "either way" : low[0] ? "below" : low[1] ? "above" : null;
+    return `${name}: ${withInterval(curve.estimate, ends, record)}.${open ? ` ${capital(open)} that, its curve stays under the line as far as it is drawn: there the model runs another way, and the size may be farther off than is told.` : ""}`;
   }
 
   /** What the ranking has of a parameter of an effect. */
@@ -164,7 +165,7 @@ export class Figures {
     return {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "misfit above the best": cells.map((c) => c[2]) }),
-      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of 95 % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other. The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
+      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of ${Math.round(100 * (joint.share ?? 0.95))} % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other. The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
 

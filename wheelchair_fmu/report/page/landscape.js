@@ -38,6 +38,14 @@ export function crossings(xs, ys, level) {
   });
 }
 
+/** Does a curve stay far under its level from an end that is told, below the lowest point (0) or above it (1), to where it is
+ *  drawn no more? */
+export function stays({ values, heights, level }, end, side) {
+  const beyond = heights.filter((_, i) => (side ? values[i] >= end : values[i] <= end));
+  return beyond.length > 1 && beyond.every((h) => h !== null && h < FAR_UNDER * level);
+}
+
+const FAR_UNDER = 0.5;
 const BETWEEN = 8; // points drawn from one of a curve to the next
 
 /** A curve through points as cubics go through four of them at a time, [xs, ys]; straight beside a gap or an end. */

@@ -5,18 +5,25 @@ const ROUNDS = 8;
 const ENOUGH = 0.5; // fall of the sum of squares that slopes promise, below which nothing more is gained
 const GROUPED = 10; // sizes of interest: standard deviation of each of several sizes of one effect
 const STEP = 0.02; // of a parameter's scale, for slopes
+const NEARLY = 0.01; // sizes of interest that are nearly nothing, but have a slope
+const LEFT = 1e-7; // the same of an effect that a fit has left nothing of, which stays put in
 
-/** Resolves to values that are most likely where `names` are free; `go()` false ends it early. */
-export async function refit(pool, campaign, values, names, go = () => true) {
-  const problem = names.map((name) => parameter(campaign, name, names, values)), runs = fitted(campaign);
-  let theta = problem.map((p) => clamp(p, values[name(p)] ?? p.start));
+/** Resolves to values that are most likely where `names` are free, from the best of these `starts`; `go()` false ends it early. */
+export async function refit(pool, campaign, starts, names, go = () => true) {
+  const [values] = starts, problem = names.map((name) => parameter(campaign, name, names, values)), runs = fitted(campaign);
   const at = (x) => ({ ...values, ...Object.fromEntries(problem.map((p, k) => [name(p), x[k]])) });
   const summed = async (x) => {
     const steps = problem.map((p, k) => [name(p), x[k] + STEP * p.scale <= p.upper ? STEP * p.scale : -STEP * p.scale]);
     const parts = await Promise.all(runs.map((run) => pool.later({ run, values: at(x), slopes: steps }, true)));
     return total(parts, problem, x);
   };
-  let here = await summed(theta);
+  const begun = [];
+  for (const start of starts) {
+    const from = problem.map((p) => clamp(p, start[name(p)] ?? p.start)), found = go() && (await summed(from).catch(() => null));
+    if (found) begun.push([from, found]);
+  }
+  if (!begun.length) return values;
+  let [theta, here] = begun.reduce((a, b) => (b[1].squares < a[1].squares ? b : a));
   for (let round = 0; round < ROUNDS && go(); round++) {
     const step = bounded(here, problem, theta);
     const promised = step.reduce((sum, d, k) => sum - d * here.gradient[k], 0);
@@ -31,6 +38,19 @@ export async function refit(pool, campaign, values, names, go = () => true) {
     [theta, here] = next;
   }
   return at(theta);
+}
+
+/** Values to begin a fit at: as they are, and with each of these effects at nearly nothing, beside which what was fitted before
+ *  still holds. A size that was fitted alone may be far off beside others. */
+export function starts(values, effects) {
+  const nearly = (p) => [p.name, (Math.sign(values[p.name]) || 1) * NEARLY * p.delta];
+  return [values, ...effects.map((e) => ({ ...values, ...Object.fromEntries(e.parameters.filter((p) => values[p.name]).map(nearly)) }))];
+}
+
+/** The same values, in which what was put in is still in, though a fit has left nothing of it. */
+export function kept(values, effects) {
+  const gone = effects.filter((e) => e.parameters.every((p) => !values[p.name]));
+  return { ...values, ...Object.fromEntries(gone.map((e) => [e.parameters[0].name, LEFT * e.parameters[0].delta])) };
 }
 
 const name = (p) => p.name;

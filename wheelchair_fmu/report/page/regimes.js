@@ -52,7 +52,7 @@ export function drawn(width, look, panels) {
     const x0 = (n % abreast) * wide + 44, y0 = Math.floor(n / abreast) * high + 8, w = wide - 56, hh = high - 58, [from, to] = [p.xs[0], p.xs.at(-1)];
     const across = (v) => x0 + (w * (v - from)) / (to - from), down = (v) => y0 + (hh * (most - v)) / (most - low), points = (ys) => ys.map((y, i) => `${across(p.xs[i]).toFixed(1)} ${down(y).toFixed(1)}`);
     for (const [v, words] of ticked(ticks(low, most, 5))) out.push(line(x0, down(v), x0 + w, down(v), v === 0 ? look.faint : look.line), text(x0 - 5, down(v) + 4, words, look.faint, "end", { "font-size": 10.5 }));
-    for (const [v, words] of ticked(ticks(from, to, Math.max(3, w / 55)))) out.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
+    for (const [v, words] of ticked(ticks(from, to, Math.max(2, w / 55)))) out.push(text(across(v), y0 + hh + 14, words, look.faint, "middle", { "font-size": 10.5 }));
     for (const v of [-PERFECT, PERFECT]) out.push(line(x0, down(v), x0 + w, down(v), look.ink, { "stroke-dasharray": "5 4" }));
     out.push(svg("path", { d: `M${points(p.highs).join("L")}L${points(p.lows).reverse().join("L")}Z`, fill: look.error, "fill-opacity": 0.14 }), svg("path", { d: `M${points(p.means).join("L")}`, stroke: look.error, "stroke-width": 2, fill: "none" }));
     out.push(text(x0 + w / 2, y0 + hh + 31, p.label, look.ink, "middle", { "font-size": 11.5 }));

@@ -94,7 +94,7 @@ export class Timeline {
     const once = (series) => this.drawn.get(series) ?? this.drawn.set(series, scaled(series)).get(series);
     Object.assign(this, { result, channel });
     this.lines = [["measured", once(this.run.channels[channel]), "measured", 1], ...(before && before !== result ? [["before", once(before.predicted[channel]), "before", 1.25, [2, 3]]] : []),
-      ...pinned.map(([label, r], i) => [label, once(r.predicted[channel]), ["good", "accent", "ink"][i], 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
+      ...pinned.map(([label, r]) => [label, once(r.predicted[channel]), `pin-${label.toLowerCase()}`, 1.25, [8, 3, 2, 3]]), ["model", scaled(result.predicted[channel]), "model", 2]];
     this.edges = band.map(scaled);
     this.errors = result.errors[channel];
     this.unit = `${channelOf(channel)} [${unitText(unit) || "1"}]`;
