@@ -375,6 +375,10 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
             "effect.floor_cross_slope.theta": {"estimate": 0.1, "se": None},
         }
         told["groups"] = [{"effects": pair, "beside": [], "parameters": sizes, "p": 1e-9, "lr": 9.0, "found": True}]
+    if verdict == "tie":
+        readings = {e: [1.0, k, 0.0] for e, k in zip(pair, (0.5, 0.4), strict=True)}
+        shows = {"channel": "wheel_speed_l", "time": [0.0, 1.0, 2.0], "readings": readings, "noise": 0.05}
+        told["next_experiment"] = {"manoeuvre": "a coast-down", "separates": pair, "repeats": 1, "why": "", "shows": shows}
     if verdict == "outside":
         panel = {"variable": "speed", "unit": "m/s", "knots": [0, 1, 2], "estimate": [None, 0.5, 1.0], "se": [None, 0.1, 0.2]}
         told["missing"] = {"words": "force along the chair", "unit": "N", "panels": [panel]}
@@ -385,6 +389,7 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
     if verdict == "outside":  # its caption has a number
         assert "it is 1.00 ± 0.20 N at a speed of 2.0 m/s." in reader.page.text_content("#missing .caption")
     assert reader.page.locator("#ties #joint svg").count() == (verdict == "tie")
+    assert reader.page.locator("#next .drawing svg").count() == (verdict == "tie")
     assert reader.page.locator(".several tbody tr").count() == (verdict == "missing")
     assert "[object" not in reader.page.text_content("main")
     for width in (1280, 390):

@@ -170,6 +170,12 @@ def test_look_alikes_are_tied_where_nothing_tells_them_apart():
     assert found.next_experiment is not None
     assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
     assert 1 <= found.next_experiment["repeats"] <= 20
+    shows = found.next_experiment["shows"]
+    one, other = (np.array(shows["readings"][e]) for e in found.next_experiment["separates"])
+    assert shows["channel"].startswith("wheel_speed") and len(shows["time"]) == len(one)
+    assert one[0] == pytest.approx(2.5, abs=0.05) and abs(one[-1]) < 0.01  # it coasts down to rest
+    apart = np.abs(one - other) / shows["noise"]
+    assert 0.3 < apart.max() < 3, "as near as the second comes: less than one sees, and more than is lost in the noise"
     assert set(found.effects) == {"aerodynamic_drag", "rolling_resistance_speed"}
 
 

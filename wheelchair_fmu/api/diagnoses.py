@@ -201,6 +201,9 @@ class Diagnosis:
     def next_experiment(self) -> dict[str, Any] | None:
         """What to measure next (`manoeuvre`, `separates`, `repeats`, `why`), where that would tell more.
 
+        Of a tie it says as well what there is to see: `shows` has the `channel` to look at, `time` [s], `readings` (SI) by each
+        of the two, and the `noise` of one reading.
+
         >>> found.next_experiment is None
         True
         """

@@ -27,6 +27,7 @@ MODULES = (
     "figures",
     "forest",
     "heat",
+    "following",
     "landscape",
     "lines",
     "mini",

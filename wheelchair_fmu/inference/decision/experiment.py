@@ -20,6 +20,7 @@ from ..models.models import Models
 from ..policy import DEFAULT
 
 MOST_REPEATS = 20
+DRAWN = 240  # moments of a run that are kept to draw it
 
 
 class Experiment(Protocol):
@@ -42,7 +43,7 @@ def separate(
     `beside` are the effects that both models have.
 
     The first model says what would be read; what the second cannot imitate, within what the campaign already says of
-    its parameters, is −2 log of the odds that one run gives.
+    its parameters, is −2 log of the odds that one run gives. `shows` is what there is to see of that.
     """
     likelihood = models.likelihood([e for e in (*beside, *effects) if e in models.factory.catalogue])
     needed = decisive(one.evidence)  # as the verdict on a tie has it
@@ -55,11 +56,11 @@ def separate(
             continue
         r, S = evidence.r, evidence.S
         g = S.T @ r
-        known = inverse(other.covariance)
-        odds.append((float(r @ r - g @ inverse(S.T @ S + known) @ g), experiment))
+        towards = inverse(S.T @ S + inverse(other.covariance)) @ g  # as near as the second may come
+        odds.append((float(r @ r - g @ towards), experiment, towards))
     if not odds:
         return None
-    gain, best = max(odds, key=lambda o: o[0])
+    gain, best, towards = max(odds, key=lambda o: o[0])
     repeats = int(np.ceil(needed / max(gain, 1e-9)))
     if repeats > MOST_REPEATS:
         return None
@@ -68,6 +69,26 @@ def separate(
         "separates": list(effects),
         "repeats": repeats,
         "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; {needed:.0f} decide",
+        "shows": _shows(*_imagined(likelihood, best, one), other, towards, effects),
+    }
+
+
+def _shows(there: Likelihood, run: Run, other: Fit, towards: np.ndarray, effects: tuple[str, str]) -> dict[str, Any] | None:
+    """What to look at: the channel in which the run's readings, by the first model, part most from what the second would have
+    once it has been fitted to them, and both, in SI units, with the noise of one reading. None where that cannot be run."""
+    values = {**other.values, **{n: other.values[n] + float(d) for n, d in zip(other.names, towards, strict=True)}}
+    try:
+        (seen,) = there.evidence([run], values).runs
+    except SimulationError:
+        return None
+    channel = seen.channels[int(np.argmax(np.nansum(seen.r**2, axis=0)))]
+    some = np.unique(np.linspace(0, len(run.time) - 1, DRAWN).astype(int))
+    readings = (run.channels[channel], seen.predicted[:, seen.channels.index(channel)])
+    return {
+        "channel": channel,
+        "time": run.time[some].tolist(),
+        "readings": {e: values[some].tolist() for e, values in zip(effects, readings, strict=True)},
+        "noise": float(there.noise_model.sd[channel]),
     }
 
 

@@ -36,8 +36,8 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
     A profile has `parameter`, `estimate`, `values` (SI) and their `heights`, and `level`, below which 95 % lie. A pair has
     `effects` and `parameters` of two rivals, `best` (2,), `axes` (2, 2), whose columns are the two directions of the grid in
     SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, below which the
-    `share` lies, and `middle`, below which 50 % lie. There are neither where the last model cannot be simulated;
-    a height is None where no model can be.
+    `share` lies, `middle`, below which 50 % lie, and the heights where either is in `alone`. There are neither where the last
+    model cannot be simulated; a height is None where no model can be.
     """
     factory = models.factory
     effects, values = [e for e in told["effects"] if e in factory.catalogue], told["models"][-1]["values"]
@@ -130,7 +130,15 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         "level": level,
         "share": 1 - chance_beyond(level, 2),
         "middle": value_beyond(0.5, 2),
+        "alone": [finite(height(size)) for size in _alone(told, pair)],
     }
+
+
+def _alone(told: Mapping[str, Any], pair: Sequence[str]) -> list[np.ndarray]:
+    """The sizes (2,) of a pair where one of it is in, as it was fitted, and the other is not; for each of the two."""
+    rows = {r["effect"]: r["parameters"] for r in told["ranking"]}
+    sizes = [rows[effect][short]["estimate"] for _, effect, short in (name.split(".") for name in pair)]
+    return list(np.diag(sizes))
 
 
 def _rivals(factory: ModelFactory, told: Mapping[str, Any], effects: Sequence[str]) -> tuple[str, str | None]:

@@ -1,14 +1,15 @@
 // Every figure of the page: what it is called, how it is drawn, what its caption and its table say.
 
-import { byId } from "page/dom";
+import { byId, h } from "page/dom";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { fitting, forest, panels } from "page/forest";
+import { following } from "page/following";
 import { Heat, QUIET, heat } from "page/heat";
 import { crossings, profiles, stays, together } from "page/landscape";
 import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
-import { UNSEEN, beside, between, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
+import { UNSEEN, beside, between, chance, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
 import { staircase } from "page/staircase";
 import { capital, channelOf, isolated, listed, proposed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
@@ -40,6 +41,8 @@ export class Figures {
     if (this.ladder.some((s) => s.channels)) this.add("physical", "The error in the sensors' own units", this.units());
     else byId("physical").remove(); // an older diagnosis
     this.landscape();
+    const next = following(campaign, () => this.whole());
+    if (next) byId("ties").append(h("figure", { id: "next" })), this.add("next", next.title, next);
     const missing = campaign.diagnosis.missing;
     byId("missing").hidden = !missing;
     if (missing) this.add("missing", `What is missing: ${missing.words}`, this.lacking(missing));
@@ -159,13 +162,15 @@ export class Figures {
 
   joined(joint) {
     const sizes = joint.parameters.map((n) => this.sizeOf(n)), alone = joint.parameters.map((n) => this.told(n)?.estimate ?? NaN);
+    const [odds] = this.campaign.diagnosis.odds ?? [], far = joint.parameters.map((n) => n.split(".")[1]).find((e, k) => joint.alone?.[k] > joint.level && odds?.[e]);
+    const unlikely = far ? ` “${capital(titleOf(this.campaign, far))}” alone lies outside of it, so that these runs speak against it, but by ${chance(1 - odds[far])} to ${chance(odds[far])} only: other runs of the kind might not.` : "";
     const drawn = { ...joint, alone, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
       bounds: sizes.map(({ record: { lower, upper, delta } }) => [(lower ?? -Infinity) / delta, (upper ?? Infinity) / delta]) };
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),
       columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "misfit above the best": cells.map((c) => c[2]) }),
-      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of ${Math.round(100 * (joint.share ?? 0.95))} % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other. The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
+      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of ${Math.round(100 * (joint.share ?? 0.95))} % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other.${unlikely} The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
 

@@ -1,6 +1,6 @@
 // Curves over time as SVG, for files: what uPlot draws on the page.
 
-import { canvas, course, extent, line, long, present, round, svg, text, tick, ticks } from "page/draw";
+import { broken, canvas, course, extent, line, long, present, round, svg, text, tick, ticks } from "page/draw";
 import { display, unitText } from "page/numbers";
 import { channelOf } from "page/words";
 
@@ -50,9 +50,10 @@ export function lines(width, look, time, [from, to], panels) {
 function key(entries, width, look, drawn) {
   let at = LEFT, y = 8;
   for (const [name, colour, dash] of entries) {
-    const wide = 25 + long(name, look);
+    const rows = broken(name, width - LEFT - 25, look, 12, 400, 3), wide = 25 + Math.max(...rows.map((row) => long(row, look)));
     if (at > LEFT && at + wide > width) [at, y] = [LEFT, y + 16];
-    drawn.push(colour ? line(at, y, at + 20, y, colour, { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }) : svg("rect", { x: at, y: y - 5, width: 20, height: 10, fill: look.band }), text(at + 25, y + 4, name, look.ink));
+    drawn.push(colour ? line(at, y, at + 20, y, colour, { "stroke-width": 2, "stroke-dasharray": dash?.join(" ") }) : svg("rect", { x: at, y: y - 5, width: 20, height: 10, fill: look.band }), ...rows.map((row, k) => text(at + 25, y + 4 + 15 * k, row, look.ink)));
+    y += 15 * (rows.length - 1);
     at += wide + 19;
   }
   return { top: y + 12 };

@@ -139,7 +139,7 @@ export class Story {
     if (!rested) return;
     if (kind === "guess") this.drawGuess();
     if (kind === "errs") stage.replaceChildren(...this.curves(this.app.before(), null));
-    if (kind === "next") stage.replaceChildren(...this.drawing("missing", stage));
+    if (kind === "next") stage.replaceChildren(...this.drawing(this.app.figures.all.next ? "next" : "missing", stage));
     if (kind === "rivals") {
       const rows = this.told("rivals").bars, { all } = this.app.figures, other = this.campaign.diagnosis.ties.length ? (all.joint ? "joint" : "forest") : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
       if (drawn.length) stage.replaceChildren(...drawn);
