@@ -122,6 +122,9 @@ def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     page.click("text=keep this as A")
     page.select_option("#run", label="slalom-quick")
     page.wait_for_function("() => report.timeline.lines.some(([name]) => name === 'A')")  # kept in whatever run is looked at
+    heads = page.evaluate("Object.keys(report.figures.all.overlay.says.columns())")
+    assert sum(head.startswith(("A [", "before [")) for head in heads) == 2, "the CSV has what the picture shows"
+    assert "what the search found" in page.evaluate("report.figures.all.where.says.subject()")
     page.evaluate("report.timeline.zoom(2, 5), report.timeline.go(3), report.written()")
     page.reload()
     reader.settle()
@@ -293,6 +296,7 @@ def test_without_what_the_model_needs_one_sentence_and_what_is_stored(browser, r
     assert f"{TOP['heldout']:.2f}" in page.text_content("#staircase svg")
     assert page.locator("#forest svg").count() == 1
     assert page.is_hidden("#try") and page.locator(".card").count() == 3
+    assert page.is_hidden("#link") and page.is_hidden(".skip") and page.is_hidden("text=where the two curves part")
     context.close()
     assert not complaints
 
@@ -397,10 +401,10 @@ def test_every_verdict_opens_with_three_cards_and_five_screens(browser: Any, tmp
         reader.page.wait_for_function(f"() => document.querySelector('#staircase svg').viewBox.baseVal.width < {width}")
         for i in range(5):
             reader.page.click(f".tab >> nth={i}")
-            assert reader.page.locator(".screen:visible h3").inner_text()
+            assert reader.page.locator(".screen:visible > h3").inner_text()
             assert reader.page.evaluate(FAULTS) == [], (width, i)
     assert reader.page.is_visible("#link")  # on a phone as well
-    assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible h3")
+    assert "_" not in reader.page.inner_text("h1") + reader.page.inner_text(".screen:visible > h3")
     reader.close()
 
 

@@ -59,6 +59,17 @@ def test_recordings_alone_become_a_campaign(client):
     assert client.get(f"{client.base}/state").json()["campaign"] == state["campaign"], "a reload loses nothing"
 
 
+def test_a_name_with_quotes_is_kept(client):
+    """A form's part has no quotes in its name, so names come beside the files."""
+    name, content = '"quoted" run.csv', recordings()[0][1]
+    sent = {"files": [("files", ("%22quoted%22 run.csv", content))]}
+    state = client.post(f"{client.base}/files", **sent, data={"paths": json.dumps([name])}).json()
+    assert [r["file"] for r in state["campaign"]["run"]] == [name]
+    for paths, why in (('["a", "b"]', "names 2 files, and 1 came"), ("[1]", "holds no list of names"), ("[", "holds no JSON")):
+        told = client.post(f"{client.base}/files", **sent, data={"paths": paths})
+        assert told.status_code == 400 and why in told.json()["error"]
+
+
 def test_a_campaign_folder_is_taken_as_it_is(client):
     toml = (SAMPLE / "campaign.toml").read_bytes()
     state = upload(client, ("campaign.toml", toml), *((f"runs/{n}", c) for n, c in recordings())).json()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -33,18 +33,26 @@ def _gauge(gauge: Mapping[str, Any]) -> str:
     return f'<div class="gauge" aria-hidden="true">{bars}{mark}</div>'
 
 
-def screens_html(screens: Sequence[Mapping[str, Any]]) -> str:
-    """Five screens, one under the other until a script shows them one by one."""
+def screens_html(screens: Sequence[Mapping[str, Any]], live: Container[str] = ()) -> str:
+    """Five screens, one under the other until a script shows them one by one. Lines that are `live` are shown only where the
+    model runs."""
     return "".join(
         f'<section class="screen" data-kind="{escape(s["kind"])}" aria-labelledby="screen-{i}">'
         f'<h3 id="screen-{i}" tabindex="-1"><span>{i}</span> {escape(s["title"])}</h3>'
-        f'<div class="told">{_lines(s["lines"])}</div><div class="stage"></div></section>'
+        f'<div class="told">{_lines(s["lines"], live)}</div><div class="stage">{_choices(s)}</div></section>'
         for i, s in enumerate(screens, 1)
     )
 
 
-def _lines(lines: Sequence[str]) -> str:
-    return "".join(f"<p>{marked(line)}</p>" for line in lines)
+def _choices(screen: Mapping[str, Any]) -> str:
+    """What may be guessed, as a list that stands until a script makes buttons of it."""
+    titles = "".join(f"<li>{escape(choice['title'])}</li>" for choice in screen.get("choices", ()))
+    return f'<ul class="guesses">{titles}</ul>' if titles else ""
+
+
+def _lines(lines: Sequence[str], live: Container[str] = ()) -> str:
+    kinds = ((' class="live"' if line in live else "", marked(line)) for line in lines)
+    return "".join(f"<p{kind}>{words}</p>" for kind, words in kinds)
 
 
 def marked(line: str) -> str:

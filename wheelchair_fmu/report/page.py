@@ -12,6 +12,7 @@ from typing import Any
 
 from .markup import cards_html, marked, screens_html
 from .press import press
+from .screens import LIVE
 from .tale import Story
 
 ASSETS = files(__package__) / "page"
@@ -64,7 +65,7 @@ def page(content: Mapping[str, Any], sentence: str, particulars: Sequence[str], 
         "sentence": escape(sentence),
         "particulars": "".join(f"<p>{marked(line)}</p>" for line in (*particulars, *story.physical)),
         "cards": cards_html(story.cards),
-        "screens": screens_html(story.screens),
+        "screens": screens_html(story.screens, LIVE),
         "made": escape(_made(content.get("diagnosis") or {})),
         "policy": POLICY,
         "style": asset("style.css"),

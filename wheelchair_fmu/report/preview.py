@@ -89,8 +89,10 @@ def _extent(signals: Iterable[Signal]) -> tuple[float, float]:
 
 def page(title: str, drawn: Iterable[Figure], faults: Iterable[tuple[str, str, str]]) -> str:
     """The pictures and all faults (severity, where, what) as one HTML file that needs nothing else."""
-    region = '<div class="picture" tabindex="0" role="region" aria-label="Every signal of every run">'  # wide on a phone
-    pictures = "".join(f"{region}{_svg(figure)}</div>" for figure in drawn)
+    several = list(drawn)
+    names = [f"Every signal, picture {i} of {len(several)}" for i in range(1, len(several) + 1)]
+    region = '<div class="picture" tabindex="0" role="region" aria-label="{}">'  # wide on a phone
+    pictures = "".join(f"{region.format(name)}{_svg(figure)}</div>" for name, figure in zip(names, several, strict=True))
     said = "".join(f'<li class="{html.escape(kind)}">{told}</li>' for kind, told in _by_cause(faults))
     listed = f"<h2>What is odd</h2><ul>{said}</ul>" if said else "<p>Nothing odd was found.</p>"
     view = '<meta name="viewport" content="width=device-width,initial-scale=1">'

@@ -29,6 +29,11 @@ from .words import STILL, listed, printed, strained
 
 CHOICES = 3  # guesses that are offered beside what was found
 TRIED = 6  # effects in the picture of the rivals
+PARTING = "Look at where the two curves part."
+BELOW = "In some runs and channels it misses more: below the curves, the mean error over half a second shows where."
+LITTLE = "Over all readings the error may hardly rise; below the curves, the mean error over half a second shows where."
+ANY = "Any effect can be tried below, at any size."
+LIVE = (PARTING, BELOW, LITTLE, ANY)  # what is said of pictures that only a model that runs can draw
 TINY = 1e-6  # of a signature that calibrated values imitate wholly
 
 
@@ -51,7 +56,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             "title": "Here the model errs, a little",
             "lines": [
                 "Over all that was recorded, the calibrated model is off by hardly more than the noise of the sensors.",
-                "In some runs and channels it misses more: below the curves, the mean error over half a second shows where.",
+                BELOW,
                 *forces_words(t),
             ],
         }
@@ -62,7 +67,7 @@ def _errs(t: Told, before: float) -> dict[str, Any]:
             "title": "Where the model errs most, the error is next to nothing",
             "lines": [*lines, f"What remains {'is hardly more than' if t.found else 'looks like'} noise.", *forces_words(t)],
         }
-    return {"title": "Here the model errs", "lines": [*lines, "Look at where the two curves part.", *forces_words(t)]}
+    return {"title": "Here the model errs", "lines": [*lines, PARTING, *forces_words(t)]}
 
 
 def _guess(t: Told) -> dict[str, Any]:
@@ -71,7 +76,7 @@ def _guess(t: Told) -> dict[str, Any]:
     elif t.slight:
         lines = ["Something is there that is too small to matter. Which of these would you say it is?"]
     elif t.verdict == "outside" and not t.found:
-        lines = ["Which of these explains it? Try each."]
+        lines = ["Which of these explains it?"]
     else:
         lines = ["Which of these would you say is behind it?"]
     return {"title": "Guess what it is", "lines": lines, "choices": choices(t)}
@@ -218,16 +223,13 @@ def _tried(t: Told) -> dict[str, Any]:
     known = [r for r in t.diagnosis["ranking"] if r["effect"] in t.titles and (r["power"] >= DEFAULT.power) == adequate]
     known = [r for r in known if any(v["se"] for v in r["parameters"].values())] or known  # of others nothing is known
     if not known:
-        return {"title": "Put one in", "lines": ["Any effect can be tried below, at any size."]}
+        return {"title": "Put one in", "lines": [ANY]}
     row = max(known, key=_plain) if adequate else min(known, key=_plain_unfitted)
     what = f"{capital(t.title(row['effect']))}, at the smallest size that would matter:"
     if adequate:
         title, lines = (
             "Put one in, and look where it shows",
-            [
-                f"{what} the model parts from what was measured, and these runs would have shown that.",
-                "Over all readings the error may hardly rise; below the curves, the mean error over half a second shows where.",
-            ],
+            [f"{what} the model parts from what was measured, and these runs would have shown that.", LITTLE],
         )
     else:
         title, lines = (
@@ -241,7 +243,7 @@ def _likeliest(t: Told) -> dict[str, Any]:
     """Where nothing was put in as nothing suffices: the likeliest effect of those that were fitted, or any."""
     fitted = next((r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and r["values"]), None)
     if fitted is None:
-        return {"title": "Put one in: none suffices", "lines": ["Any effect can be tried below, at any size."]}
+        return {"title": "Put one in: none suffices", "lines": [ANY]}
     lines = [f"The likeliest is {t.title(fitted)}, here at the size that fits best: it does not explain what is left."]
     return {"title": "Put in the likeliest: it does not suffice", "lines": lines, "effect": fitted}
 

@@ -49,6 +49,18 @@ async def json_object(request: Request) -> dict[str, Any]:
     return content
 
 
+def json_texts(text: str, field: str) -> list[str]:
+    """A JSON list of texts in a field of a form. Raises UsageError for anything else."""
+    try:
+        content = json.loads(text)
+    except (RecursionError, ValueError):
+        raise UsageError(f"the field {field!r} holds no JSON") from None
+    if not isinstance(content, list) or not all(isinstance(item, str) for item in content):
+        raise UsageError(f"the field {field!r} holds no list of names")
+    refuse_unusual(content, f"the field {field!r}")
+    return content
+
+
 def refuse_unusual(content: Any, what: str) -> None:
     """Raises UsageError for data that is too deep or too much, and for characters that belong in no text.
 

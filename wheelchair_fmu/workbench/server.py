@@ -6,7 +6,7 @@ Reading changes nothing but when a session was last looked at; `guard` says who 
 from __future__ import annotations
 
 import re
-from collections.abc import Awaitable, Callable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from functools import partial
@@ -43,7 +43,7 @@ from ..report import preview
 from ..report.page import ASSETS, asset
 from ..report.words import value_text
 from . import faults
-from .bodies import Json, json_object, number
+from .bodies import Json, json_object, json_texts, number
 from .guard import Guard
 from .intake import MOST_BYTES, NoRecording, safe_path
 from .jobs import Job, Jobs, printed_json
@@ -247,22 +247,24 @@ class Workbench:
             files = [field for field in form.getlist("files") if isinstance(field, UploadFile)]
             if not files:
                 raise UsageError("the field 'files' holds no file")
-            name = form.get("name")
-            return await self.change(session, lambda: self._take_in(session, files, name if isinstance(name, str) else ""))
+            name, paths = form.get("name"), _paths(form.get("paths"), files)
+            named = list(zip(paths, files, strict=True))
+            return await self.change(session, lambda: self._take_in(session, named, name if isinstance(name, str) else ""))
 
-    def _take_in(self, session: Session, files: list[UploadFile], name: str) -> str:
-        """Takes in the recordings among these files, and says which are none: a lab's folder holds notes and pictures, too."""
-        taken, other = list[UploadFile](), dict[str, NoRecording]()
-        for file in files:
+    def _take_in(self, session: Session, files: list[tuple[str, UploadFile]], name: str) -> str:
+        """Takes in the recordings among these files, by their paths, and says which are none: a lab's folder holds notes and
+        pictures, too."""
+        taken, other = list[tuple[str, UploadFile]](), dict[str, NoRecording]()
+        for path, file in files:
             try:
-                safe_path(file.filename or "")
-                taken.append(file)
+                safe_path(path)
+                taken.append((path, file))
             except NoRecording as error:
-                other[file.filename or ""] = error
+                other[path] = error
         if not taken:
             raise UsageError("; ".join(str(error) for error in list(other.values())[:NAMED]))
-        for file in taken:
-            session.put(file.filename or "", file.file, self.most_upload)
+        for path, file in taken:
+            session.put(path, file.file, self.most_upload)
         session.draft(name)
         names = list(other)
         more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
@@ -435,6 +437,14 @@ class Workbench:
         with TemporaryDirectory() as folder:
             content = build(session.variant(), Path(folder) / name).read_bytes()
         return Response(content, media_type="application/octet-stream", headers=_attached(name))
+
+
+def _paths(told: object, files: Sequence[UploadFile]) -> list[str]:
+    """The paths of files as the field `paths` has them, a JSON list, or as they are called in the form, which has no quotes."""
+    paths = json_texts(told, "paths") if isinstance(told, str) else [file.filename or "" for file in files]
+    if len(paths) != len(files):
+        raise UsageError(f"the field 'paths' names {len(paths)} files, and {len(files)} came with it")
+    return paths
 
 
 def _word(name: str, quantity: Quantity, known: Mapping[str, int]) -> dict[str, Any]:

@@ -66,10 +66,12 @@ class App {
     this.buttons();
     this.foretell();
     this.set(this.controls.values);
+    document.documentElement.classList.remove("lifeless");
   }
 
   /** The model cannot run here: what is stored stands, and one sentence says so. */
   give(why) {
+    document.documentElement.classList.add("lifeless");
     byId("plea").hidden = false;
     byId("plea").textContent = `This browser cannot run the model (${why}); everything that the diagnosis stored stands below.`;
     byId("try").hidden = true;

@@ -2,7 +2,7 @@
 
 import { byId, csv, h, save, symbols } from "page/dom";
 import { chance, inUnit, rms, significant, uncertain } from "page/numbers";
-import { capital, channelOf, listed, proposed, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, proposed, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
 const PLAIN = 3; // standard errors from nothing, from which the data show something
@@ -33,7 +33,7 @@ function table(ranking, records, campaign) {
     more.textContent = open ? "show the likeliest" : `show all ${ranking.length} effects`;
   });
   return h("div", {}, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Evidence table" },
-    h("table", { class: "evidence" }, h("caption", {}, "Every effect of the catalogue, the likeliest first"),
+    h("table", { class: "evidence" }, h("caption", {}, h("span", { class: "on-screen" }, "Every effect of the catalogue, the likeliest first"), h("span", { class: "on-paper" }, "The likeliest effects of the catalogue")),
       h("thead", {}, h("tr", {}, heads.map(([text, right]) => h("th", { scope: "col", class: right ? "number" : null }, text)))), body)),
     h("p", { class: "hint of-columns" }, KEY),
     h("p", { class: "tools" }, ranking.length > FIRST ? more : null,
@@ -108,7 +108,7 @@ function ties(section, campaign) {
   if (next) section.append(h("p", { class: "next" }, h("b", {}, symbols(next)), " ", why));
   const left = diagnosis.leftover;
   if (left?.where) {
-    const { run, channel, rms: size } = left.where, where = `the ${channelOf(channel)} of ${run}, ${significant(size, 3)} times the noise`;
+    const { run, channel, rms: size } = left.where, where = `the ${channelOf(channel)} of ${isolated(run)}, ${significant(size, 3)} times the noise`;
     section.append(h("p", {}, left.proposal ? `Without what helps most, the model errs most in ${where}.` :
       `A search for anything else that is left, among generic forces and errors, found nothing that would be put in. The largest error that is left on the fitted runs is in ${where}.`));
   }

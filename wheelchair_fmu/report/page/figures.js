@@ -27,7 +27,7 @@ const bowl = (heights, level) => heights.filter((v) => v !== null && v < 2 * lev
 const tabled = (rows, heads) => Object.fromEntries(Object.entries(heads).map(([name, head]) => [head, rows.map((r) => r[name])]));
 
 /** What ± is, where a number has it in place of an interval. */
-const plainly = (rows) => (rows.some((r) => r.plainly) ? " Where a number has a ±, that is one standard error, and the bar twice as long either way." : "");
+const plainly = (rows) => (rows.some((r) => r.plainly) ? " Where a number has a ±, that is one standard error, and the bar twice as long either way, as far as bounds let it." : "");
 
 export class Figures {
   /** `app` has shown, results, now, before(), timeline and motion. */
@@ -66,8 +66,9 @@ export class Figures {
     const { campaign, app } = this, subject = () => `${isolated(campaign.name)}, ${runOf(campaign.runs[app.shown.run])}, ${app.called()}`, file = (id) => () => `${campaign.name}-${campaign.runs[app.shown.run].name}-${id}`;
     this.add("path", "The chair from above", { ...this.above(), subject, file: file("path") }, true);
     this.add("overlay", "Measured and model", { ...this.curves(), subject, file: file("curves") }, true);
-    this.add("where", "Where the error is", this.places(), true);
-    this.add("regimes", "The error against what was going on", this.moments());
+    const of = () => `${this.whole()}, ${app.called()}`;
+    this.add("where", "Where the error is", { ...this.places(), subject: of }, true);
+    this.add("regimes", "The error against what was going on", { ...this.moments(), subject: of });
     this.heatWhere = new Heat(this.all.where.drawing, "Error by run and channel, noise = 1; arrow keys go from cell to cell", campaign.channels.map((c) => channelOf(c.name)), ([run, channel]) => app.show(run, channel));
   }
 
@@ -112,7 +113,7 @@ export class Figures {
       const bounds = v.at_bound ? [at(v.lower), at(v.upper)].filter(Number.isFinite) : [];
       const words = record.meaning ?? name, [low, high] = [Math.max(below, at(v.lower, -Infinity)), Math.min(above, at(v.upper, Infinity))];
       return { name: capital(words), words: words.replace(/ \p{L}_[\p{L}\d]+/u, ""), value: off, low, high, note: uncertain(own, record), under: `given ${withError(v.prior, v.prior_sd, record)}`, bounds, strong: Math.abs(off) > 2 || v.at_bound,
-        parameter: name, unit: record.unit, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, low_end: ends[0], high_end: ends[1], lower: v.lower, upper: v.upper, plainly: !own.interval, bound: v.at_bound ? "at its bound" : "" };
+        parameter: name, unit: record.unit, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, low_end: Math.max(ends[0], v.lower ?? -Infinity), high_end: Math.min(ends[1], v.upper ?? Infinity), lower: v.lower, upper: v.upper, plainly: !own.interval, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
       draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: 95 % of what was given", 1.96),
@@ -191,7 +192,8 @@ export class Figures {
     return {
       draw: (width, look) => path(width, look, app.motion),
       columns: () => ({ "time [s]": app.motion.time, "x [m]": app.motion.model.x, "y [m]": app.motion.model.y, "psi [rad]": app.motion.model.psi,
-        ...(app.motion.measured ? { "x measured [m]": app.motion.measured.x, "y measured [m]": app.motion.measured.y } : {}) }),
+        ...(app.motion.measured ? { "x measured [m]": app.motion.measured.x, "y measured [m]": app.motion.measured.y } : {}),
+        ...(app.motion.before ? { "x before [m]": app.motion.before.x, "y before [m]": app.motion.before.y } : {}) }),
       caption: () => {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";
@@ -211,7 +213,8 @@ export class Figures {
       },
       columns: () => {
         const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);
-        return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high, "error [sd]": result.errors[c] };
+        return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high,
+          ...Object.fromEntries(app.timeline.lines.filter(([name]) => !["measured", "model"].includes(name)).map(([name, values]) => [`${name} [${unit}]`, Array.from(values)])), "error [sd]": result.errors[c] };
       },
       caption: () => {
         const result = app.printed ?? app.results[app.shown.run], was = app.printed ? `, ${rms(byChannel(app.before())[app.shown.channel])} before (dashed)` : "";
@@ -224,7 +227,7 @@ export class Figures {
     return {
       draw: (width, look) => heat(width, look, this.campaign.channels.map((c) => channelOf(c.name)), this.placed()),
       columns: () => { const cells = this.placed().flatMap((r) => r.cells.map((c) => [r.name, ...c.at.slice(1), c.value])); return { run: cells.map((c) => c[0]), channel: cells.map((c) => c[1]), "error, noise = 1": cells.map((c) => c[2]) }; },
-      caption: () => `Error of each run and channel${this.app.printed ? ", before what was found was put in," : ""} in units of the noise; colour begins at ${QUIET}.${this.greatest()}`,
+      caption: () => `Error of each run and channel, ${this.app.printed ? "before what was found was put in" : this.app.called()}, in units of the noise; colour begins at ${QUIET}.${this.greatest()}`,
     };
   }
 

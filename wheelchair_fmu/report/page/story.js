@@ -4,6 +4,7 @@ import { byId, h } from "page/dom";
 import { extent, look } from "page/draw";
 import { same } from "page/controls";
 import { byChannel } from "page/errors";
+import { Figure } from "page/figure";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
@@ -72,7 +73,7 @@ export class Story {
       this.choice = c;
       this.reveal();
     } }, capital(c.title)));
-    this.stages.guess.append(h("div", { class: "choices-list" }, choices), answer, this.guessed);
+    this.stages.guess.replaceChildren(h("div", { class: "choices-list" }, choices), answer, this.guessed);
   }
 
   async reveal() {
@@ -142,9 +143,19 @@ export class Story {
     if (kind === "next") stage.replaceChildren(...this.drawing(this.app.figures.all.next ? "next" : "missing", stage));
     if (kind === "rivals") {
       const rows = this.told("rivals").bars, { all } = this.app.figures, other = this.campaign.diagnosis.ties.length ? (all.joint ? "joint" : "forest") : rows.length > 1 ? null : "forest", drawn = other ? this.drawing(other, stage) : [];
-      if (drawn.length) stage.replaceChildren(...drawn);
-      else stage.replaceChildren(...(rows.length > 1 ? [h("h4", {}, `Error on ${this.app.judged()}`), bars(this.room(stage, 640), look(), rows), h("ul", { class: "unseen" }, rows.map((r) => h("li", {}, `${r.title}: ${rms(r.error)}`)))] : []));
+      stage.replaceChildren(...(drawn.length ? drawn : rows.length > 1 ? [(this.bars ??= this.barred(rows)).place] : []));
+      if (!drawn.length) this.bars?.redraw();
     }
+  }
+
+  /** The error with each effect that was refitted, as a figure. */
+  barred(rows) {
+    const { campaign, figures } = this.app, judged = this.app.judged();
+    return new Figure(h("figure", { id: "each" }), {
+      title: `Error on ${judged}`, subject: () => figures.whole(), file: () => `${campaign.name}-each`, draw: (width, look) => bars(width, look, rows),
+      columns: () => ({ "put in": rows.map((r) => r.title), "error, noise = 1": rows.map((r) => r.error) }),
+      caption: () => `Error on ${judged} with each of these put in and all values fitted again, in units of what sensor noise alone gives: ${rows.map((r) => `${r.title} ${rms(r.error)}`).join(", ")}.`,
+    });
   }
 
   /** The button as it is now, though the numbers may still come. */

@@ -472,7 +472,9 @@ class Workbench {
     if (all > most) return tried(() => { throw new Refused(`${Math.ceil(all / 1e6)} MB at once is too much for the workbench, which takes ${most / 1e6} MB; add fewer at a time`); });
     const toml = files.find(([path]) => path.endsWith("campaign.toml")), first = toml ?? files[0], count = files.length;
     const base = first[0].slice(0, first[0].lastIndexOf("/") + 1), form = new FormData();
-    for (const [path, file] of files) if (!file.name.startsWith(".")) form.append("files", file, path.startsWith(base) ? path.slice(base.length) : path);
+    const sent = files.filter(([, file]) => !file.name.startsWith(".")).map(([path, file]) => [path.startsWith(base) ? path.slice(base.length) : path, file]);
+    for (const [path, file] of sent) form.append("files", file, path);
+    form.append("paths", JSON.stringify(sent.map(([path]) => path))); // a form writes " of a file's name as %22
     form.append("name", base.split("/").at(-2) ?? "");
     return this.take(() => ask("files", { method: "POST", body: form }), `Taking in ${count} ${count > 1 ? "files" : "file"} …`);
   }
