@@ -376,6 +376,29 @@ def test_values_that_are_typed_fast_are_all_kept(page: Any) -> None:
     assert kept == {name.rpartition(".")[2]: value for name, value in values.items()}
 
 
+def test_a_form_stays_open_while_what_is_wrong_in_it_is_mended(page: Any) -> None:
+    take_in(page, *recordings())
+    page.click("text=What is known of the chair")
+    mass = page.locator('input[aria-label^="chair.m:"]')
+    for value in ("eighty", "80"):
+        typed(mass, value)
+        page.wait_for_function("() => workbench.saving === 0")
+        assert mass.is_visible()
+    assert page.evaluate("workbench.state.campaign.chair.m") == 80
+
+
+def test_a_column_can_be_turned_round(page: Any) -> None:
+    take_in(page, *recordings())
+    page.click("text=Columns and their units")
+    for on in (True, False):
+        page.get_by_label("yaw_rate [rad/s] turned round").set_checked(on)
+        page.wait_for_function("() => workbench.saving === 0")
+        entry = page.evaluate("workbench.state.campaign.columns?.yaw_rate ?? null")
+        assert entry == ({"column": "yaw_rate [rad/s]", "sign": -1} if on else None)
+        differ = "() => workbench.state.faults.some((f) => f.what.includes('sign of yaw_rate'))"
+        assert page.evaluate(differ) == on
+
+
 def test_a_signal_that_goes_to_another_column_is_said(page: Any, tmp_path: Path) -> None:
     time = np.arange(0, 4, 0.02)
     names = ("time [s]", "first [m/s]", "second [m/s]")
@@ -415,14 +438,14 @@ def test_sizes_that_no_chair_has_are_said_beside_their_fields(page: Any, tmp_pat
     said = page.locator("#lab .wrong").all_inner_texts()
     assert "Give 10 to 400 kg." in said and "Give 0.05 to 1 m; is it 0.307 m?" in said
     assert page.evaluate("workbench.state.job") is None
-    typed(page.locator("#lab [name=mass]"), "95,5")
-    typed(page.locator("#lab [name=radius]"), "0,307")
+    typed(page.locator("#lab [name=mass]"), "95,5 kg")
+    typed(page.locator("#lab [name=radius]"), "30,7 cm")
     page.click("#import")
     assert "cannot be ahead of the casters" in page.inner_text("#lab")
     typed(page.locator("#lab [name=cm_ahead]"), "0,1")
     page.click("#import")
     done(page, "import")
-    assert page.evaluate("workbench.state.campaign.chair.m") == 95.5
+    assert page.evaluate("[workbench.state.campaign.chair.m, workbench.state.campaign.wheel.R]") == [95.5, 0.307]
 
 
 def test_an_effect_of_ones_own_is_judged_as_it_is_typed(page: Any) -> None:

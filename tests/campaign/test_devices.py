@@ -171,7 +171,7 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
         ('device = "imu"\n', 'device = "rims"\n', "recording 2 describes the device 'rims' again, as recording 1 does"),
         ('device = "imu"\n', "", 'recording 2 has no device; add device = "..."'),
         ('imu = "one_imu.csv"', 'imu = "imu.csv"', "run 1: no such file as 'imu.csv' of imu; did you mean 'one_imu.csv' or"),
-        ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give a point"),
+        ("at = [0.11, 0.04]", "at = 0.11", "recording 2 (imu) has at = 0.11, which is no point; give two numbers, [x, y] in m"),
         (
             "at = [0.11, 0.04]",
             "at = [110, 40]",

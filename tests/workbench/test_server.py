@@ -241,11 +241,13 @@ def test_an_effect_of_ones_own_joins_the_catalogue(client):
         "upper": 50.0,
     }
     state = client.post(f"{client.base}/effects", json=effect).json()
-    assert {"id": "rubbing_brake", "title": "a brake that rubs", "own": True} in state["effects"]
+    assert {"id": "rubbing_brake", "title": "a brake that rubs", "own": True} in state["effects"] and not state["remark"]
+    again = client.post(f"{client.base}/effects", json={**effect, "title": "a worn brake"}).json()
+    assert again["remark"] == "rubbing_brake was “a brake that rubs” before, which it replaces."
     for change, why in (
         ({"id": "x y"}, "is no name for an effect"),
         ({"id": "toe_misalignment"}, "already"),
-        ({"title": 'a"""b'}, "plain words"),
+        ({"title": 'a"""b'}, 'plain words what the effect is: at most 200 letters, none of them " \\ { }'),
         ({"size": -1}, "“q matters from” above 0"),
         ({"size": "much"}, "not a number"),
         ({"expression": "q * foo"}, "'foo'"),

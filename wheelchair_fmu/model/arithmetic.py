@@ -112,7 +112,7 @@ def _where(error: SyntaxError, plain: str) -> str:
     if not error.offset:
         return "it breaks off at its end"
     if BESIDE.search(plain):
-        return "between two numbers or names a sign is missing, as * is in q u"
+        return "between two numbers or names a sign is missing, as * in q * u, or a unit has no brackets, as in 3 [km/h]"
     return f"{error.msg} at place {error.offset}"
 
 

@@ -40,6 +40,7 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"write columns\..*", f"choose its column under “{COLUMNS}”"),
     (r"write axes = .*--axes", f"choose the axes under “{RUNS}”"),
     (r"fill it in, or cut the run by from and to", "fill it in, or leave out the rows in which it is missing"),
+    (r"give two numbers, \[x, y\] in m", "give two numbers in metres, as 0.09, 0.04: forward, and to the right"),
     (r"export it as CSV, or name its format", f"export it as CSV and drop that, and take this one out under “{RUNS}”"),
     (r"export it again, or leave it out", f"export it again and drop it here, or take it out under “{RUNS}”"),
 )  # (what a cure is in full, what the page says in its place)
@@ -54,7 +55,9 @@ def told(fault: Fault) -> dict[str, Any]:
     what = fact if cure == NOTHING else f"{fact}; {cure}"
     line = "" if fault.line is None or (fault.in_run and fault.line == 1) else f" line {fault.line}"
     column = f" column {short(fault.column)}" if fault.column is not None else ""
-    where = f"{fault.file}{line}{column}" if fault.in_run or line else ""
+    where = (
+        f"{fault.file}{line}{column}" if fault.in_run or (line and not fault.place) else ""
+    )  # a form has what is mended there
     return {
         "text": f"{where}: {what}" if where else what,
         "what": what,

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..campaign import CHANNELS
+from ..inference.decision.verdict import FORCES
 from ..model.generic import library
 from ..model.stage import Effect
 from ..model.variant import Variant
@@ -19,7 +20,8 @@ COMMAND = "wheelchair "  # what a sentence names that is for a terminal; here a 
 
 def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any] | None:
     """{"sentence", "cards", "effects": those of the catalogue to be put in, "order": all of its ranking, "fresh": whether it is
-    of the model and the campaign as they are}; None before any diagnosis, and where its file cannot be read."""
+    of the model and the campaign as they are, "forces": whether it counts forces that nobody recorded as noise}; None before
+    any diagnosis, and where its file cannot be read."""
     try:
         told = json.loads((session.folder / "diagnosis.json").read_text(encoding="utf-8"))
         every = {**library(), **catalogue}
@@ -32,6 +34,7 @@ def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any]
             "effects": [e for e in told["effects"] if e in catalogue and told["verdict"] != "small"],
             "order": [row["effect"] for row in told["ranking"] if row["effect"] in catalogue],
             "fresh": session.diagnosed,
+            "forces": any(step["step"] == FORCES for step in told["ladder"]),
         }
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None  # somebody has broken the file, or it is of another version: diagnosing again makes it anew

@@ -53,6 +53,7 @@ from .session import Session, channel_list
 
 EFFECT = re.compile(r"[a-z][a-z0-9_]{0,59}")
 LONGEST_TITLE = 200
+FORBIDDEN = '"\\{}'  # in a title, which goes into a file
 EARLIER = 12  # pieces of work that are listed
 NAMED = 4  # files that are named of those left out
 KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
@@ -405,8 +406,11 @@ class Workbench:
             raise UsageError(
                 f"a model of this work has your effect {id!r} already, which stays what it is; choose another name"
             )
-        if not title.isprintable() or set(title) & set('"\\{}') or not 0 < len(title) <= LONGEST_TITLE:
-            raise UsageError("say in a few plain words what the effect is")
+        if not title.isprintable() or set(title) & set(FORBIDDEN) or not 0 < len(title) <= LONGEST_TITLE:
+            banned = " ".join(FORBIDDEN)
+            raise UsageError(
+                f"say in a few plain words what the effect is: at most {LONGEST_TITLE} letters, none of them {banned}"
+            )
         size, lower, upper = (number(asked, key) for key in ("size", "lower", "upper"))
         if not lower <= 0 < size < upper:
             raise UsageError(

@@ -311,11 +311,13 @@ class Session:
                 found[Path(file).stem] = f"{error}; mend or remove the file"
         return found
 
-    def write_effect(self, id: str, source: str) -> None:
-        """Put an effect into the catalogue, once its file is known to define it. Raises EffectError where it does not."""
-        file = self.effects / f"{id}.py"
+    def write_effect(self, id: str, source: str) -> str:
+        """Put an effect into the catalogue, once its file is known to define it; says which one it takes the place of. Raises
+        EffectError where it defines none."""
+        file, before = self.effects / f"{id}.py", self.own_effects().get(id)
         checked(((str(file), source.encode()),))
         write(file, source.encode())
+        return f"{id} was “{before.title}” before, which it replaces." if before else ""
 
     def catalogue(self) -> dict[str, Effect]:
         return {**bundled(), **self.own_effects()}

@@ -93,6 +93,7 @@ def wrong_type(doc: Document, known: Known | None) -> Iterator[Fault]:
         for key, kind in _kinds(record).items():
             if key in table and not fits(table[key], kind):
                 of, cure = (f"{title} has ", f"give a {kind}") if place is not None else ("", "put it in quotes")
+                cure = "give two numbers, [x, y] in m" if kind == "point" else cure
                 fact = f"{of}{key} = {table[key]!r}{', which' if of else ''} is no {kind}"
                 yield doc.fault(f"{record.name}.{key}", fact, cure, place)
 

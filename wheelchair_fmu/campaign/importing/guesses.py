@@ -81,7 +81,7 @@ QUANTITIES = (
         "force",
         ("N",),
         r"""(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|
-        f ?(tan|tang|t|push)?|force|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
+        f ?(tan|tang|t|push)?|force|push|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
         force( de)?( poussee| tangentielle| propulsion)?""",
     ),
     Quantity(

@@ -36,7 +36,7 @@ const wrong = (of) => h("small", { class: "wrong", ...of });
 
 /** Put what is wrong, or to be looked at, beside what it is of. */
 export function mark(faults) {
-  const told = faults.filter((f) => f.severity === "error" || f.severity === "guess");
+  const told = faults.filter((f) => f.severity !== "note" && (f.severity !== "warning" || f.column));
   for (const place of document.querySelectorAll("#forms .wrong")) {
     const { column, at } = place.dataset, files = place.dataset.files?.split("\n") ?? [];
     const of = told.filter((f) => (at ? f.at === at : files.includes(f.file) && (f.column ?? undefined) === column)), bad = of.some((f) => f.severity === "error"), said = [...new Set(of.map((f) => f.what))];
@@ -118,16 +118,17 @@ const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? cam
 function columnRow(bench, header, place, given, options, record) {
   const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
   const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
-  const unit = text(`unit of ${header}${place.name ? ` of ${place.name}` : ""}`, was.unit ?? own, () => change(), { size: 8 }), radius = text(`wheel radius for ${header}${place.name ? ` of ${place.name}` : ""} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
+  const unit = text(`unit of ${header}${place.name ? ` of ${place.name}` : ""}`, was.unit ?? own, () => change(), { size: 8, placeholder: header.match(/\(([^()]*)\)\s*$/)?.[1] ?? "" }), radius = text(`wheel radius for ${header}${place.name ? ` of ${place.name}` : ""} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
   const rolls = () => { radius.hidden = !ROLLING.test(which.value); };
   const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
   const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
   const derived = channel && !(channel in options) ? { [channel]: `${channelOf(channel)}, from which other signals are worked out` } : {};
   const which = select(`channel of ${header}${place.name ? ` of ${place.name}` : ""}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
+  const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${header}${place.name ? ` of ${place.name}` : ""} turned round`, onchange: () => bench.save((c) => turn(c, place, header, bare, channel, turned.checked)) });
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
-  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, was.sign < 0 ? h("small", {}, "turned round: what is positive in the file is negative here") : null), h("td", {}, unit), h("td", {}, radius));
+  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */
@@ -156,6 +157,15 @@ function map(content, place, header, bare, own, channel, unit, radius) {
   }
   if (!place.explicit && Object.keys(all).length === 0) delete content.columns;
   return other && other !== header ? `“${other}” was the ${channelOf(channel)} before, and is not used now.` : "";
+}
+
+/** Writes that what is positive in `header` is negative in the channel, or is not. */
+function turn(content, place, header, bare, channel, on) {
+  const all = place.of(content), was = all[channel], entry = typeof was === "object" ? was : { column: was ?? header };
+  all[channel] = { ...entry, sign: -1 };
+  if (!on) delete all[channel].sign;
+  if (!on && !place.explicit && channel === bare && Object.keys(all[channel]).length === 1) delete all[channel]; // as its header says
+  if (!place.explicit && Object.keys(all).length === 0) delete content.columns;
 }
 
 /** What sensors are worth: one standard deviation for each that is in the recordings. */

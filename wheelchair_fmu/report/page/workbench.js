@@ -11,7 +11,7 @@ const LATEST = 3; // pieces of earlier work that are in sight
 const LOST = 2000; // ms between looks where the last one had no answer
 const SLOW = 250; // ms after which it is said that an answer is waited for
 const STEPS = { import: 4, calibrate: 1, diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen; to calibrate also one for each run
-const EVEN = ["diagnose", "add", "try"]; // whose steps take about as long as one another
+const OF_LABS = 90; // steps of a usual diagnosis where several devices recorded, whose floors and clocks are found as well
 const FEW_STEPS = 3; // before which nobody can tell how long the rest takes
 const GONE = "The workbench does not answer. Is it still running? Start it again by “wheelchair workbench” and open the address that it prints: your work is kept.";
 const TYPING = "q is the size that is estimated. A number may have its unit behind it, as in -q * tanh(u / 3 [km/h]).";
@@ -128,6 +128,7 @@ class Workbench {
       const was = before.get(name);
       Object.assign(form.dataset, { form: name, first: form.open });
       if (was?.dataset.first === form.dataset.first) form.open = was.open;
+      else if (was?.open && (was.contains(document.activeElement) || was.contains(touched))) form.open = true; // somebody is in it
     }
     byId("forms").replaceChildren(...forms.map(([, form]) => form));
   }
@@ -151,12 +152,12 @@ class Workbench {
   showFaults() {
     const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), guesses = faults.filter((f) => f.severity === "guess").length, remarks = faults.filter((f) => f.severity !== "error").sort((a, b) => (b.severity === "guess") - (a.severity === "guess"));
     const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), unread = files.length > 0 && errors.length > 0 && this.unread;
-    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), by = raw && anew ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed
+    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), read = this.state.job?.kind === "import" && this.state.job.state === "done", by = raw && anew && !read ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
     if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
       h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
     else byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
-      remarks.length ? h("details", { open: this.reading ?? guesses > 0, ontoggle: ({ target }) => { this.reading = target.open; } }, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}${guesses ? `, of which ${guesses} to look at: what a file did not say was guessed` : ""}`), causes(remarks)) : "");
+      remarks.length ? h("details", { open: this.reading ?? (guesses > 0 || remarks.some((f) => f.severity === "warning" && f.column)), ontoggle: ({ target }) => { this.reading = target.open; } }, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}${guesses ? `, of which ${guesses} to look at: what a file did not say was guessed` : ""}`), causes(remarks)) : "");
     byId("forms").hidden = unread && !this.byHand;
     mark(faults);
     byId("there").hidden = !files.length;
@@ -172,8 +173,10 @@ class Workbench {
     byId("preview").href = `${this.here}/preview`;
     this.ready = files.length > 0 && !errors.length;
     const assumed = Object.entries(PLACES).filter(([name]) => campaign?.chair?.[name] === undefined).map(([, words]) => words);
-    byId("assumed").hidden = !this.ready || !assumed.length;
-    byId("assumed").textContent = `Not given, and so taken from another chair: ${listed(assumed)}. Measure it and write it above under “What is known of the chair”: a wrong value there passes for an effect, or hides one.`;
+    const placeless = (Array.isArray(campaign?.recording) ? campaign.recording : []).filter((r) => r.at === undefined && ["a_x", "a_y"].some((c) => c in (r.columns ?? {}))).map((r) => r.device);
+    byId("assumed").hidden = !this.ready || (!assumed.length && !placeless.length);
+    byId("assumed").textContent = [assumed.length ? `Not given, and so taken from another chair: ${listed(assumed)}. Measure it and write it above under “What is known of the chair”.` : "",
+      placeless.length ? `Where ${listed(placeless)} ${placeless.length > 1 ? "sit" : "sits"} was not given, and so counts as at the centre of mass: write it above under “Columns and their units”.` : "", "A wrong value there passes for an effect, or hides one."].filter(Boolean).join(" ");
     this.enable();
   }
 
@@ -271,10 +274,13 @@ class Workbench {
 
   /** Which step it is, of how many, and how long the rest takes: as the last one of its kind did, or else as its steps so far. */
   progressed({ kind, lines, steps, seconds, usual }, bar) {
-    const many = usual?.steps ?? STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0), length = usual?.seconds ?? (EVEN.includes(kind) && steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
+    const several = Array.isArray(this.state.campaign?.recording), first = kind === "diagnose" && several ? OF_LABS : STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0);
+    const many = usual?.steps ?? first, length = usual?.seconds ?? (steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
     if (usual || (many && steps <= many)) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
+    if (steps <= 1) this.left = Infinity;
+    this.left = length ? Math.min(this.left ?? Infinity, length - seconds) : this.left; // it never says more than before
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
-      late ? usual ? "longer than the last time" : "these recordings take longer than most" : length >= seconds + 1 ? `about ${whole(length - seconds)} left` : ""].filter(Boolean).join(" · ");
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : this.left >= 1 && this.left < Infinity ? `about ${whole(this.left)} left` : ""].filter(Boolean).join(" · ");
   }
 
   /** What came of a job, in a sentence. */
@@ -285,7 +291,7 @@ class Workbench {
     if (job.kind === "import") return `The files were read together, ${took}.`;
     if (job.kind === "diagnose") return `Diagnosed, ${took}.`;
     if (job.kind === "calibrate") return `Calibrated, ${took}${ladder ? `: ${errorOf(ladder.at(-1))}` : ""}.`;
-    return `${job.kind === "add" ? "Added" : "Tried"}: ${this.titleOf(effect)}, ${took}. ${capital(changed(ladder))}`;
+    return `${job.kind === "add" ? "Added" : "Tried"}: ${this.titleOf(effect)}, ${took}. ${capital(changed(ladder))}${this.state.outcome?.forces ? " Here forces that nobody recorded count as error; the verdict counts them as noise." : ""}`;
   }
 
   /** What a command says, with effects by their titles. */
@@ -364,6 +370,8 @@ class Workbench {
     this.showJob({ kind, state: "running", lines: [], commands: [], steps: 0, seconds: 0, usual: null, result: null });
     const state = await this.take(() => send("POST", "jobs", { kind, ...more }));
     if (!state) this.showJob(was);
+    const now = state ? null : await ask("state").catch(() => null); // another window may have begun something
+    if (now) this.show(now);
     return state;
   }
 
@@ -384,14 +392,17 @@ class Workbench {
 
   /** Hand out a file that the server may have to make first. */
   async export(name, making) {
-    const button = document.activeElement;
-    byId("taken").textContent = making;
+    const button = document.activeElement, began = Date.now(), tell = () => this.waiting(`${making} ${whole((Date.now() - began) / 1000)} so far`), ticking = making ? setInterval(tell, 1000) : null;
+    byId("taken").textContent = "";
+    if (making) tell();
     button.disabled = true;
     const done = await tried(async () => {
       const response = await fetch(`${await place}/export/${name}`, { headers: { "x-workbench": "1" } });
       if (!response.ok) throw new Refused((await response.json()).error);
       return response.blob();
     });
+    clearInterval(ticking);
+    if (making) this.waiting("");
     button.disabled = false;
     if (document.activeElement === document.body) button.focus({ preventScroll: true });
     if (done) save(name, done);
@@ -404,7 +415,7 @@ class Workbench {
     byId("sample").addEventListener("click", () => this.take(() => send("POST", "sample", {}), "Taking in the sample …"));
     byId("import").addEventListener("click", () => { if (allSizes()) this.job("import", sizes()); });
     for (const name of Object.keys(SIZES)) sizeField(name).addEventListener("change", ({ target }) => wrongSize(target));
-    for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled, for a minute or less …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
+    for (const [id, name, making] of [["fmu", "Wheelchair.fmu", "The FMU is being compiled …"], ["variant", "variant.toml", ""], ["ssv", "parameters.ssv", ""], ["report", "report.html", ""]])
       byId(`export-${id}`).addEventListener("click", () => this.export(name, making));
     for (const id of ["files", "folder"]) byId(id).addEventListener("change", ({ target }) => this.upload([...target.files].map((f) => [f.webkitRelativePath || f.name, f])));
     drop.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
@@ -461,6 +472,7 @@ class Workbench {
       const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
       byId("tried").textContent = there && !this.ready ? "It is in the catalogue, and can be tried once there are recordings that can be read." : "";
       if (!there) return;
+      if (there.remark) byId("unit").textContent = there.remark;
       byId("effect").value = this.picked = content.id;
       if (this.ready) this.job("try", { effect: content.id });
     });
@@ -490,7 +502,14 @@ function follow(field, value) {
 }
 
 /** What a field of a size says, null where it is empty; NaN where it is no number. */
-const sizeOf = (field) => (field.value.trim() ? decimal(field.value) : null);
+function sizeOf(field) {
+  const [, number, unit] = field.value.trim().match(/^(.*?)\s*([a-z]*)$/i);
+  if (!number && !unit) return null;
+  const times = unit ? TIMES[field.dataset.unit][unit] ?? NaN : 1;
+  return Number((decimal(number) * times).toPrecision(12));
+}
+
+const TIMES = { kg: { kg: 1, g: 0.001, lb: 0.45359237 }, m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 } }; // units that a size may have behind it
 
 /** Say beside a size what is wrong with it; is something? */
 function wrongSize(field) {
@@ -522,15 +541,16 @@ const SEE = { import: ["#measurements-title", "see what is in them"], diagnose: 
 const ended = (job) => job && `${job.kind} ${job.state} ${job.seconds}`;
 
 /** Faults by their cause: what is wrong alike in many places is said once, with the places behind it. */
-const causes = (faults) => h("ul", {}, [...byCause(faults)].map(([what, { fault, places }]) => h("li", { "data-severity": fault.severity }, places.length === 1 ? [capital(what), places[0] ? h("small", {}, places[0]) : null]
+const causes = (faults) => h("ul", {}, [...byCause(faults).values()].map(({ fault, fault: { what }, places }) => h("li", { "data-severity": fault.severity }, places.length === 1 ? [capital(what), places[0] ? h("small", {}, places[0]) : null]
   : h("details", {}, h("summary", {}, capital(what), h("small", {}, `in ${places.length} places`)), h("small", {}, places.join("; "))))));
 
-/** {what is wrong: {fault, places}} */
+/** {what is wrong, but for its numbers: {fault, places}} */
 function byCause(faults) {
   const found = new Map();
   for (const fault of faults) {
-    if (!found.has(fault.what)) found.set(fault.what, { fault, places: [] });
-    found.get(fault.what).places.push(fault.where);
+    const cause = fault.what.replace(/[-−]?\d+(?:\.\d+)?/g, "#"), known = found.get(cause);
+    if (known) known.places.push(fault.what === known.fault.what ? fault.where : `${fault.where}: ${fault.what}`);
+    else found.set(cause, { fault, places: [fault.where] });
   }
   return found;
 }
