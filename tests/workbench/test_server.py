@@ -131,7 +131,8 @@ def test_what_is_too_small_to_matter_is_not_offered_to_be_put_in(client, bench):
 def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(client, bench):
     session = Session(bench.root, client.base.rpartition("/")[2])
     upload(client, *recordings())
-    told = SAMPLE_DIAGNOSIS.read_text(encoding="utf-8")
+    known = json.loads(SAMPLE_DIAGNOSIS.read_text(encoding="utf-8"))
+    told = json.dumps({**known, "notes": ["yaw_rate has the other sign than the model's, and is left out"]})
     for broken in ("{", "[]", "{}", told.replace('"effects"', '"others"')):
         (session.folder / "diagnosis.json").write_text(broken)
         assert client.get(f"{client.base}/state").json()["outcome"] is None
@@ -139,6 +140,7 @@ def test_the_outcome_is_of_the_last_diagnosis_and_says_whether_that_is_of_now(cl
     outcome = client.get(f"{client.base}/state").json()["outcome"]
     assert outcome["sentence"] == "Missing from the model: one rear wheel that rolls harder than the other."
     assert outcome["effects"] == outcome["order"][:1] == ["rolling_resistance_asymmetry"] and not outcome["fresh"]
+    assert outcome["notes"] == ["the yaw rate has the other sign than the model's, and is left out"] and not outcome["forces"]
     assert len(outcome["cards"]) == 3 and "wheelchair add" not in str(outcome["cards"])
     session.note_diagnosed(session.at_hand())
     state = client.get(f"{client.base}/state").json()

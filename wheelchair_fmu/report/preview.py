@@ -10,6 +10,7 @@ import html
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from ..faults import ERROR
 from .canvas import blank
 from .figures import BLUE, GREY, ORANGE
 from .saving import save_svg
+from .words import CHANNELS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 POINTS = 1500  # of a curve; more is drawn as the range of each of so many pieces
 ABREAST = 8  # runs in one picture
+ROLES = {"holdout": "held out"}
+ACROSS = 20  # letters of a signal's name in a line
 STYLE = """body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:110rem;padding:0 1rem}
 body{color:#1a1a1a;background:#fff}
 h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a5200}
@@ -128,7 +132,7 @@ def _figure(runs: Sequence[Run], within: Mapping[str, tuple[float, float]]) -> F
     figure = blank(2.2 + 2.4 * len(runs), 0.8 + 1.1 * max(len(names), 1))
     axes = figure.subplots(max(len(names), 1), max(len(runs), 1), sharex="col", sharey="row", squeeze=False)
     for column, run in enumerate(runs):
-        axes[0][column].set_title(f"{run.name} ({run.role})" if run.role else run.name, fontsize=9)
+        axes[0][column].set_title(f"{run.name} ({ROLES.get(run.role, run.role)})" if run.role else run.name, fontsize=9)
         axes[-1][column].set_xlabel("time [s]", fontsize=8)
         for row, name in enumerate(names):
             _panel(axes[row][column], run.signals.get(name))
@@ -136,8 +140,16 @@ def _figure(runs: Sequence[Run], within: Mapping[str, tuple[float, float]]) -> F
         one = next(run.signals[name] for run in runs if name in run.signals)
         of = f"\n{one.device}" if one.device else ""
         axes[row][0].set_ylim(within[name])
-        axes[row][0].set_ylabel(f"{name}\n[{one.unit}]{of}", fontsize=8, rotation=0, ha="right", va="center")
+        axes[row][0].set_ylabel(f"{_called(name)}\n[{one.unit}]{of}", fontsize=8, rotation=0, ha="right", va="center")
     return figure
+
+
+def _called(name: str) -> str:
+    """A channel as a reader meets it, in short lines."""
+    words = CHANNELS.get(name, "").removeprefix("the ") or (
+        BY_NAME[name].meaning.partition(",")[0] if name in BY_NAME else name
+    )
+    return fill(words, ACROSS)
 
 
 def _panel(ax: Axes, signal: Signal | None) -> None:

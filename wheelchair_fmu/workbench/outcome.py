@@ -12,7 +12,7 @@ from ..model.generic import library
 from ..model.stage import Effect
 from ..model.variant import Variant
 from ..report.tale import story_of
-from ..report.words import sentence
+from ..report.words import named, sentence
 from .session import Session
 
 COMMAND = "wheelchair "  # what a sentence names that is for a terminal; here a button does it
@@ -20,8 +20,8 @@ COMMAND = "wheelchair "  # what a sentence names that is for a terminal; here a 
 
 def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any] | None:
     """{"sentence", "cards", "effects": those of the catalogue to be put in, "order": all of its ranking, "fresh": whether it is
-    of the model and the campaign as they are, "forces": whether it counts forces that nobody recorded as noise}; None before
-    any diagnosis, and where its file cannot be read."""
+    of the model and the campaign as they are, "notes": sentences on recordings and values, "forces": whether it counts forces
+    that nobody recorded as noise}; None before any diagnosis, and where its file cannot be read."""
     try:
         told = json.loads((session.folder / "diagnosis.json").read_text(encoding="utf-8"))
         every = {**library(), **catalogue}
@@ -34,6 +34,7 @@ def outcome(session: Session, catalogue: Mapping[str, Effect]) -> dict[str, Any]
             "effects": [e for e in told["effects"] if e in catalogue and told["verdict"] != "small"],
             "order": [row["effect"] for row in told["ranking"] if row["effect"] in catalogue],
             "fresh": session.diagnosed,
+            "notes": [named(note, titles, records) for note in told["notes"]],
             "forces": any(step["step"] == FORCES for step in told["ladder"]),
         }
     except (OSError, ValueError, KeyError, TypeError, IndexError):

@@ -330,6 +330,7 @@ class Workbench {
       outcome.fresh ? "" : h("p", { id: "old-report", class: "plea" }, "This verdict and its report are from before the last change. ", h("button", { type: "button", "data-again": true, onclick: () => this.job("diagnose") }, "diagnose again"), " for what is missing now."),
       h("h3", {}, outcome.sentence),
       h("div", { class: "cards" }, outcome.cards.map((c) => h("section", { class: "card" }, h("h4", {}, c.head), h("p", { class: "lead" }, c.lead), c.lines.map((l) => h("p", {}, symbols(l)))))),
+      outcome.notes.length ? h("details", { open: outcome.notes.some((n) => n.includes("left out")) }, h("summary", {}, `${outcome.notes.length} remark${outcome.notes.length > 1 ? "s" : ""} on recordings and values`), h("ul", {}, outcome.notes.map((n) => h("li", {}, symbols(`${capital(n)}.`))))) : "",
       h("p", { class: "tools wide-tools" }, add.map((e) => h("button", { type: "button", class: "step", "aria-pressed": "true", "data-add": e, onclick: () => this.job("add", { effect: e }) }, `add it: ${this.titleOf(e)}`)),
         h("a", { class: "button", id: "report", href: `${this.here}/report?${report}`, target: "_blank", rel: "noopener" }, outcome.fresh ? "open the report, in which the model runs ↗" : "open the report from before ↗")));
     this.enable();
