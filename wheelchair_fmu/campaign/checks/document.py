@@ -29,6 +29,7 @@ Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
 FARTHEST = 1.2  # m from the centre of mass, of anything on a chair: as long as a chair is in all
 OFF = f"is more than {FARTHEST:g} m from the centre of mass, off any chair"
+CURES_OF_KINDS = {"point": "give two numbers, [x, y] in m"}
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
@@ -92,8 +93,8 @@ def wrong_type(doc: Document, known: Known | None) -> Iterator[Fault]:
     for record, title, place, table in _tables(doc):
         for key, kind in _kinds(record).items():
             if key in table and not fits(table[key], kind):
-                of, cure = (f"{title} has ", f"give a {kind}") if place is not None else ("", "put it in quotes")
-                cure = "give two numbers, [x, y] in m" if kind == "point" else cure
+                of, give = (f"{title} has ", f"give a {kind}") if place is not None else ("", "put it in quotes")
+                cure = CURES_OF_KINDS.get(kind, give)
                 fact = f"{of}{key} = {table[key]!r}{', which' if of else ''} is no {kind}"
                 yield doc.fault(f"{record.name}.{key}", fact, cure, place)
 

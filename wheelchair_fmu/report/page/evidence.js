@@ -2,7 +2,7 @@
 
 import { byId, csv, h, save, symbols } from "page/dom";
 import { chance, inUnit, rms, significant, uncertain } from "page/numbers";
-import { capital, channelOf, isolated, listed, proposed, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, proposed, rankedOf, titleOf } from "page/words";
 
 const FIRST = 8; // effects that are open without asking
 const PLAIN = 3; // standard errors from nothing, from which the data show something
@@ -10,6 +10,7 @@ const SEEN = 0.05; // a p below which the data show something like an effect tha
 const KEY = `Sizes are of an effect put in alone, or beside what was put in before it. Would be seen: in how many of such campaigns it would show at the
   smallest size that matters. Hidden in the fit: how much of what it does calibrated values can imitate. Held out: the error on runs held out,
   noise = 1, before and after it was put in. Alike: effects that do nearly the same to the readings; 1 is just the same.`;
+const UNCHOSEN = ["cannot_see", "not needed", "small"];
 const VERDICTS = {
   missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen", proposed: "helps most; not in the catalogue",
 };
@@ -42,10 +43,7 @@ function table(ranking, records, campaign) {
 
 function line(campaign, row, record, later) {
   const parameters = record.parameters.map((p) => [p, row.parameters[p.name.split(".").at(-1)]]).filter(([, v]) => v);
-  const several = parameters.length > 1, better = campaign.diagnosis.effects.length || campaign.diagnosis.leftover?.proposal;
-  const outside = campaign.diagnosis.verdict === "outside", chosen = campaign.diagnosis.effects.includes(row.effect) || row.verdict === "proposed";
-  const shows = row.p < SEEN || parameters.some(([, v]) => Math.abs(v.estimate) > PLAIN * v.se);
-  const slight = parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta);
+  const several = parameters.length > 1, outside = campaign.diagnosis.verdict === "outside", chosen = isChosen(row, campaign);
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, symbols(p.name.split(".").at(-1)), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
@@ -57,7 +55,20 @@ function line(campaign, row, record, later) {
     h("td", { class: "number", "data-head": "Hidden in the fit" }, row.hidden_in_fit === null ? "–" : `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
-    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, shows && !chosen && ["cannot_see", "not needed", "small"].includes(row.verdict) ? (slight ? VERDICTS.small : better ? "another explains it better" : "not chosen") : outside && row.verdict === "missing" ? "helps, does not suffice" : VERDICTS[row.verdict] ?? row.verdict)));
+    h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, became(row, parameters, campaign))));
+}
+
+const isChosen = (row, { diagnosis }) => diagnosis.effects.includes(row.effect) || row.verdict === "proposed";
+
+/** What became of an effect, in words. */
+function became(row, parameters, campaign) {
+  const { diagnosis } = campaign, shows = row.p < SEEN || parameters.some(([, v]) => Math.abs(v.estimate) > PLAIN * v.se);
+  if (shows && !isChosen(row, campaign) && UNCHOSEN.includes(row.verdict)) {
+    if (parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta)) return VERDICTS.small;
+    return diagnosis.effects.length || diagnosis.leftover?.proposal ? "another explains it better" : "not chosen";
+  }
+  if (diagnosis.verdict === "outside" && row.verdict === "missing") return "helps, does not suffice";
+  return VERDICTS[row.verdict] ?? row.verdict;
 }
 
 /** Does a size stand where a fit may go no further? */
@@ -66,21 +77,20 @@ const atBound = (v, p) => [p.lower, p.upper].some((b) => b && Math.abs(v.estimat
 /** Effects that were refitted several at once. */
 function together(groups, campaign) {
   const sizes = new Map(campaign.effects.flatMap((e) => e.parameters.map((p) => [p.name, p]))), named = (ids) => listed(ids.map((e) => titleOf(campaign, e)));
-  const told = (name) => { const [, effect, short] = name.split("."); return campaign.diagnosis.ranking.find((r) => r.effect === effect)?.parameters[short]; }; // in the last model
   const cell = (head, inner) => h("td", { "data-head": head }, inner);
   const rows = groups.map((g) => h("tr", {}, h("th", { scope: "row" }, capital(g.effects.map((e) => titleOf(campaign, e)).join(" with "))),
-    cell("Size", Object.entries(g.parameters).map(([n, v]) => h("div", {}, uncertain(g.found ? told(n) ?? v : v, sizes.get(n))))),
-    cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Verdict", became(g, campaign))));
+    cell("Size", Object.entries(g.parameters).map(([n, v]) => h("div", {}, uncertain(g.found ? rankedOf(campaign, n) ?? v : v, sizes.get(n))))),
+    cell("Beside", g.beside.length ? named(g.beside) : "–"), cell("Verdict", kept(g, campaign))));
   return h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Effects that were fitted together" },
     h("table", { class: "evidence several" }, h("caption", {}, "Effects that were fitted together, as one acts through the other and each alone may show nothing"),
       h("thead", {}, h("tr", {}, ["Effects", "Size", "Beside", "Verdict"].map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, rows)));
 }
 
 /** What was kept of a group. */
-function became(group, campaign) {
-  const kept = group.found ? group.effects.filter((e) => campaign.diagnosis.effects.includes(e)) : [];
-  if (kept.length === group.effects.length) return h("span", { class: "chip", "data-verdict": "missing" }, "missing");
-  return h("span", { class: "chip" }, kept.length ? `${listed(kept.map((e) => titleOf(campaign, e)))} suffices` : group.p < SEEN ? "another explains it better" : VERDICTS["not needed"]);
+function kept(group, campaign) {
+  const left = group.found ? group.effects.filter((e) => campaign.diagnosis.effects.includes(e)) : [];
+  if (left.length === group.effects.length) return h("span", { class: "chip", "data-verdict": "missing" }, "missing");
+  return h("span", { class: "chip" }, left.length ? `${listed(left.map((e) => titleOf(campaign, e)))} suffices` : group.p < SEEN ? "another explains it better" : VERDICTS["not needed"]);
 }
 
 function columns(ranking) {

@@ -11,7 +11,7 @@ import { labelled, lines, path } from "page/lines";
 import { against, drawn as drawnAgainst } from "page/regimes";
 import { UNSEEN, beside, between, chance, degrees, display, endsOf, inUnit, rms, significant, uncertain, unitText, withError, withInterval } from "page/numbers";
 import { staircase } from "page/staircase";
-import { capital, channelOf, isolated, listed, proposed, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
+import { capital, channelOf, isolated, listed, proposed, rankedOf, runOf, shortOf, stepOf, stillOf, titleOf } from "page/words";
 
 const FIRST = 12; // effects in the forest plot
 const LOW = 230; // px: height of curves below which no error stands under them, as its label has no room
@@ -149,20 +149,14 @@ export class Figures {
 
   /** A profile in words: its lowest place, and its 95 % interval as far as it was followed. */
   sure(curve) {
-    const { record, name } = this.sizeOf(curve.parameter), ends = this.told(curve.parameter)?.interval ?? crossings(curve.values, curve.heights, curve.level);
+    const { record, name } = this.sizeOf(curve.parameter), ends = rankedOf(this.campaign, curve.parameter)?.interval ?? crossings(curve.values, curve.heights, curve.level);
     if (!ends.every(Number.isFinite)) return `${name}: ${inUnit(curve.estimate, record, 4)}.`;
     const low = ends.map((end, k) => stays(curve, end, k)), open = low.every(Boolean) ? "either way" : low[0] ? "below" : low[1] ? "above" : null;
     return `${name}: ${withInterval(curve.estimate, ends, record)}.${open ? ` ${capital(open)} that, its curve stays under the line as far as it is drawn: there the model runs another way, and the size may be farther off than is told.` : ""}`;
   }
 
-  /** What the ranking has of a parameter of an effect. */
-  told(name) {
-    const [, effect, short] = name.split(".");
-    return this.campaign.diagnosis.ranking.find((r) => r.effect === effect)?.parameters[short];
-  }
-
   joined(joint) {
-    const sizes = joint.parameters.map((n) => this.sizeOf(n)), alone = joint.parameters.map((n) => this.told(n)?.estimate ?? NaN);
+    const sizes = joint.parameters.map((n) => this.sizeOf(n)), alone = joint.parameters.map((n) => rankedOf(this.campaign, n)?.estimate ?? NaN);
     const [odds] = this.campaign.diagnosis.odds ?? [], far = joint.parameters.map((n) => n.split(".")[1]).find((e, k) => joint.alone?.[k] > joint.level && odds?.[e]);
     const unlikely = far ? ` “${capital(titleOf(this.campaign, far))}” alone lies outside of it, so that these runs speak against it, but by ${chance(1 - odds[far])} to ${chance(odds[far])} only: other runs of the kind might not.` : "";
     const drawn = { ...joint, alone, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),

@@ -17,11 +17,11 @@ export async function refit(pool, campaign, starts, names, go = () => true) {
     const parts = await Promise.all(runs.map((run) => pool.later({ run, values: at(x), slopes: steps }, true)));
     return total(parts, problem, x);
   };
-  const begun = [];
-  for (const start of starts) {
-    const from = problem.map((p) => clamp(p, start[name(p)] ?? p.start)), found = go() && (await summed(from).catch(() => null));
-    if (found) begun.push([from, found]);
-  }
+  const tried = await Promise.all(starts.map((start) => {
+    const from = problem.map((p) => clamp(p, start[name(p)] ?? p.start));
+    return summed(from).then((found) => [from, found], () => null);
+  }));
+  const begun = tried.filter(Boolean);
   if (!begun.length) return values;
   let [theta, here] = begun.reduce((a, b) => (b[1].squares < a[1].squares ? b : a));
   for (let round = 0; round < ROUNDS && go(); round++) {

@@ -13,6 +13,12 @@ export function stepOf(campaign, step) {
   return `${ladder.find((s) => s.step.startsWith("+")).step === step ? "with" : "and"} ${titleOf(campaign, id)}${tied ? `, or ${tied.length > 2 ? "a" : "its"} rival` : ""}`;
 }
 
+/** What the ranking has of a parameter of an effect, which is of the last model if that has it. */
+export function rankedOf({ diagnosis }, name) {
+  const [, effect, short] = name.split(".");
+  return diagnosis.ranking.find((r) => r.effect === effect)?.parameters[short];
+}
+
 /** A term that the search proposes where no effect suffices, as a row of the ranking; null where there is none. */
 export function proposed({ effects, diagnosis }) {
   const found = diagnosis.leftover?.proposal, record = found && effects.find((e) => e.id === found.term);

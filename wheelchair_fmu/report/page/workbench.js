@@ -24,6 +24,8 @@ const SIZES = {
 };
 const PLACES = { m: "the mass of chair and rider", t_r: "how far the rear wheels are apart", a: "how far the casters' pivots are ahead of the centre of mass", b: "how far the rear axle is behind it", t_f: "how far the casters' pivots are apart" };
 
+const TIMES = { kg: { kg: 1, g: 0.001, lb: 0.45359237 }, m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 } }; // units that a size may have behind it
+
 class Refused extends Error {}
 
 /** The address of this piece of work. The first page has none until one is begun for it. */
@@ -149,15 +151,32 @@ class Workbench {
     return Boolean(campaign) && Object.keys(headers).length > 0 && !Array.isArray(campaign.recording) && !Object.keys(campaign.columns ?? {}).some((name) => known.has(name)) && !Object.keys(headers).some((header) => known.has(header.replace(/\s*\[.*\]\s*$/, "")));
   }
 
+  /** What there is to do while nobody has said what the columns are. */
+  unknown(errors, kinds) {
+    const toggled = ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; };
+    return [h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
+      h("details", { open: this.byHand, ontoggle: toggled }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors))];
+  }
+
+  /** What stops nothing; open where something of it is to be looked at, until the reader closes it. */
+  remarks(remarks, guesses) {
+    const doubted = guesses > 0 || remarks.some((f) => f.severity === "warning" && f.column), toggled = ({ target }) => { this.reading = target.open; };
+    const guessed = guesses ? `, of which ${guesses} to look at: what a file did not say was guessed` : "";
+    return h("details", { open: this.reading ?? doubted, ontoggle: toggled }, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}${guessed}`), causes(remarks));
+  }
+
   showFaults() {
-    const { faults, files, campaign } = this.state, errors = faults.filter((f) => f.severity === "error"), guesses = faults.filter((f) => f.severity === "guess").length, remarks = faults.filter((f) => f.severity !== "error").sort((a, b) => (b.severity === "guess") - (a.severity === "guess"));
+    const { faults, files, campaign, job } = this.state, errors = faults.filter((f) => f.severity === "error");
+    const guesses = faults.filter((f) => f.severity === "guess").length;
+    const remarks = faults.filter((f) => f.severity !== "error").sort((a, b) => (b.severity === "guess") - (a.severity === "guess"));
     const kinds = byCause(errors).size, raw = !Array.isArray(campaign?.recording), unread = files.length > 0 && errors.length > 0 && this.unread;
-    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units"))), read = this.state.job?.kind === "import" && this.state.job.state === "done", by = raw && anew && !read ? ": find out above what is in these files, or mend them by hand." : "."; // to read files anew mends no value that somebody typed
+    // To read files anew mends no value that somebody typed.
+    const anew = errors.length > 0 && (!raw || unread || errors.some((f) => f.column || f.what.includes("Columns and their units")));
+    const read = job?.kind === "import" && job.state === "done";
+    const by = raw && anew && !read ? ": find out above what is in these files, or mend them by hand." : ".";
     const tally = !files.length && !errors.length ? "" : errors.length ? `${kinds} ${kinds > 1 ? "faults" : "fault"} to mend before anything can be concluded${by}` : "These recordings can be read.";
-    if (unread) byId("faults").replaceChildren(h("p", {}, h("b", {}, "Which column is what is not known yet. "), "Say above what your protocol says of the chair, as far as it does, and press “find out”."),
-      h("details", { open: this.byHand, ontoggle: ({ target }) => { this.byHand = target.open; byId("forms").hidden = !target.open; } }, h("summary", {}, `or say it by hand: ${kinds} ${kinds > 1 ? "faults" : "fault"} to mend`), causes(errors)));
-    else byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors),
-      remarks.length ? h("details", { open: this.reading ?? (guesses > 0 || remarks.some((f) => f.severity === "warning" && f.column)), ontoggle: ({ target }) => { this.reading = target.open; } }, h("summary", {}, `${remarks.length} remark${remarks.length > 1 ? "s" : ""}${guesses ? `, of which ${guesses} to look at: what a file did not say was guessed` : ""}`), causes(remarks)) : "");
+    if (unread) byId("faults").replaceChildren(...this.unknown(errors, kinds));
+    else byId("faults").replaceChildren(h("p", {}, h("b", {}, tally)), causes(errors), remarks.length ? this.remarks(remarks, guesses) : "");
     byId("forms").hidden = unread && !this.byHand;
     mark(faults);
     byId("there").hidden = !files.length;
@@ -509,8 +528,6 @@ function sizeOf(field) {
   const times = unit ? TIMES[field.dataset.unit][unit] ?? NaN : 1;
   return Number((decimal(number) * times).toPrecision(12));
 }
-
-const TIMES = { kg: { kg: 1, g: 0.001, lb: 0.45359237 }, m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 } }; // units that a size may have behind it
 
 /** Say beside a size what is wrong with it; is something? */
 function wrongSize(field) {
