@@ -319,6 +319,11 @@ CELL_FAULTS = [
     ),
     ("time goes back", put(100, 0, "0.95"), "run a.csv line 101: time goes back from 0.98 to 0.95 s; remove or sort the rows"),
     ("time twice", put(100, 0, "0.98"), "run a.csv line 101: time 0.98 s is there twice; remove one of the rows"),
+    (
+        "a row that was set back by less than a sample",
+        put(100, 0, "0.979"),
+        "note: run a.csv line 101: a row stands behind a later one, by 0.001 s, and is read in turn; nothing is to be done",
+    ),
     ("time empty", put(100, 0, ""), "run a.csv line 101: the time is empty; fill it in, or remove the row"),
     (
         "unknown unit",
@@ -586,3 +591,13 @@ def test_no_damage_causes_anything_but_faults(campaign, seed):
             read(folder)
     else:
         read(folder)
+
+
+def test_rows_that_a_logger_sent_twice_are_left_out_and_said(campaign):
+    def twice(cells):
+        cells[30:30] = [list(cells[29]), list(cells[29])]
+
+    once = data_fault(campaign, lambda cells: None)
+    assert sorted(set(data_fault(campaign, twice)) - set(once)) == [
+        "note: run a.csv line 31: 2 rows are copies of the one before, with its time, and left out; nothing is to be done"
+    ]

@@ -24,6 +24,7 @@ from .document import Document, Entry, number
 from .formats import open_recording
 from .resampled import Resampled, resampled
 from .series import only, spikes, tells, without
+from .stamps import Stamps, stamps
 
 COARSE = 0.05  # s: the yaw motion of a chair is over in less
 SHORT_GAP = 0.1  # s: an input may be missing for less than this, and is then a straight line
@@ -79,6 +80,7 @@ class Draft(Readings):
     rows: Rows
     kept: np.ndarray  # rows of the file that the cut leaves, (n,)
     whole_time: np.ndarray | None  # s, all rows of the file, by its own clock
+    stamps: Stamps | None  # its rows in the order of these times
     time: np.ndarray | None
     values: Mapping[str, np.ndarray]
     angles: Mapping[str, np.ndarray]  # rad, of the wheels that it tells, without jumps
@@ -96,6 +98,7 @@ class Draft(Readings):
             table=FrameTable(self.file, self.table.headers, frame=pd.DataFrame()),
             rows=Rows({}, None),
             whole_time=None,
+            stamps=None,
             kept=np.empty(0, int),
             resampled={},
         )
@@ -167,7 +170,8 @@ def _converted(
     whole_time = series.pop("time", None)
     length = len(next(iter(rows.values.values()))) if rows.values else 0
     common = None if whole_time is None else whole_time * (1 + part.clock.drift) + part.clock.offset
-    kept = _cut(part.entry, common, length)
+    ordered = None if whole_time is None else stamps(whole_time, rows.values.values())
+    kept = np.arange(length) if common is None or ordered is None else ordered.rows[_cut(part.entry, common[ordered.rows])]
     time = None if common is None else common[kept]
     series = {name: s[kept] for name, s in series.items()}
     angles = {name: series.pop(name) for name in (c.name for c in SOURCES) if name in series}
@@ -196,7 +200,23 @@ def _converted(
         if name in values and time is not None:
             values[name], gaps[name] = bridge(time, values[name])
     return Draft(
-        doc, part, table, bindings, rows, kept, whole_time, time, values, angles, glitched, noise, gaps, slower, spiked, seen
+        doc,
+        part,
+        table,
+        bindings,
+        rows,
+        kept,
+        whole_time,
+        ordered,
+        time,
+        values,
+        angles,
+        glitched,
+        noise,
+        gaps,
+        slower,
+        spiked,
+        seen,
     )
 
 
@@ -233,10 +253,8 @@ def _spikes(time: np.ndarray | None, channels: Mapping[str, np.ndarray]) -> dict
     return {c: dict(zip(at.tolist(), channels[c][at].tolist(), strict=True)) for c, at in places.items() if at.size}
 
 
-def _cut(entry: Entry, time: np.ndarray | None, length: int) -> np.ndarray:
+def _cut(entry: Entry, time: np.ndarray) -> np.ndarray:
     """Rows with from <= time < to, so that adjoining runs share no sample."""
-    if time is None:
-        return np.arange(length)
     keep = np.isfinite(time)
     start, stop = entry.number("from"), entry.number("to")
     if start is not None and stop is not None and start >= stop:

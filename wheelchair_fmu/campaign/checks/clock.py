@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...faults import ERROR, SHOWN, WARNING, Fault, run_fault, some
+from ...faults import ERROR, NOTE, SHOWN, WARNING, Fault, run_fault, some
 from ..draft import COARSE, Draft
 
 LONGEST = 600.0  # s without a sample, over which nobody can foretell where the chair is
@@ -49,6 +49,20 @@ def time_twice(draft: Draft) -> Iterator[Fault]:
     yield from _listed(draft, rows[steps], lambda i: f"time {_time(draft, i):.10g} s is there twice", "remove one of the rows")
 
 
+def copies(draft: Draft) -> Iterator[Fault]:
+    """Rows that a logger sent twice, or not quite in turn: it is said what was done with them."""
+    found = draft.stamps
+    if found is not None and found.copies.size:
+        n, line = len(found.copies), draft.rows.line(int(found.copies[0]))
+        fact = f"{n} {'rows are copies' if n > 1 else 'row is a copy'} of the one before, with its time, and left out"
+        yield run_fault(draft.file, fact, "nothing is to be done", line, severity=NOTE)
+    if found is not None and found.overtaken.size:
+        n, line = len(found.overtaken), draft.rows.line(int(found.overtaken[0]))
+        whose = f"{n} rows stand behind a later one" if n > 1 else "a row stands behind a later one"
+        fact = f"{whose}, by {found.by:.2g} s{' at most' if n > 1 else ''}, and {'are' if n > 1 else 'is'} read in turn"
+        yield run_fault(draft.file, fact, "nothing is to be done", line, severity=NOTE)
+
+
 def uneven(draft: Draft) -> Iterator[Fault]:
     time, rows = _finite(draft)
     steps = np.diff(time)
@@ -78,10 +92,10 @@ def coarse(draft: Draft) -> Iterator[Fault]:
 
 
 def _finite(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
-    """Times that are there, and their rows in the file."""
-    if draft.whole_time is None:
+    """Times that are there, as they are read, and their rows in the file."""
+    if draft.whole_time is None or draft.stamps is None:
         return np.empty(0), np.empty(0, dtype=int)
-    rows = np.flatnonzero(np.isfinite(draft.whole_time))
+    rows = draft.stamps.rows
     return draft.whole_time[rows], rows
 
 
@@ -104,4 +118,12 @@ def _listed(draft: Draft, places: np.ndarray, fact: Callable[[int], str], cure: 
         yield run_fault(draft.file, f"{len(places) - SHOWN} more rows like these", cure, line)
 
 
-CLOCK_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (no_time, empty_time, time_goes_back, time_twice, uneven, coarse)
+CLOCK_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
+    no_time,
+    empty_time,
+    time_goes_back,
+    time_twice,
+    copies,
+    uneven,
+    coarse,
+)
