@@ -122,6 +122,15 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     assert do["lines"][-1].endswith(f"wheelchair add {DRAG}.")
 
 
+@pytest.mark.parametrize(("chance", "hedge"), [(0.61, "probably "), (0.95, "")])
+def test_what_is_not_very_likely_to_matter_is_probably_missing(chance, hedge):
+    less = [{**r, "probability": chance} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
+    diagnosis = told("missing", [DRAG], ranking=less)
+    lead = f"{hedge}one rear wheel that rolls harder than the other"
+    assert tale(diagnosis).cards[0]["lead"] == lead[0].upper() + lead[1:]
+    assert headline(diagnosis, TITLES) == f"Missing from the model: {lead}."
+
+
 def test_what_is_small_is_told_by_how_sure_it_is_that_it_is_small():
     small = [{**r, "probability": 0.03} if r["effect"] == DRAG else r for r in SAMPLE["ranking"]]
     sure = tale(told("small", [DRAG], ranking=small)).cards[1]

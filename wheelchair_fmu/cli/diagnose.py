@@ -18,7 +18,7 @@ from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms, told_at
 from ..report.saving import save
-from ..report.words import helpers, listed, outside, tied, to_measure, verdict_words
+from ..report.words import helpers, listed, outside, probably, tied, to_measure, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -122,7 +122,8 @@ def _aim(d: Diagnosis, separates: Sequence[str]) -> str:
 def _verdict(d: Diagnosis, content: Mapping[str, Any], ids: Mapping[str, str]) -> str:
     if d.verdict == "tie":
         return tied(d.effects, d.ties, ids)
-    effects = listed(d.effects, "or") if d.verdict == "small" else ", ".join(d.effects)  # of several small ones it is one
+    named = [probably(content, e) + e for e in d.effects]
+    effects = listed(named, "or") if d.verdict == "small" else ", ".join(named)  # of several small ones it is one
     return outside(content) if d.verdict == "outside" else SENTENCES.get(d.verdict, "").format(effects=effects)
 
 

@@ -28,7 +28,7 @@ from .told import (
     times_words,
     together_words,
 )
-from .words import listed, probability_words, spoken, strained
+from .words import listed, probability_words, probably, spoken, strained
 
 ORDER = ("first", "second", "third", "fourth")
 MATTERS = {"mark": 1.0, "words": "would matter"}
@@ -79,7 +79,7 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return f"One of {number(len(t.found)).lower()} causes", [sized(t, e) for e in t.found]
     if t.verdict in ("missing", "small") and t.found:
         if len(t.found) == 1:
-            return capital(t.title(t.found[0])), size_lines(t, t.found[0])
+            return capital(probably(t.diagnosis, t.found[0]) + t.title(t.found[0])), size_lines(t, t.found[0])
         return f"{number(len(t.found))} effects", [*(sized(t, e) for e in t.found), *together_words(t)]
     if t.verdict == "outside":
         return _outside(t)

@@ -14,6 +14,9 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a p below which the data show something like an effect that was not chosen
+LIKELY = (
+    0.9  # chance of being large enough to matter, below which a cause is "probably" it (very likely: Mastrandrea et al. 2010)
+)
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
 NOTHING = "Something is left that no effect in the catalogue explains."
 AGAIN = " measured again"  # the end of a next experiment that is no manoeuvre but values of the chair
@@ -36,16 +39,23 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     """The verdict in one sentence; `titles` say what each effect is, `records` what each parameter means."""
     if diagnosis["verdict"] == "tie":
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
-    names = [title_of(e, titles) for e in diagnosis["effects"]]
+    names = [probably(diagnosis, e) + title_of(e, titles) for e in diagnosis["effects"]]
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     return {
         "missing": f"Missing from the model: {_all_of(names)}.",
-        "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
+        "small": f"The model is adequate: {listed([title_of(e, titles) for e in diagnosis['effects']], 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found, but many effects could be of a size that matters and these runs would not show them.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
+
+
+def probably(diagnosis: Mapping[str, Any], effect: str) -> str:
+    """ "probably ", of an effect that is missing, where it is not very likely to be large enough to matter."""
+    rows = (row for row in diagnosis["ranking"] if row["effect"] == effect)
+    chance = next((row.get("probability") for row in rows), None)
+    return "probably " if diagnosis["verdict"] == "missing" and chance is not None and chance < LIKELY else ""
 
 
 def _all_of(names: Sequence[str]) -> str:
