@@ -35,7 +35,7 @@ body{color:#1a1a1a;background:#fff}
 h1{font-size:1.5rem}li{margin:.2rem 0}.error{color:#a01010}.warning{color:#7a5200}
 .picture{overflow-x:auto}svg{max-width:100%;min-width:52rem;height:auto}
 @media(prefers-color-scheme:dark){body{background:#16181c;color:#e8e8e8}.error{color:#ff9d9d}.warning{color:#ffd28a}
-svg{background:#fff}}"""
+svg{background:#fff;filter:invert(.91) hue-rotate(180deg)}}"""
 
 
 LEGEND = "Each row is a channel, each column a run; a row has one scale. Crosses are readings that were left out."
