@@ -168,7 +168,9 @@ def test_what_is_in_the_model_and_too_small_to_matter_is_told():
     """The last step has it in as well, so its error is no work of what was found alone."""
     slight = [{**r, "verdict": "small"} if r["effect"] == LEAN else r for r in SAMPLE["ranking"]]
     ladder = [*SAMPLE["ladder"][:2], {**SAMPLE["ladder"][2], "step": f"+{LEAN}"}, SAMPLE["ladder"][2]]
-    screens = tale(told("missing", [DRAG], ranking=slight, ladder=ladder)).screens
+    story = tale(told("missing", [DRAG], ranking=slight, ladder=ladder))
+    screens, fall = story.screens, story.cards[1]["lines"][0]
+    assert fall.endswith(" noise alone gives, with rear wheels that lean put in as well, too little of it to matter.")
     assert "In the model as well, at a size too small to matter: rear wheels that lean." in screens[2]["lines"]
     answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == LEAN)
     assert answer.startswith("It is in the model, at ") and "The error" not in answer

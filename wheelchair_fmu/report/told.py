@@ -164,7 +164,13 @@ def fall_words(t: Told) -> str:
             return f"On {t.runs} the error {moves} times what noise alone gives: {shows}."
         return f"On {t.runs} the error is {after:.2f} times what noise alone gives{where}."
     verb = "falls" if after < before else "rises"
-    return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives."
+    return f"On {t.runs} the error {verb} from {before:.2f} to {after:.2f} times what noise alone gives{_beside_words(t)}."
+
+
+def _beside_words(t: Told) -> str:
+    """What else is in the model at the end: a fall is not the work of what was found alone."""
+    slight = [t.title(e) for e in t.slightly_in] if t.found else []
+    return f", with {listed(slight, 'and')} put in as well, too little of it to matter" if slight else ""
 
 
 def forces_words(t: Told) -> list[str]:
