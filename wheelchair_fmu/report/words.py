@@ -39,11 +39,12 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     """The verdict in one sentence; `titles` say what each effect is, `records` what each parameter means."""
     if diagnosis["verdict"] == "tie":
         return tied(diagnosis["effects"], diagnosis["ties"], titles)
-    names = [probably(diagnosis, e) + title_of(e, titles) for e in diagnosis["effects"]]
+    names = [title_of(e, titles) for e in diagnosis["effects"]]
+    missing = [probably(diagnosis, e) + name for e, name in zip(diagnosis["effects"], names, strict=True)]
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     return {
-        "missing": f"Missing from the model: {_all_of(names)}.",
-        "small": f"The model is adequate: {listed([title_of(e, titles) for e in diagnosis['effects']], 'or')} is there, but too small to matter.",
+        "missing": f"Missing from the model: {_all_of(missing)}.",
+        "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found, but many effects could be of a size that matters and these runs would not show them.",
         "outside": outside(diagnosis, records).removesuffix(".")
