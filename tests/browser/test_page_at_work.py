@@ -296,6 +296,7 @@ def test_without_what_the_model_needs_one_sentence_and_what_is_stored(browser, r
     assert f"{TOP['heldout']:.2f}" in page.text_content("#staircase svg")
     assert page.locator("#forest svg").count() == 1
     assert page.is_hidden("#try") and page.locator(".card").count() == 3
+    assert page.locator(".stage .guesses li").count() > 1
     assert page.is_hidden("#link") and page.is_hidden(".skip") and page.is_hidden("text=where the two curves part")
     context.close()
     assert not complaints

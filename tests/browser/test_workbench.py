@@ -397,6 +397,12 @@ def test_a_column_can_be_turned_round(page: Any) -> None:
         assert entry == ({"column": "yaw_rate [rad/s]", "sign": -1} if on else None)
         differ = "() => workbench.state.faults.some((f) => f.what.includes('sign of yaw_rate'))"
         assert page.evaluate(differ) == on
+    page.get_by_label("yaw_rate [rad/s] turned round").check()
+    for unit in ("deg/s", "rad/s"):  # and back to what the header says
+        page.get_by_label("unit of yaw_rate [rad/s]").fill(unit)
+        page.get_by_label("unit of yaw_rate [rad/s]").press("Tab")
+        page.wait_for_function("() => workbench.saving === 0")
+        assert page.evaluate("workbench.state.campaign.columns.yaw_rate.sign") == -1
 
 
 def test_a_signal_that_goes_to_another_column_is_said(page: Any, tmp_path: Path) -> None:

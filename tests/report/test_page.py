@@ -183,6 +183,13 @@ def test_every_module_is_in_the_import_map():
     assert imported == set(MODULES) - {"app"}
 
 
+def test_every_colour_of_the_page_has_one_on_paper():
+    text = asset("draw.js")
+    names = re.search(r"const NAMES = \[(.*?)\]", text)[1]
+    print_colours = re.search(r"export const PRINT = \{(.*?)\};", text, re.DOTALL)[1]
+    assert set(re.findall(r'"([\w-]+)"', names)) <= set(re.findall(r'"?([\w-]+)"?:', print_colours))
+
+
 def test_the_plotting_library_comes_with_its_licence():
     html = page({"name": "a"}, "", [], Story([], []))
     assert "uPlot" in html and "Permission is hereby granted" in html

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from wheelchair_fmu.report.preview import ABREAST, LEGEND, NOTHING, Run, Signal, figures, page
+from wheelchair_fmu.campaign import CHANNELS
+from wheelchair_fmu.report.preview import ABREAST, LEGEND, NOTHING, Run, Signal, _called, figures, page
 
 
 def test_what_is_wrong_alike_in_many_places_is_said_once():
@@ -35,3 +36,7 @@ def test_a_channel_has_one_scale_in_all_pictures():
     assert len(scales) == 1
     low, high = scales.pop()
     assert low < 0 and high > (ABREAST + 2) * np.sin(1)
+
+
+def test_no_two_channels_have_one_name():
+    assert len({_called(c.name) for c in CHANNELS}) == len(CHANNELS)

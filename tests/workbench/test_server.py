@@ -245,7 +245,7 @@ def test_an_effect_of_ones_own_joins_the_catalogue(client):
     state = client.post(f"{client.base}/effects", json=effect).json()
     assert {"id": "rubbing_brake", "title": "a brake that rubs", "own": True} in state["effects"] and not state["remark"]
     again = client.post(f"{client.base}/effects", json={**effect, "title": "a worn brake"}).json()
-    assert again["remark"] == "rubbing_brake was “a brake that rubs” before, which it replaces."
+    assert again["remark"] == "This replaces your effect rubbing_brake, “a brake that rubs”."
     for change, why in (
         ({"id": "x y"}, "is no name for an effect"),
         ({"id": "toe_misalignment"}, "already"),

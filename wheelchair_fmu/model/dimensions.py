@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from inspect import signature
-from math import log
+from math import log, prod
 from typing import Any
 
 import casadi as cs
@@ -76,7 +76,7 @@ def _refuse_unreadable(text: str, to: str, law: Callable[..., Any], choice: Choi
     try:
         assemble(choice, [Effect("typed", "typed", (q,), (adds(to, law),))])
     except ShapeError as error:
-        given, wanted = error.given[0], error.wanted[0]
+        given, wanted = prod(error.given), prod(error.wanted)
         many = "one value" if given == 1 else f"{given} values"
         raise UsageError(
             f"{shown(text)} has {many}, where {to} has {wanted}; take one of them, as in N_r[0], or all, as in sum1(N_r)"

@@ -13,8 +13,6 @@ PLAIN: Exponents = (0.0, 0.0, 0.0)
 OF_NUMBERS = ("sin", "cos", "tan", "atan", "exp", "log", "tanh")  # functions of a plain number
 OF_LIKES = ("atan2", "fmin", "fmax", "min", "max", "magnitude", "direction")  # of two of one unit
 RATIOS = ("atan2", "direction")  # whose value is a plain number
-
-
 NUMBERS = "a number may have its unit behind it, as in 0.1"
 
 
@@ -91,17 +89,35 @@ class _Units:
             return
         said = f"{self.told(left)} and {self.told(right)} {what}"
         for one, other in ((left, right), (right, left)):
-            if self.of(one) == PLAIN and _has_number(one):
+            if self.of(one) == PLAIN and self._has_bare_number(one):
                 raise _Unlike(f"{said}; {NUMBERS} [{self._unit(other)}]")
-        ratio = self.named(*map(round, _sum(b, a, -1.0)))
-        raise _Unlike(f"{said}; multiply {self._text(left)} by something in {ratio}")
+        ratio = _sum(b, a, -1.0)
+        whole = all(exponent == round(exponent) for exponent in ratio)
+        raise _Unlike(
+            f"{said}; multiply {self._text(left)} by something in {self.named(*map(round, ratio))}" if whole else said
+        )
 
     def _plain(self, node: ast.expr, what: str) -> None:
         if self.of(node) == PLAIN:
             return
         text, unit = self._text(node), self._unit(node)
-        cure = f"; {NUMBERS} [{unit}]" if _has_number(node) else ""
+        cure = f"; {NUMBERS} [{unit}]" if self._has_bare_number(node) else ""
         raise _Unlike(f"{what} takes a plain number, and {text} is in {unit}: divide it by something in {unit}{cure}")
+
+    def _has_bare_number(self, node: ast.expr) -> bool:
+        """Has a part a number without a unit that may be given one, which an exponent and an index may not?"""
+        match node:
+            case ast.Constant():
+                return self.numbers.get(node.col_offset) is None
+            case ast.BinOp(left=left, op=ast.Pow()):
+                return self._has_bare_number(left)
+            case ast.BinOp(left=left, right=right):
+                return self._has_bare_number(left) or self._has_bare_number(right)
+            case ast.UnaryOp(operand=inner) | ast.Subscript(value=inner):
+                return self._has_bare_number(inner)
+            case ast.Call(args=arguments):
+                return any(map(self._has_bare_number, arguments))
+        return False
 
     def told(self, node: ast.expr) -> str:
         """A part with its unit."""
@@ -114,10 +130,6 @@ class _Units:
         if isinstance(node, ast.Name) and node.id in self.known:
             return self.known[node.id].unit.name
         return self.named(*map(round, self.of(node)))
-
-
-def _has_number(node: ast.expr) -> bool:
-    return any(isinstance(part, ast.Constant) for part in ast.walk(node))
 
 
 def _floats(exponents: tuple[int, int, int]) -> Exponents:

@@ -58,6 +58,7 @@ def content(
         "landscape": {"profiles": [], "pair": None} if leads else landscape(models, diagnosis),
         "runs": [_run(r, campaign, colour, leads) for r in campaign.runs],
         "channels": [_quantity(c.name, c.unit, c.meaning) for c in CHANNELS if c.name in measured],
+        "next_channel": _next_channel(diagnosis),
         "outputs": {c.name: c.fmu for c in CHANNELS},
         "drifting": [c.name for c in CHANNELS if c.drifts],
         "body": sorted(BODY),
@@ -208,6 +209,13 @@ def _parameter(p: Parameter) -> dict[str, Any]:
         "delta": p.smallest_interesting,
         "source": p.source,
     }
+
+
+def _next_channel(diagnosis: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The channel in which to look at the next experiment, which this campaign may not have measured; None without one."""
+    shows = (diagnosis.get("next_experiment") or {}).get("shows")
+    channel = next((c for c in CHANNELS if shows and c.name == shows["channel"]), None)
+    return None if channel is None else _quantity(channel.name, channel.unit, channel.meaning)
 
 
 def _quantity(name: str, unit: Unit, meaning: str) -> dict[str, Any]:

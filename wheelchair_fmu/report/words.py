@@ -26,9 +26,14 @@ CHANNELS = {
     "yaw_rate": "the yaw rate",
     "a_x": "the forward acceleration",
     "a_y": "the sideways acceleration",
+    "u": "the forward speed",
+    "v": "the sideways speed",
     "x": "the position along x",
     "y": "the position along y",
     "yaw": "the heading",
+    "rider.s": "the body's motion forward",
+    "rider.momentum": "the body's momentum",
+    "rider.force": "the force on the body",
 }
 UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
 CENTRE = re.compile(r"\bCM\b")

@@ -55,8 +55,7 @@ def told(fault: Fault) -> dict[str, Any]:
     what = fact if cure == NOTHING else f"{fact}; {cure}"
     line = "" if fault.line is None or (fault.in_run and fault.line == 1) else f" line {fault.line}"
     column = f" column {short(fault.column)}" if fault.column is not None else ""
-    in_file = fault.in_run or (line and not fault.place)  # what is mended in a form stands beside it
-    where = f"{fault.file}{line}{column}" if in_file else ""
+    where = f"{fault.file}{line}{column}" if fault.in_run or line else ""
     return {
         "text": f"{where}: {what}" if where else what,
         "what": what,

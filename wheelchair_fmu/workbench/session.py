@@ -317,7 +317,7 @@ class Session:
         file, before = self.effects / f"{id}.py", self.own_effects().get(id)
         checked(((str(file), source.encode()),))
         write(file, source.encode())
-        return f"{id} was “{before.title}” before, which it replaces." if before else ""
+        return f"This replaces your effect {id}, “{before.title}”." if before else ""
 
     def catalogue(self) -> dict[str, Effect]:
         return {**bundled(), **self.own_effects()}

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...campaign import CHANNELS, Run
 from ...errors import SimulationError
-from ..estimation.fit import Fit, prior_of
+from ..estimation.fit import Fit, Problem, prior_of
 from ..estimation.inverse import inverse
 from ..estimation.statistics import decisive
 from ..evidence.likelihood import Likelihood
@@ -57,10 +57,10 @@ def separate(
         r, S = evidence.r, evidence.S
         g = S.T @ r
         towards = inverse(S.T @ S + inverse(other.covariance)) @ g  # as near as the second may come
-        odds.append((float(r @ r - g @ towards), experiment, towards))
+        odds.append((float(r @ r - g @ towards), experiment, there, run, towards))
     if not odds:
         return None
-    gain, best, towards = max(odds, key=lambda o: o[0])
+    gain, best, there, run, towards = max(odds, key=lambda o: o[0])
     repeats = int(np.ceil(needed / max(gain, 1e-9)))
     if repeats > MOST_REPEATS:
         return None
@@ -69,14 +69,16 @@ def separate(
         "separates": list(effects),
         "repeats": repeats,
         "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; {needed:.0f} decide",
-        "shows": _shows(*_imagined(likelihood, best, one), other, towards, effects),
+        "shows": _shows(there, run, other, towards, effects),
     }
 
 
 def _shows(there: Likelihood, run: Run, other: Fit, towards: np.ndarray, effects: tuple[str, str]) -> dict[str, Any] | None:
     """What to look at: the channel in which the run's readings, by the first model, part most from what the second would have
     once it has been fitted to them, and both, in SI units, with the noise of one reading. None where that cannot be run."""
-    values = {**other.values, **{n: other.values[n] + float(d) for n, d in zip(other.names, towards, strict=True)}}
+    problem = Problem(there, other.names)
+    moved = {n: other.values[n] + float(d) for n, d in zip(other.names, towards, strict=True)}
+    values = {**other.values, **problem.values(problem.inside(moved))}
     try:
         (seen,) = there.evidence([run], values).runs
     except SimulationError:
@@ -87,7 +89,7 @@ def _shows(there: Likelihood, run: Run, other: Fit, towards: np.ndarray, effects
     return {
         "channel": channel,
         "time": run.time[some].tolist(),
-        "readings": {e: values[some].tolist() for e, values in zip(effects, readings, strict=True)},
+        "readings": {e: series[some].tolist() for e, series in zip(effects, readings, strict=True)},
         "noise": float(there.noise_model.sd[channel]),
     }
 

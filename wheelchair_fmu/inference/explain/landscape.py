@@ -36,8 +36,8 @@ def landscape(models: Models, told: Mapping[str, Any]) -> dict[str, Any]:
     A profile has `parameter`, `estimate`, `values` (SI) and their `heights`, and `level`, below which 95 % lie. A pair has
     `effects` and `parameters` of two rivals, `best` (2,), `axes` (2, 2), whose columns are the two directions of the grid in
     SI units, the grid's steps `about` (n,) along both, `heights` (n, n) by rows of the second, `level`, below which the
-    `share` lies, `middle`, below which 50 % lie, and the heights where either is in `alone`. There are neither where the last
-    model cannot be simulated; a height is None where no model can be.
+    `share` lies, `middle`, below which 50 % lie, and `alone_heights` (2,), where one is in and not the other. There are neither
+    where the last model cannot be simulated; a height is None where no model can be.
     """
     factory = models.factory
     effects, values = [e for e in told["effects"] if e in factory.catalogue], told["models"][-1]["values"]
@@ -118,7 +118,7 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         inside = all(r.lower <= v <= r.upper for r, v in zip(records, point, strict=True))
         return (misfit(point) - found.misfit) * shrunk if inside else np.inf
 
-    heights = _above(np.array(parallel_map(height, grid)))
+    alone, heights = np.split(_above(np.array(parallel_map(height, [*_alone(told, pair), *grid]))), [len(pair)])
     level = models.policy.tied if any({one, other} <= set(group) for group in told["ties"]) else value_beyond(1 - LEVEL, 2)
     return {
         "effects": [one, other],
@@ -130,7 +130,7 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
         "level": level,
         "share": 1 - chance_beyond(level, 2),
         "middle": value_beyond(0.5, 2),
-        "alone": [finite(height(size)) for size in _alone(told, pair)],
+        "alone_heights": [finite(float(h)) for h in alone],
     }
 
 

@@ -75,7 +75,7 @@ class App {
     byId("plea").hidden = false;
     byId("plea").textContent = `This browser cannot run the model (${why}); everything that the diagnosis stored stands below.`;
     byId("try").hidden = true;
-    for (const stage of document.querySelectorAll(".stage")) stage.replaceChildren();
+    for (const stage of document.querySelectorAll(".stage")) stage.replaceChildren(...stage.querySelectorAll(".guesses, .choices-list, .answer"));
     this.figures.redraw();
   }
 
@@ -221,7 +221,9 @@ class App {
     const names = [from, to].map((s) => stepOf(this.campaign, s)), rows = this.physical().map((r) => ({ ...r, ends: names.map((n) => r.values.find((v) => v.step === n)) }));
     const most = rows.filter((r) => r.ends.every((v) => v?.value)).sort((a, b) => b.ends[0].times - b.ends[1].times - (a.ends[0].times - a.ends[1].times))[0];
     if (!most || most.ends[0].times <= most.ends[1].times) return;
-    const words = `There the ${most.channel} is missed by ${most.ends.map((v) => beside(significant(v.value, 2), most.unit)).join(" before and ")} after.`;
+    const [was, now] = most.ends.map((v) => beside(significant(v.value, 2), most.unit));
+    if (was === now) return;
+    const words = `There the ${most.channel} is missed by ${was} before and ${now} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
     [...card.querySelectorAll("p:not(.lead)")].find((p) => /kept back|fitted to/.test(p.textContent))?.after(h("p", { class: "physical" }, words));
@@ -373,9 +375,13 @@ class App {
   }
 
   /** Settings that are kept: what of them is not known is simulated beside. */
-  async pinned() {
+  pinned() {
     this.pins.show({ values: this.values, errors: this.now });
     this.write();
+    return (this.pinning = (this.pinning ?? Promise.resolve()).then(() => this.simulatedPins())); // what one has asked for, the next has
+  }
+
+  async simulatedPins() {
     for (const one of this.pins.kept) {
       one.results ??= [];
       const { run } = this.shown;

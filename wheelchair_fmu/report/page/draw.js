@@ -8,7 +8,8 @@ const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "
 /** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
 export const PRINT = {
   ink: "#111111", faint: "#505050", line: "#d9d9d9", paper: "#ffffff", measured: "#767676", model: "#0072b2", before: "#9a6fb0",
-  error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", print: true,
+  error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", "pin-a": "#7a4b1e", "pin-b": "#66700a",
+  "pin-c": "#b3134f", print: true,
 };
 
 const WRITTEN = "system-ui, 'Helvetica Neue', Arial, sans-serif";

@@ -62,7 +62,7 @@ const isChosen = (row, { diagnosis }) => diagnosis.effects.includes(row.effect) 
 
 /** What became of an effect, in words. */
 function became(row, parameters, campaign) {
-  const { diagnosis } = campaign, shows = row.p < SEEN || parameters.some(([, v]) => Math.abs(v.estimate) > PLAIN * v.se);
+  const { diagnosis } = campaign, shows = row.p < SEEN || parameters.some(([, v]) => v.se !== null && Math.abs(v.estimate) > PLAIN * v.se);
   if (shows && !isChosen(row, campaign) && UNCHOSEN.includes(row.verdict)) {
     if (parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta)) return VERDICTS.small;
     return diagnosis.effects.length || diagnosis.leftover?.proposal ? "another explains it better" : "not chosen";

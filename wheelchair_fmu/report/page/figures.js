@@ -157,7 +157,7 @@ export class Figures {
 
   joined(joint) {
     const sizes = joint.parameters.map((n) => this.sizeOf(n)), alone = joint.parameters.map((n) => rankedOf(this.campaign, n)?.estimate ?? NaN);
-    const [odds] = this.campaign.diagnosis.odds ?? [], far = joint.parameters.map((n) => n.split(".")[1]).find((e, k) => joint.alone?.[k] > joint.level && odds?.[e]);
+    const [odds] = this.campaign.diagnosis.odds ?? [], far = joint.parameters.map((n) => n.split(".")[1]).find((e, k) => joint.alone_heights?.[k] > joint.level && odds?.[e]);
     const unlikely = far ? ` “${capital(titleOf(this.campaign, far))}” alone lies outside of it, so that these runs speak against it, but by ${chance(1 - odds[far])} to ${chance(odds[far])} only: other runs of the kind might not.` : "";
     const drawn = { ...joint, alone, names: sizes.map((s) => s.name), deltas: sizes.map((s) => s.record.delta),
       bounds: sizes.map(({ record: { lower, upper, delta } }) => [(lower ?? -Infinity) / delta, (upper ?? Infinity) / delta]) };

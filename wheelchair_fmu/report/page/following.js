@@ -10,7 +10,7 @@ const LEAST = 0.6; // of an axis of differences either side of zero, noise = 1
 
 /** What a figure says of the experiment, or null where there is nothing to draw. */
 export function following(campaign, subject) {
-  const told = campaign.diagnosis.next_experiment, shows = told?.shows, record = campaign.channels.find((c) => c.name === shows?.channel);
+  const told = campaign.diagnosis.next_experiment, shows = told?.shows, record = campaign.channels.find((c) => c.name === shows?.channel) ?? campaign.next_channel;
   if (!record) return null;
   const { time, noise } = shows, [first, second] = Object.entries(shows.readings), names = [first, second].map(([id]) => `with ${titleOf(campaign, id)}`), factor = record.display[0]?.factor ?? 1;
   const scaled = [first, second].map(([, values]) => values.map((v) => v * factor)), apart = first[1].map((v, i) => (v - second[1][i]) / noise), [low, high] = extent(apart), most = Math.max(LEAST, -low, high);

@@ -37,7 +37,7 @@ const wrong = (of) => h("small", { class: "wrong", ...of });
 
 /** Put what is wrong, or to be looked at, beside what it is of. */
 export function mark(faults) {
-  const told = faults.filter((f) => f.severity !== "note" && (f.severity !== "warning" || f.column));
+  const told = faults.filter((f) => (f.severity === "warning" ? Boolean(f.column) : f.severity !== "note"));
   for (const place of document.querySelectorAll("#forms .wrong")) {
     const { column, at } = place.dataset, files = place.dataset.files?.split("\n") ?? [];
     const of = told.filter((f) => (at ? f.at === at : files.includes(f.file) && (f.column ?? undefined) === column)), bad = of.some((f) => f.severity === "error"), said = [...new Set(of.map((f) => f.what))];
@@ -126,7 +126,7 @@ function columnRow(bench, header, place, given, options, record) {
   const derived = channel && !(channel in options) ? { [channel]: `${channelOf(channel)}, from which other signals are worked out` } : {};
   const which = select(`channel of ${header}${place.name ? ` of ${place.name}` : ""}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
-  const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${header}${place.name ? ` of ${place.name}` : ""} turned round`, onchange: () => bench.save((c) => turn(c, place, header, bare, channel, turned.checked)) });
+  const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${header}${place.name ? ` of ${place.name}` : ""} turned round`, onchange: () => { const now = which.value; return now && bench.save((c) => turn(c, place, header, bare, now, turned.checked)); } });
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
   return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, OF_LEFT.includes(channel) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
@@ -150,7 +150,7 @@ const shown = (value) => significant(Number(value.toPrecision(3)), 3);
 function map(content, place, header, bare, own, channel, unit, radius) {
   const all = place.of(content), before = all[channel], other = before && (before.column ?? before), was = Object.values(all).find((v) => (v.column ?? v) === header);
   for (const [name, value] of Object.entries(all)) if ((value.column ?? value) === header) delete all[name];
-  if (channel && (place.explicit || channel !== bare || unit !== own || radius)) {
+  if (channel && (place.explicit || channel !== bare || unit !== own || radius || was?.sign < 0)) {
     all[channel] = { ...(typeof was === "object" ? was : {}), column: header };
     if (unit && unit !== own) all[channel].unit = unit;
     else delete all[channel].unit;
@@ -162,10 +162,10 @@ function map(content, place, header, bare, own, channel, unit, radius) {
 
 /** Writes that what is positive in `header` is negative in the channel, or is not. */
 function turn(content, place, header, bare, channel, on) {
-  const all = place.of(content), was = all[channel], entry = typeof was === "object" ? was : { column: was ?? header };
-  all[channel] = { ...entry, sign: -1 };
-  if (!on) delete all[channel].sign;
-  if (!on && !place.explicit && channel === bare && Object.keys(all[channel]).length === 1) delete all[channel]; // as its header says
+  const all = place.of(content), was = all[channel], { sign: _, ...rest } = typeof was === "object" ? was : { column: was ?? header };
+  if (on) all[channel] = { ...rest, sign: -1 };
+  else if (!place.explicit && channel === bare && Object.keys(rest).length === 1) delete all[channel]; // as its header says
+  else all[channel] = rest;
   if (!place.explicit && Object.keys(all).length === 0) delete content.columns;
 }
 

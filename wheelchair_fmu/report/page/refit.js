@@ -17,11 +17,14 @@ export async function refit(pool, campaign, starts, names, go = () => true) {
     const parts = await Promise.all(runs.map((run) => pool.later({ run, values: at(x), slopes: steps }, true)));
     return total(parts, problem, x);
   };
-  const tried = await Promise.all(starts.map((start) => {
+  const begun = [];
+  let lost = null;
+  for (const start of starts) {
+    if (!go()) break;
     const from = problem.map((p) => clamp(p, start[name(p)] ?? p.start));
-    return summed(from).then((found) => [from, found], () => null);
-  }));
-  const begun = tried.filter(Boolean);
+    await summed(from).then((found) => begun.push([from, found]), (error) => { lost = error; });
+  }
+  if (!begun.length && lost) throw lost;
   if (!begun.length) return values;
   let [theta, here] = begun.reduce((a, b) => (b[1].squares < a[1].squares ? b : a));
   for (let round = 0; round < ROUNDS && go(); round++) {

@@ -12,6 +12,7 @@ const LOST = 2000; // ms between looks where the last one had no answer
 const SLOW = 250; // ms after which it is said that an answer is waited for
 const STEPS = { import: 4, calibrate: 1, diagnose: 14, add: 5, try: 5 }; // of a usual one, as long as none has been seen; to calibrate also one for each run
 const OF_LABS = 90; // steps of a usual diagnosis where several devices recorded, whose floors and clocks are found as well
+const LONGER = 2; // times what was said to be left, from which it says nothing more
 const FEW_STEPS = 3; // before which nobody can tell how long the rest takes
 const GONE = "The workbench does not answer. Is it still running? Start it again by “wheelchair workbench” and open the address that it prints: your work is kept.";
 const TYPING = "q is the size that is estimated. A number may have its unit behind it, as in -q * tanh(u / 3 [km/h]).";
@@ -74,6 +75,7 @@ async function tried(act) {
 class Workbench {
   before = Promise.resolve();
   saving = 0; // changes of forms that are on their way
+  waits = new Set(); // {words, began}: what is waited for
 
   async open() {
     this.listen();
@@ -83,8 +85,9 @@ class Workbench {
   /** Ask the server for something that answers with the new state, and show it all. One after the other: an answer that was
    *  overtaken on its way would show an older state over a newer one. */
   take(act, doing = "Looking at the recordings …") {
-    const late = setTimeout(() => this.waiting(doing), SLOW);
-    return this.queued(() => this.taken(act), () => { clearTimeout(late); this.waiting(""); });
+    let waits = null;
+    const late = setTimeout(() => { waits = this.waiting(doing); }, SLOW);
+    return this.queued(() => this.taken(act), () => { clearTimeout(late); waits?.ended(); });
   }
 
   /** Do something once all that was asked before is done, and then what `ends` it. */
@@ -94,11 +97,13 @@ class Workbench {
     return mine;
   }
 
-  /** That an answer is waited for, where it is not there at once. */
-  waiting(doing) {
-    this.doing = doing;
-    document.body.toggleAttribute("aria-busy", Boolean(doing));
-    if (this.state) this.showDock(this.state.job);
+  /** That an answer is waited for, where it is not there at once, until that has `ended`; `tell` says for how long. */
+  waiting(words) {
+    const one = { words, began: Date.now() };
+    this.waits.add(one);
+    const tell = () => { document.body.toggleAttribute("aria-busy", this.waits.size > 0); if (this.state) this.showDock(this.state.job); };
+    tell();
+    return { tell, ended: () => { this.waits.delete(one); tell(); } };
   }
 
   async taken(act) {
@@ -275,19 +280,19 @@ class Workbench {
 
   /** What is going on, always in sight; what came of it, until it is put away. */
   showDock(job) {
-    const running = job?.state === "running", waits = Boolean(this.doing) && !running, news = job && !running && (this.watched || job.state === "failed") && this.away !== ended(job);
+    const running = job?.state === "running", [doing] = running ? [] : [...this.waits].slice(-1), waits = Boolean(doing), news = job && !running && (this.watched || job.state === "failed") && this.away !== ended(job);
     const dock = byId("dock"), [bar, words] = byId("progress").children, kept = !told.hidden && told.parentElement === dock;
     dock.hidden = !running && !waits && !news && !kept;
     dock.dataset.state = running || waits ? "running" : job?.state ?? "";
     bar.hidden = kept || (!running && !waits);
     bar.removeAttribute("value");
-    write(words, kept ? "" : running ? this.progressed(job, bar) : waits ? this.doing : news ? this.came(job) : "");
+    write(words, kept ? "" : running ? this.progressed(job, bar) : waits ? spent(doing) : news ? this.came(job) : "");
     byId("cancel").hidden = !running;
     byId("shut").hidden = running || waits;
     const to = news && job.state === "done" ? SEE[job.kind] : null;
     byId("see").hidden = !to;
     if (to) [byId("see").href, byId("see").textContent] = to;
-    write(byId("said"), running ? this.plain(job.lines.at(-1) ?? "starting") : words.textContent);
+    write(byId("said"), running ? this.plain(job.lines.at(-1) ?? "starting") : waits ? doing.words : words.textContent);
     document.title = [running ? `${capital(job.kind)} …` : "", byId("name").textContent, "wheelchair workbench"].filter(Boolean).join(" – ");
   }
 
@@ -296,10 +301,10 @@ class Workbench {
     const several = Array.isArray(this.state.campaign?.recording), first = kind === "diagnose" && several ? OF_LABS : STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0);
     const many = usual?.steps ?? first, length = usual?.seconds ?? (steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
     if (usual || (many && steps <= many)) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
-    if (steps <= 1) this.left = Infinity;
-    this.left = length ? Math.min(this.left ?? Infinity, length - seconds) : this.left; // it never says more than before
+    const left = length ? length - seconds : Infinity, least = this.left = steps <= 1 ? left : Math.min(this.left ?? Infinity, left); // it says no more than before,
+    const told = left < LONGER * least ? least : Infinity; // and nothing once that is far too little
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
-      late ? usual ? "longer than the last time" : "these recordings take longer than most" : this.left >= 1 && this.left < Infinity ? `about ${whole(this.left)} left` : ""].filter(Boolean).join(" · ");
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : told >= 1 && told < Infinity ? `about ${whole(told)} left` : ""].filter(Boolean).join(" · ");
   }
 
   /** What came of a job, in a sentence. */
@@ -389,10 +394,11 @@ class Workbench {
     this.away = null;
     this.showJob({ kind, state: "running", lines: [], commands: [], steps: 0, seconds: 0, usual: null, result: null });
     const state = await this.take(() => send("POST", "jobs", { kind, ...more }));
-    if (!state) this.showJob(was);
-    const now = state ? null : await ask("state").catch(() => null); // another window may have begun something
-    if (now) this.show(now);
-    return state;
+    if (state) return state;
+    this.showJob(was);
+    const now = async () => { const other = await ask("state").catch(() => null); if (other) this.show(other); };
+    await this.queued(now, () => {}); // another window may have begun something
+    return null;
   }
 
   /** Take the files of a run out, one after the other. */
@@ -412,9 +418,8 @@ class Workbench {
 
   /** Hand out a file that the server may have to make first. */
   async export(name, making) {
-    const button = document.activeElement, began = Date.now(), tell = () => this.waiting(`${making} ${whole((Date.now() - began) / 1000)} so far`), ticking = making ? setInterval(tell, 1000) : null;
+    const button = document.activeElement, waits = making ? this.waiting(making) : null, ticking = making ? setInterval(waits.tell, 1000) : null;
     byId("taken").textContent = "";
-    if (making) tell();
     button.disabled = true;
     const done = await tried(async () => {
       const response = await fetch(`${await place}/export/${name}`, { headers: { "x-workbench": "1" } });
@@ -422,7 +427,7 @@ class Workbench {
       return response.blob();
     });
     clearInterval(ticking);
-    if (making) this.waiting("");
+    waits?.ended();
     button.disabled = false;
     if (document.activeElement === document.body) button.focus({ preventScroll: true });
     if (done) save(name, done);
@@ -512,6 +517,12 @@ class Workbench {
   }
 }
 
+/** What is waited for, and for how long where it takes seconds. */
+function spent({ words, began }) {
+  const seconds = (Date.now() - began) / 1000;
+  return seconds < 1 ? words : `${words} ${whole(seconds)} so far`;
+}
+
 const sizeField = (name) => byId("lab").querySelector(`[name=${name}]`);
 
 /** A field has what the campaign says, unless the reader has written something else. */
@@ -525,7 +536,7 @@ function follow(field, value) {
 function sizeOf(field) {
   const [, number, unit] = field.value.trim().match(/^(.*?)\s*([a-z]*)$/i);
   if (!number && !unit) return null;
-  const times = unit ? TIMES[field.dataset.unit][unit] ?? NaN : 1;
+  const times = unit ? TIMES[field.dataset.unit][unit.toLowerCase()] ?? NaN : 1;
   return Number((decimal(number) * times).toPrecision(12));
 }
 
@@ -560,15 +571,16 @@ const ended = (job) => job && `${job.kind} ${job.state} ${job.seconds}`;
 
 /** Faults by their cause: what is wrong alike in many places is said once, with the places behind it. */
 const causes = (faults) => h("ul", {}, [...byCause(faults).values()].map(({ fault, fault: { what }, places }) => h("li", { "data-severity": fault.severity }, places.length === 1 ? [capital(what), places[0] ? h("small", {}, places[0]) : null]
-  : h("details", {}, h("summary", {}, capital(what), h("small", {}, `in ${places.length} places`)), h("small", {}, places.join("; "))))));
+  : h("details", {}, h("summary", {}, capital(what), h("small", {}, `in ${places.length} places`)), h("small", {}, places.filter(Boolean).join("; "))))));
 
 /** {what is wrong, but for its numbers: {fault, places}} */
 function byCause(faults) {
   const found = new Map();
   for (const fault of faults) {
-    const cause = fault.what.replace(/[-−]?\d+(?:\.\d+)?/g, "#"), known = found.get(cause);
-    if (known) known.places.push(fault.what === known.fault.what ? fault.where : `${fault.where}: ${fault.what}`);
-    else found.set(cause, { fault, places: [fault.where] });
+    const beside = fault.at && document.querySelector(`#forms .wrong[data-at="${CSS.escape(fault.at)}"]`), where = beside ? "" : fault.where; // the form has it
+    const cause = fault.what.replace(/(?<![\w.])[-−]?\d+(?:\.\d+)?(?![\w.])/g, "#"), known = found.get(cause);
+    if (known) known.places.push([where, fault.what === known.fault.what ? "" : fault.what].filter(Boolean).join(": "));
+    else found.set(cause, { fault, places: [where] });
   }
   return found;
 }
