@@ -7,6 +7,8 @@ from collections.abc import Container, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from .words import capital
+
 COMMAND = re.compile(r"(wheelchair add [\w ]+)\.$")  # at the end of a sentence, as somebody types it
 KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
 SYMBOL = re.compile(r"\b([^\W\d_])_([^\W_]+)\b")  # one letter with an index: C_λ
@@ -46,7 +48,7 @@ def screens_html(screens: Sequence[Mapping[str, Any]], live: Container[str] = ()
 
 def _choices(screen: Mapping[str, Any]) -> str:
     """What may be guessed, as a list that stands until a script makes buttons of it."""
-    titles = "".join(f"<li>{escape(choice['title'])}</li>" for choice in screen.get("choices", ()))
+    titles = "".join(f"<li>{escape(capital(choice['title']))}</li>" for choice in screen.get("choices", ()))
     return f'<ul class="guesses">{titles}</ul>' if titles else ""
 
 

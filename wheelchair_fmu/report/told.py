@@ -11,7 +11,7 @@ from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect
-from .words import AGAIN, STILL, estimated, listed, printed, probability_words, spoken, strained, title_of, to_measure
+from .words import AGAIN, STILL, capital, estimated, listed, printed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -343,10 +343,6 @@ def times_text(multiple: float) -> str:
 
 def number(n: int) -> str:
     return ("No", "One", "Two", "Three", "Four", "Five", "Six")[n] if n < 7 else str(n)
-
-
-def capital(words: str) -> str:
-    return f"{words[:1].upper()}{words[1:]}"
 
 
 def _lower(words: str) -> str:

@@ -64,6 +64,10 @@ def probably(diagnosis: Mapping[str, Any], effect: str) -> str:
     return "probably " if diagnosis["verdict"] == "missing" and chance is not None and chance < LIKELY else ""
 
 
+def capital(words: str) -> str:
+    return f"{words[:1].upper()}{words[1:]}"
+
+
 def _all_of(names: Sequence[str]) -> str:
     """ "a, and b": with a comma, as each is long and may have an "and" of its own."""
     return ", and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)

@@ -147,7 +147,8 @@ class Selection:
         return now, best
 
     def _unsettled(self) -> bool:
-        """Is a model off the noise floor, or on it only with given values bent as far as they may be?"""
+        """Is a model off the noise floor, or on it only with forces that nobody recorded, or with given values bent as far as
+        they may be?"""
         if self.models.factory.leads or self.ladder[-1].fit > AT_THE_FLOOR:
             return True
         return any(v.beyond for v in calibration(self.models.likelihood(self.effects), self.top.fit))

@@ -6,7 +6,7 @@ const ENOUGH = 0.5; // fall of the sum of squares that slopes promise, below whi
 const GROUPED = 10; // sizes of interest: standard deviation of each of several sizes of one effect
 const STEP = 0.02; // of a parameter's scale, for slopes
 const NEARLY = 0.01; // sizes of interest that are nearly nothing, but have a slope
-const LEFT = 1e-7; // the same of an effect that a fit has left nothing of, which stays put in
+const LEFT = 1e-7; // the same of an effect that a fit has left nothing of, which stays put in: the page shows so little as 0
 
 /** Resolves to values that are most likely where `names` are free, from the best of these `starts`; `go()` false ends it early. */
 export async function refit(pool, campaign, starts, names, go = () => true) {

@@ -206,7 +206,7 @@ export class Scene {
   /** What is what, where that has changed. */
   legend() {
     const { lacking, measured } = this.motion, rows = [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good"], ["side force of a tyre", "ink"],
-      (lacking.force || lacking.moment) && ["missing, to go as was measured (arrow × 10): ", "error"]].filter(Boolean), shape = rows.join();
+      (lacking.force || lacking.moment) && ["force that is missing to move as was measured (arrow × 10): ", "error"]].filter(Boolean), shape = rows.join();
     if (shape === this.shape) return;
     this.shape = shape;
     this.key.replaceChildren(...rows.map(([words, colour]) => h("li", {}, h("i", { style: `background:var(--${colour})` }), words, colour === "error" ? this.amount : null)));

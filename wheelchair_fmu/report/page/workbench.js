@@ -497,6 +497,7 @@ class Workbench {
       const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
       byId("tried").textContent = there && !this.ready ? "It is in the catalogue, and can be tried once there are recordings that can be read." : "";
       if (!there) return;
+      if (there.remark) byId("unit").removeAttribute("data-state");
       if (there.remark) byId("unit").textContent = there.remark;
       byId("effect").value = this.picked = content.id;
       if (this.ready) this.job("try", { effect: content.id });
