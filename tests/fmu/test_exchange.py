@@ -33,7 +33,7 @@ def lagged(workshop) -> Unpacked:
     return Unpacked.of(build(variant, workshop / "lagged.fmu", effects="none", fmi="3"), workshop / "lagged")
 
 
-@pytest.mark.parametrize("archive", [*VERSIONS, "lagged"])
+@pytest.mark.parametrize("archive", [*VERSIONS, pytest.param("lagged", marks=pytest.mark.nightly)])
 def test_cvode_gets_the_trajectory_of_co_simulation(archive, request):
     unpacked: Unpacked = request.getfixturevalue(archive)
     outputs = [*STATES, "slip.rl", "sensor.a_y", *(n for n in unpacked.names("output", "Float64") if "lagged" in n)]
@@ -57,7 +57,7 @@ def test_cvode_gets_the_trajectory_of_co_simulation(archive, request):
         np.testing.assert_allclose(found[name], expected[name], atol=1e-5 if name == "sensor.a_y" else 1e-6, err_msg=name)
 
 
-@pytest.mark.parametrize("archive", ["native", "everything3"])
+@pytest.mark.parametrize("archive", ["native", pytest.param("everything3", marks=pytest.mark.nightly)])
 def test_another_integrator_gets_it_too_with_pushes_that_vary(archive, request):
     """SciPy's Radau between the samples of held pushes."""
     unpacked: Unpacked = request.getfixturevalue(archive)

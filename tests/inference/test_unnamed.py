@@ -97,6 +97,7 @@ def test_an_interval_is_widened_by_squares_and_within_bounds():
     assert widened((5.0, 14.0), 10.0, 0.0, record) == pytest.approx((6.5, 14.0))
 
 
+@pytest.mark.nightly
 def test_a_model_with_as_many_effects_as_are_put_in_is_allowed_for_as_well(sample, monkeypatch):
     """Nothing was searched beside it."""
     usual = diagnose(sample)
