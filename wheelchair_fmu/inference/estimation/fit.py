@@ -25,7 +25,6 @@ from .inverse import inverse
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
 MOST = 8  # linearisations
-TRIALS = 6  # of a descent: they cost about what new slopes do, with which the next ones go further
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
@@ -193,7 +192,7 @@ class Problem:
             ftol=1e-7,
             xtol=1e-6,
             gtol=1e-10,
-            max_nfev=TRIALS,
+            max_nfev=10,
         )
         there = latest[found.x.tobytes()]
         try:
