@@ -26,14 +26,14 @@ class Stamps:
 
 
 def stamps(time: np.ndarray, columns: Iterable[np.ndarray]) -> Stamps:
-    """Of times (n,) in s, NaN where there is none, and the columns (n,) that are read. If any row is
-    behind by more than its neighbour, all stay where they are: that is a fault, and not the network's doing."""
-    rows, none = np.flatnonzero(np.isfinite(time)), np.empty(0, int)
+    """Of times (n,) in s, NaN where there is none, and the columns (n,) that are read. If any row is behind by more than its
+    neighbour, all stay where they are: that is a fault, and not the network's doing."""
+    rows = np.flatnonzero(np.isfinite(time))
     behind = _behind(time[rows])
+    most = float(behind.max(initial=0.0))
     steps = np.diff(time[rows])
     usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
-    slight = behind.max(initial=0.0) < NEIGHBOURS * usual
-    overtaken = rows[behind > 0] if slight else none
+    overtaken = rows[behind > 0] if most < NEIGHBOURS * usual else rows[:0]
     if overtaken.size:
         rows = rows[np.argsort(time[rows], kind="stable")]
     same = np.diff(time[rows]) == 0
@@ -41,7 +41,7 @@ def stamps(time: np.ndarray, columns: Iterable[np.ndarray]) -> Stamps:
         before, after = column[rows[:-1]], column[rows[1:]]
         same &= (before == after) | np.isnan(before) & np.isnan(after)
     copied = np.concatenate(([False], same)) if rows.size else np.empty(0, bool)
-    return Stamps(rows[~copied], np.sort(rows[copied]), overtaken, float(behind.max(initial=0.0)) if slight else 0.0)
+    return Stamps(rows[~copied], np.sort(rows[copied]), overtaken, most if overtaken.size else 0.0)
 
 
 def _behind(time: np.ndarray) -> np.ndarray:

@@ -14,9 +14,8 @@ from ..quantities import DisplayUnit, Quantity, Unit
 
 HELPERS = 3  # that are named, and rivals of each
 SEEN = 0.05  # a p below which the data show something like an effect that was not chosen
-LIKELY = (
-    0.9  # chance of being large enough to matter, below which a cause is "probably" it (very likely: Mastrandrea et al. 2010)
-)
+# Chance of being large enough to matter, below which a cause is "probably" it: "very likely" of Mastrandrea et al. (2010).
+LIKELY = 0.9
 STILL = 0.015  # whitened RMS error over all channels: a change that nobody would call a fall
 NOTHING = "Something is left that no effect in the catalogue explains."
 AGAIN = " measured again"  # the end of a next experiment that is no manoeuvre but values of the chair

@@ -117,16 +117,17 @@ export function pointOf(words) {
 const filesOf = (campaign, device) => new Set((Array.isArray(campaign.run) ? campaign.run : []).map((run) => run.files?.[device]).filter(Boolean));
 
 function columnRow(bench, header, place, given, options, record) {
+  const called = place.name ? `${header} of ${place.name}` : header;
   const { headers, signals } = bench.state, { bare, own } = parted(header), entry = Object.entries(given).find(([, v]) => (v.column ?? v) === header);
   const channel = entry?.[0] ?? (!place.explicit && bare in options ? bare : ""), was = entry?.[1] ?? {};
-  const unit = text(`unit of ${header}${place.name ? ` of ${place.name}` : ""}`, was.unit ?? own, () => change(), { size: 8, placeholder: header.match(/\(([^()]*)\)\s*$/)?.[1] ?? "" }), radius = text(`wheel radius for ${header}${place.name ? ` of ${place.name}` : ""} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
+  const unit = text(`unit of ${called}`, was.unit ?? own, () => change(), { size: 8, placeholder: header.match(/\(([^()]*)\)\s*$/)?.[1] ?? "" }), radius = text(`wheel radius for ${called} [m]`, was.radius, () => change(), { size: 6, placeholder: bench.state.campaign.wheel?.R ?? "" });
   const rolls = () => { radius.hidden = !ROLLING.test(which.value); };
   const marker = Object.values(record?.markers ?? {}).some((m) => header.startsWith(`${m}.`));
   const unused = bench.state.times.includes(header) ? { "": "the time of its file" } : marker ? { "": "part of a marker" } : {};
   const derived = channel && !(channel in options) ? { [channel]: `${channelOf(channel)}, from which other signals are worked out` } : {};
-  const which = select(`channel of ${header}${place.name ? ` of ${place.name}` : ""}`, { ...options, ...unused, ...derived }, channel, () => change());
+  const which = select(`channel of ${called}`, { ...options, ...unused, ...derived }, channel, () => change());
   const change = () => { rolls(); return bench.save((c) => map(c, place, header, bare, own, which.value, unit.value.trim(), radius.hidden ? "" : radius.value.trim())); };
-  const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${header}${place.name ? ` of ${place.name}` : ""} turned round`, onchange: () => { const now = which.value; return now && bench.save((c) => turn(c, place, header, bare, now, turned.checked)); } });
+  const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${called} turned round`, onchange: () => { const now = which.value; return now && bench.save((c) => turn(c, place, header, bare, now, turned.checked)); } });
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
   return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, OF_LEFT.includes(channel) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
