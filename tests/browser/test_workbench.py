@@ -117,6 +117,19 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     assert beside.inner_text() == ""
 
 
+def test_a_misspelt_column_is_asked_after_where_it_is_named(page: Any, tmp_path: Path) -> None:
+    time = np.arange(0, 5, 0.02)
+    names = ["time [s]", "F_rl [N]", "F_rr [N]", "wheel_speed_l [m/s]", "wheel_sped_r [m/s]", *(f"more {i}" for i in range(20))]
+    rows = [",".join(names), *(",".join(f"{t:.4f}" for _ in names) for t in time)]
+    (tmp_path / "run.csv").write_text("\n".join(rows))
+    take_in(page, tmp_path / "run.csv")
+    row = page.locator("#forms .columns tbody tr", has=page.locator("th", has_text="wheel_sped_r"))
+    assert row.is_visible() and "It looks like wheel_speed_r, but is not used" in row.locator(".wrong").inner_text()
+    page.select_option('[aria-label="channel of wheel_sped_r [m/s]"]', "wheel_speed_r")
+    page.wait_for_function("() => !document.querySelector('#forms .columns').innerText.includes('looks like')")
+    assert page.evaluate("workbench.state.campaign.columns.wheel_speed_r.column") == "wheel_sped_r [m/s]"
+
+
 def test_the_keyboard_goes_on_from_the_section_whose_button_is_gone(page: Any) -> None:
     page.focus("#sample")
     page.keyboard.press("Enter")

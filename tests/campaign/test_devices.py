@@ -195,6 +195,17 @@ def test_faults(lab, old, new, expected):
     assert any(expected in fault for fault in found), found
 
 
+def test_of_a_devices_other_columns_only_a_misspelt_one_is_worth_a_word(lab):
+    frame = pd.read_csv(lab / "one_imu.csv")
+    frame.assign(**{"yawrate [deg/s]": 1.0, "a_y [g]": 0.0, "gyro x": 0.0}).to_csv(lab / "one_imu.csv", index=False)
+    edited(lab, 'columns.yaw_rate = { column = "gyro z", unit = "deg/s" }\n', 'columns.a_y = ""\n')
+    said = [str(fault) for fault in check(lab) if "is not used" in fault.fact]
+    assert said == [
+        "warning: run one_imu.csv line 1 column 'yawrate [deg/s]': it looks like yaw_rate, but is not used; "
+        "correct the header, or name it in [columns]"
+    ]
+
+
 def test_markers_without_a_unit_are_not_taken_as_metres(lab):
     file = lab / "one_markers.csv"
     file.write_text(file.read_text(encoding="utf-8").replace("LHUB.z [mm]", "LHUB.z"), encoding="utf-8")

@@ -388,6 +388,12 @@ CELL_FAULTS = [
         "warning: run a.csv line 1: column 'temperature [degC]' not used; name them in [columns] if they measure something",
     ),
     (
+        "misspelt column",
+        put(0, 6, "ay [m/s2]"),
+        "warning: run a.csv line 1 column 'ay [m/s2]': it looks like a_y, but is not used; "
+        "correct the header, or name it in [columns]",
+    ),
+    (
         "no unit",
         put(0, 6, "a_y"),
         "warning: run a.csv line 1 column 'a_y': no unit given, m/s2 assumed; write the header as 'a_y [m/s2]'",

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import wheelchair_fmu
-from wheelchair_fmu.faults import Fault, run_fault
+from wheelchair_fmu.faults import WARNING, Fault, run_fault
 from wheelchair_fmu.workbench.faults import CURES, told
 from wheelchair_fmu.workbench.session import Session
 
@@ -30,6 +30,13 @@ def test_a_cure_names_the_form_in_which_it_is_done() -> None:
     assert told(note)["text"] == "all is well"
     strange = Fault("campaign.toml", 3, None, "odd", "make it even")
     assert told(strange)["text"] == "campaign.toml line 3: odd; make it even"
+
+
+def test_a_misspelt_column_is_asked_after_beside_it() -> None:
+    cure = "correct the header, or name it in [columns]"
+    fault = told(run_fault("a.csv", "it looks like a_y, but is not used", cure, 1, "ay [m/s2]", WARNING))
+    assert fault["what"] == "it looks like a_y, but is not used; say what it is under “Columns and their units”"
+    assert fault["column"] == "ay [m/s2]" and fault["file"] == "a.csv"
 
 
 def test_faults_of_a_loggers_file_name_no_place_of_a_file_that_nobody_sees(tmp_path) -> None:

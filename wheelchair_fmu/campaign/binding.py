@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
 from typing import Any
 
 from ..faults import SHOWN, WARNING, Fault, run_fault, some, suggestion
@@ -14,6 +15,7 @@ from .channels import BY_NAME, SOURCES, TIME, Channel
 from .devices import Device
 from .document import Document, number
 
+NEAR = 0.8  # likeness, by difflib, from which a header is a channel's name misspelt
 MANY = 1000  # headers among which a misspelt one is looked for
 
 
@@ -90,11 +92,31 @@ def bind(device: Device, table: Table, taken: Collection[str] = ()) -> Bindings:
             found[channel.name] = binding
             faults += met
     used = {binding.index for binding in found.values()}
-    extra = [repr(header) for i, header in enumerate(headers) if i not in used and header and header not in taken]
-    if extra and not device.name:  # of a device one reads what one wants
-        what = f"column{'s' * (len(extra) > 1)} {some(extra)} not used"
-        faults.append(run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING))
+    extra = [header for i, header in enumerate(headers) if i not in used and header and header not in taken]
+    faults += _unused(device, file, extra, found)
     return Bindings(found, tuple(faults), tuple(absent))
+
+
+def _unused(device: Device, file: str, extra: Sequence[str], found: Collection[str]) -> Iterator[Fault]:
+    """Headers that nothing is taken from; those that look like a missing channel, misspelt, each by itself."""
+    names = [channel.name for channel in (*BY_NAME.values(), *SOURCES) if channel.name not in found]
+    missing = [name for name in names if wanted(device, name).header]
+    nearly = {header: near for header in extra[:MANY] if (near := _near(header, missing))}
+    for header, near in nearly.items():
+        fact = f"it looks like {' or '.join(near)}, but is not used"
+        yield run_fault(file, fact, "correct the header, or name it in [columns]", 1, header, WARNING)
+    rest = [repr(header) for header in extra if header not in nearly]
+    if rest and not device.name:  # of a device one reads what one wants
+        what = f"column{'s' * (len(rest) > 1)} {some(rest)} not used"
+        yield run_fault(file, what, "name them in [columns] if they measure something", 1, severity=WARNING)
+
+
+def _near(header: str, missing: Sequence[str]) -> list[str]:
+    """The channels that a header comes nearest to; none where it is like none."""
+    bare = suffixed(split(header)[0])[0].lower()
+    alike = {name: SequenceMatcher(None, bare, name.lower()).ratio() for name in missing}
+    best = max(alike.values(), default=0.0)
+    return [name for name, ratio in alike.items() if ratio == best >= NEAR]
 
 
 class _Places:

@@ -18,6 +18,7 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"add a column 'F_r[lr] .*", f"choose its column under “{COLUMNS}”, or say under “{RUNS}” that nobody pushed"),
     (r"remove it and write constant = .*", f"say under “{RUNS}” that nobody pushed, or give the values"),
     (r"add columns such as .*", f"choose under “{COLUMNS}” what at least one column is"),
+    (r"correct the header, or name it .*", f"say what it is under “{COLUMNS}”"),
     (r"name them in \[columns\] if .*", f"where they measure something, say under “{COLUMNS}” what"),
     (r"remove one, or choose one by its whole header .*", f"make one of them “not used” under “{COLUMNS}”"),
     (r"write \[columns\] .* with its unit", f"write its unit beside it under “{COLUMNS}”"),

@@ -86,7 +86,7 @@ export function columns(bench) {
   const owned = new Set(known.flatMap(({ files }) => [...files])), others = devices ? bench.state.files.filter((file) => !owned.has(file)) : [];
   const plain = { name: "", files: devices ? new Set(others) : null, of: (content) => (content.columns ??= {}), explicit: false };
   const tables = devices ? [...known, ...(others.length ? [plain] : [])] : [plain];
-  const needed = bench.state.faults.some((f) => f.severity === "error" && (f.column || f.what.includes("Columns and their units"))); // which are mended here
+  const needed = bench.state.faults.some((f) => f.column || (f.severity === "error" && f.what.includes("Columns and their units"))); // which are mended here
   return h("details", { open: Boolean(needed || devices) }, h("summary", {}, "Columns and their units"), tables.map((one) => {
     const record = devices?.find((d) => one.name && d.device === one.name), given = (record ?? campaign).columns ?? {}, rows = Object.keys(headers).filter((header) => !one.files || headers[header].some((f) => one.files.has(f))).map((header) => columnRow(bench, header, one, given, options, record));
     const heads = ["column", "signal", "is", "unit", "wheel radius [m], where the unit turns"], [used, rest] = [true, false].map((there) => rows.filter((row) => "used" in row.dataset === there)), all = !record && rest.length <= MANY;
@@ -130,7 +130,8 @@ function columnRow(bench, header, place, given, options, record) {
   const turned = h("input", { type: "checkbox", checked: was.sign < 0, "aria-label": `${called} turned round`, onchange: () => { const now = which.value; return now && bench.save((c) => turn(c, place, header, bare, now, turned.checked)); } });
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
-  return h("tr", { "data-used": channel ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, OF_LEFT.includes(channel) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
+  const told = bench.state.faults.some((f) => f.column === header && files.includes(f.file)); // which has to be in sight
+  return h("tr", { "data-used": channel || told ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, OF_LEFT.includes(channel) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */
