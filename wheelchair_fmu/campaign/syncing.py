@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -99,13 +99,13 @@ def alike(run: Recorded) -> tuple[str, dict[str, tuple[np.ndarray, np.ndarray]]]
     return "speed or push", curves
 
 
-def find(runs: tuple[Recorded, ...]) -> list[RunClocks]:
+def find(runs: tuple[Recorded, ...], aside: Mapping[str, Sequence[Signal]] = {}) -> list[RunClocks]:
     """The clocks of every run with several devices; and of runs of one file, whose pushes belong to another time than the
-    readings beside them."""
+    readings beside them. `aside` is, by run, what devices recorded that the campaign does not use: it tells of clocks too."""
     found = []
     for run in (r for r in runs if len(r.drafts) > 1):
         reference = run.drafts[0].part.device.name
-        known = offsets(signals(run), reference=reference)
+        known = offsets([*signals(run), *aside.get(run.name, ())], reference=reference)
         found.append(RunClocks(run, reference, {d: c for d, c in known.items() if d != reference}))
     alone = {str(i): tuple(map(_beginning, signals(r))) for i, r in enumerate(runs) if len(r.drafts) == 1}
     for i, shift in odd_ones_out(alone).items():

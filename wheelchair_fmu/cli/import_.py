@@ -25,6 +25,7 @@ from ..campaign.importing import (
     Found,
     Plan,
     Wanted,
+    aside,
     doubts,
     find,
     held_out,
@@ -230,7 +231,7 @@ def _on_one_clock(
     known = replace(wanted, radius=RADIUS) if standing_in else wanted
     write(known)
     seen = judged(output, known_parameters())
-    clocks = find_clocks(seen.runs)
+    clocks = find_clocks(seen.runs, aside(found))
     sure = {one.run.name: one.sure for one in clocks if one.sure}
     write(replace(known, clocks=sure))
     if sure:

@@ -33,9 +33,10 @@ from .tangent import Tangent, noisy, tangent
 log = logging.getLogger(__name__)
 _deriving = Lock()  # one model after another, as CasADi's expressions are shared; what compiles them runs side by side
 PACKAGE = Path(__file__).parent.parent
-# How much to optimise: of derivatives, -O2 takes compilers twice as long for a few percent of speed.
+# How much to optimise: of what CasADi writes, straight lines of arithmetic, -O2 takes compilers up to twice as long, for a few
+# percent of speed in derivatives and for none in a step.
 LEVELS = {
-    **{"model": "-O2", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
+    **{"model": "-O1", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
     **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
     **{"innovations": "-O3", "evaluation": "-O3"},
 }

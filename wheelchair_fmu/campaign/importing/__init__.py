@@ -20,6 +20,7 @@ import numpy as np
 
 from ...errors import Failure, unknown
 from ...faults import Fault
+from ..clocks import Signal
 from . import wheels
 from .choices import Choice, Plan
 from .deciding import RADIUS, decide
@@ -36,6 +37,7 @@ __all__ = [
     "Plan",
     "Unsure",
     "Wanted",
+    "aside",
     "axes_of",
     "doubts",
     "find",
@@ -79,6 +81,18 @@ def find(paths: Sequence[Path], radius: float | None, on: Mapping[str, str] = {}
     plans = decide(devices, runs, radius)
     of = {run: {s.name: (s.files[run].path, s.files[run].file) for s in devices if run in s.files} for run in runs}
     return Found(plans, runs, of, [*twice, *others])
+
+
+def aside(found: Found) -> dict[str, list[Signal]]:
+    """By run what was left to another device that measured it too: no campaign reads it twice, but it tells of the clocks."""
+    of: dict[str, list[Signal]] = {run: [] for run in found.runs}
+    for plan in found.plans:
+        for choice in (c for c in plan.choices if c.beside and c.settled):
+            for run in plan.source.files.keys() & of.keys():
+                series = plan.series(run, choice)
+                if series is not None:
+                    of[run].append(Signal(plan.name, choice.channel, *series))
+    return of
 
 
 def held_out(runs: Sequence[str], named: Sequence[str]) -> list[str]:
