@@ -179,6 +179,27 @@ def test_devices_that_share_nothing_are_said(tmp_path):
     assert "is not sure: give it in clocks" in (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")
 
 
+def test_what_another_device_measures_too_tells_of_clocks_all_the_same(tmp_path):
+    """Its own accelerometer tells them better than what pushes do to a chair, of which nobody knows more than some ms."""
+    rng, raw = np.random.default_rng(5), tmp_path / "raw"
+    raw.mkdir()
+    for i, s in enumerate(lab.rides(5), 1):
+        time, *values = lab.seen(s, 100, 0.6, "F_rl", "F_rr", "a_x")
+        noisy = [v + rng.normal(0, sd, len(time)) for v, sd in zip(values, (0.5, 0.5, 0.1), strict=True)]
+        columns = dict(zip(("time [s]", "F_rl [N]", "F_rr [N]", "a_x [m/s2]"), (time, *noisy), strict=True))
+        pd.DataFrame(columns).to_csv(raw / f"run{i:02d}_rims.csv", index=False)
+        lab.frame(raw / f"run{i:02d}_imu.csv", s, 0.3, rng)
+    imported(raw, "-o", tmp_path / "c", "--radius", lab.RADIUS)
+    content = tomllib.loads((tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8"))
+    readers = [d["device"] for d in content["recording"] if d["columns"].get("a_x")]
+    assert readers == ["imu"] and len(content["run"]) == 3
+    first = next(iter(content["run"][0]["files"]))
+    for run in content["run"]:
+        ((device, clock),) = run["clocks"].items()
+        assert clock["offset"] == pytest.approx(-0.3 if first == "rims" else 0.3, abs=4 * clock["sd"]), device
+        assert clock["sd"] < 0.003
+
+
 ZEROED = {"lab-02": ("F_rl", "F_rr")}  # rims that need no baseline, by the protocol
 
 
