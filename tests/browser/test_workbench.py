@@ -117,6 +117,15 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     assert beside.inner_text() == ""
 
 
+def test_what_points_left_in_a_file_is_said_beside_its_column(page: Any) -> None:
+    page.click("#sample")
+    page.wait_for_function("() => window.workbench?.state?.files.length === 10")
+    page.evaluate("workbench.save((c) => { c.campaign.axes = 'ISO-8855'; })")
+    page.wait_for_function("() => document.querySelector('#forms .columns').textContent.includes('points to the left')")
+    rows = page.locator("#forms .columns tbody tr").filter(has_text="points to the left")
+    assert [row.locator("th").text_content().split()[0] for row in rows.all()] == ["yaw_rate", "a_y"]
+
+
 def test_a_misspelt_column_is_asked_after_where_it_is_named(page: Any, tmp_path: Path) -> None:
     time = np.arange(0, 5, 0.02)
     names = ["time [s]", "F_rl [N]", "F_rr [N]", "wheel_speed_l [m/s]", "wheel_sped_r [m/s]", *(f"more {i}" for i in range(20))]

@@ -548,6 +548,7 @@ def _guess(header: str) -> str | None:
     return names.get(plain) or {"t": "time", "gyro_z": "yaw_rate", "yawrate": "yaw_rate", "ax": "a_x", "ay": "a_y"}.get(plain)
 
 
-def channel_list() -> list[dict[str, str]]:
+def channel_list() -> list[dict[str, Any]]:
     """What a column may be."""
-    return [{"name": c.name, "unit": c.unit.name, "meaning": c.meaning} for c in (TIME, *INPUTS, *CHANNELS)]
+    every = (TIME, *INPUTS, *CHANNELS)
+    return [{"name": c.name, "unit": c.unit.name, "meaning": c.meaning, "mirrored": c.iso_sign < 0} for c in every]

@@ -12,7 +12,6 @@ const FEW = 6; // runs that are shown without asking where something is wrong
 const MANY = 12; // columns that nothing is taken from, above which they are folded
 const WIDE = 110, HIGH = 30; // px of a signal beside its column
 const PUSHES = ["F_rl", "F_rr"];
-const OF_LEFT = ["a_y", "v", "y", "yaw", "yaw_rate"]; // channels that are the other way round where y points to the left
 
 const table = (kind, heads, rows) => {
   for (const row of rows) [...row.children].forEach((cell, i) => { cell.dataset.head = heads[i]; }); // for narrow screens
@@ -131,7 +130,7 @@ function columnRow(bench, header, place, given, options, record) {
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
   const told = bench.state.faults.some((f) => f.column === header && files.includes(f.file)); // which has to be in sight
-  return h("tr", { "data-used": channel || told ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, OF_LEFT.includes(channel) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
+  return h("tr", { "data-used": channel || told ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, bench.state.channels.some((c) => c.name === channel && c.mirrored) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */
