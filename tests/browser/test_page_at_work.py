@@ -107,6 +107,33 @@ def test_sizes_fitted_in_the_page_are_those_of_the_search(reader):
     assert page.evaluate("report.values")[f"effect.{HIDDEN}.D"] == pytest.approx(row["estimate"], abs=2 * row["se"])
 
 
+def test_a_decimal_comma_is_a_decimal_point(reader):
+    page = reader.page
+    page.check(f"#effect-{HIDDEN}")
+    reader.settle()
+    field = page.locator("#controls .slider input[type=text] >> visible=true").first
+    name = field.get_attribute("data-name")
+    field.fill("1,5")
+    field.press("Enter")
+    reader.settle()
+    factor = page.evaluate("(name) => report.controls.sliders.get(name).factor", name)
+    assert page.evaluate("(name) => report.values[name]", name) == pytest.approx(1.5 / factor)
+    field.fill("heavy")
+    field.press("Tab")
+    assert page.evaluate("(e) => e.validationMessage", field.element_handle()) == "give a number, as in 1.5"
+    assert page.evaluate("(name) => report.values[name]", name) == pytest.approx(1.5 / factor)
+
+
+def test_the_chair_from_above_is_saved_with_the_chair(reader):
+    """Two frames, wheels and casters, and the words of their colours, at the cursor."""
+    reader.page.evaluate("report.timeline.go(3)")
+    drawn = reader.page.evaluate("""() => {
+      const made = report.figures.all.path.says.draw(400, {...report.look, ink: "#111111", print: true});
+      return [made.querySelectorAll("svg path[transform]").length, made.textContent, report.figures.all.path.says.caption()];
+    }""")
+    assert drawn[0] > 15 and "side force of a tyre" in drawn[1] and "the chair 3.00 s into the run" in drawn[2]
+
+
 def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     page = reader.page
     start = page.evaluate("report.values")
@@ -125,10 +152,18 @@ def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     heads = page.evaluate("Object.keys(report.figures.all.overlay.says.columns())")
     assert sum(head.startswith(("A [", "before [")) for head in heads) == 2, "the CSV has what the picture shows"
     assert "what the search found" in page.evaluate("report.figures.all.where.says.subject()")
-    page.evaluate("report.timeline.zoom(2, 5), report.timeline.go(3), report.written()")
+    page.evaluate("report.timeline.zoom(2, 5), report.timeline.go(3)")
+    page.select_option('[aria-label="speed of playing"]', "0.25")
+    page.check("#loop")
+    page.click("#steps button >> nth=1")
+    page.click(".choice >> nth=1")
+    answer = page.inner_text(".answer")
+    page.evaluate("report.written()")
     page.reload()
     reader.settle()
     assert page.evaluate("report.values") == ticked
+    assert page.evaluate("report.timeline.pace()") == {"speed": 0.25, "loop": True}
+    assert page.inner_text(".answer") == answer and page.get_attribute(".choice >> nth=1", "aria-pressed") == "true"
     assert page.evaluate(
         "[report.campaign.runs[report.shown.run].name, report.timeline.from, report.timeline.to, report.timeline.at]"
     ) == ["slalom-quick", 2, 5, 3]

@@ -320,21 +320,24 @@ def test_tables_hold_the_numbers_of_the_diagnosis(open_report, tmp_path):
     ]
     sizes = {f"effect.{r['effect']}.{n}": p for r in TOLD["ranking"] for n, p in r["parameters"].items()}
     for row in table_of(open_report, "forest", tmp_path):
-        told = sizes[row["parameter"]]
-        assert (float(row["estimate"]), row["unit"]) == (told["estimate"], told["unit"])
-        assert float(row["se"] or "nan") == pytest.approx(told["se"] if told["se"] is not None else np.nan, nan_ok=True)
-        assert float(row["in sizes of interest"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
+        told = sizes[row["name in files"]]
+        unit = {"rad": "deg", "rad/s": "deg/s"}.get(told["unit"], told["unit"])  # as in the figure
+        factor = 1 if unit == told["unit"] else 180 / np.pi
+        assert row["unit"] == unit and float(row["estimate"]) == pytest.approx(factor * told["estimate"])
+        se = np.nan if told["se"] is None else factor * told["se"]
+        assert float(row["standard error"] or "nan") == pytest.approx(se, nan_ok=True)
+        assert float(row["matters from"]) == pytest.approx(factor * told["smallest_interesting"])
+        assert float(row["in sizes that matter"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
     for row in table_of(open_report, "calibration", tmp_path):
-        told = TOLD["calibration"][row["parameter"]]
-        assert [float(row[k]) for k in ("fitted", "se", "given", "sd")] == [
-            told[k] for k in ("value", "se", "prior", "prior_sd")
-        ]
+        told = TOLD["calibration"][row["name in files"]]
+        heads = ("fitted", "standard error", "given", "given to within (standard deviation)")
+        assert [float(row[k]) for k in heads] == [told[k] for k in ("value", "se", "prior", "prior_sd")]
     cells = open_report.table()
     for row in table_of(open_report, "where", tmp_path):
         assert float(row["error, noise = 1"]) == pytest.approx(cells[row["run"]][row["channel"]])
     rows = table_of(open_report, "physical", tmp_path)
     told = [s["channels"][c] for c in TOLD["physical"] for s in TOLD["ladder"]]
-    assert [(float(r["RMS error"]), float(r["noise = 1"])) for r in rows] == [(t["heldout_rms"], t["heldout"]) for t in told]
+    assert [(float(r["error"]), float(r["noise = 1"])) for r in rows] == [(t["heldout_rms"], t["heldout"]) for t in told]
 
 
 @pytest.mark.parametrize(

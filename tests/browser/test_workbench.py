@@ -140,6 +140,7 @@ def test_a_misspelt_column_is_asked_after_where_it_is_named(page: Any, tmp_path:
 
 
 def test_the_keyboard_goes_on_from_the_section_whose_button_is_gone(page: Any) -> None:
+    page.wait_for_function("() => window.workbench?.state")
     page.focus("#sample")
     page.keyboard.press("Enter")
     page.wait_for_function("() => window.workbench?.state?.files.length === 10")

@@ -13,7 +13,7 @@ from wheelchair_fmu.inference.decision.verdict import FORCES
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
-from wheelchair_fmu.report.advice import INSPECT, inspect
+from wheelchair_fmu.report.advice import INSPECT, inspect, inspect_term
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, exceeds, near_rivals
@@ -146,6 +146,57 @@ def test_an_adequate_model_explains_what_it_leaves_only_where_that_is_noise():
     assert what["lines"] == ["The model explains these runs to within the noise of the sensors."]
 
 
+def test_a_model_that_leaves_more_than_noise_explains_no_run():
+    what = tale(told("cannot_see", ladder=SAMPLE["ladder"][:2])).cards[0]["lines"]
+    assert what[0] == "What the model leaves, 1.68 times the noise of the sensors, no effect in the catalogue explains."
+    assert what[1] == "Beside that, many effects could be large enough to matter and not show in these runs."
+    assert tale(told("cannot_see", ladder=LEVEL)).cards[0]["lines"][0].startswith("The model explains these runs, but many")
+
+
+def test_a_tie_that_gains_nothing_on_runs_kept_back_says_so():
+    rows = [{**r, "heldout_after": 1.0} for r in SAMPLE["ranking"]]
+    sure = tale(told("tie", [DRAG, LEAN], [[DRAG, LEAN]], ladder=LEVEL, ranking=rows)).cards[1]["lines"][0]
+    nothing = "On runs that were kept back nothing is gained: the error is 1.00 before, and 1.00 with either."
+    assert sure == f"{nothing} What they explain shows in the runs that were fitted."
+
+
+def test_outside_says_how_sure_that_is_what_comes_near_and_where_to_look():
+    _, sure, do = tale(CASES["outside"]).cards
+    chance = "Of a million campaigns in which nothing was missing, fewer than one would leave a pattern as plain by chance."
+    assert sure["lines"][0] == chance
+    assert any(line.startswith("The nearest is ") and "a torque on each caster" in line for line in sure["lines"])
+    assert do["lead"].startswith("Swing each caster by hand") and "wheelchair improve" in do["lines"][-1]
+    unsure = told("outside", leftover={**CASES["outside"]["leftover"], "p": 0.2})
+    assert not tale(unsure).cards[1]["lines"][0].startswith("Of a")
+
+
+def test_every_generic_term_can_be_inspected():
+    for term in library():
+        assert inspect_term(term).endswith(".")
+
+
+def test_what_rivals_leave_is_told_beside_their_bars():
+    farther = [r["effect"] for r in SAMPLE["ranking"] if r["effect"] != DRAG and (r["heldout_after"] or 0) > 1.1]
+    rivals = tale(told("missing", [DRAG])).screens[3]
+    assert farther and any(line.startswith("In its place, ") for line in rivals["lines"])
+    said = next(line for line in rivals["lines"] if line.startswith("In its place, "))
+    assert (
+        f"{TITLES[farther[0]]} leaves {next(r for r in SAMPLE['ranking'] if r['effect'] == farther[0])['heldout_after']:.2f}"
+        in said
+    )
+
+
+def test_what_the_first_of_two_does_by_itself_is_told_and_drawn():
+    ladder = [
+        *SAMPLE["ladder"][:2],
+        {**SAMPLE["ladder"][2], "step": f"+{DRAG}", "heldout": 1.2},
+        {**SAMPLE["ladder"][2], "step": f"+{LEAN}"},
+    ]
+    screens = tale({**CASES["together"], "ladder": ladder}).screens
+    assert f"By itself, {TITLES[DRAG]} brings it to 1.20." in screens[2]["lines"]
+    assert ("one rear wheel that rolls harder than the other", 1.2) in [(b["title"], b["error"]) for b in screens[3]["bars"]]
+
+
 def test_nothing_suffices_though_something_comes_near():
     """What an effect of the catalogue leaves stands beside what the missing force does."""
     lines = tale(CASES["outside"]).screens[3]["lines"]
@@ -171,7 +222,9 @@ def test_what_is_in_the_model_and_too_small_to_matter_is_told():
     story = tale(told("missing", [DRAG], ranking=slight, ladder=ladder))
     screens, fall = story.screens, story.cards[1]["lines"][0]
     assert fall.endswith(" noise alone gives, with rear wheels that lean put in as well, too little of it to matter.")
-    assert "In the model as well, at a size too small to matter: rear wheels that lean." in screens[2]["lines"]
+    assert screens[2]["lines"][0] == fall and not any(
+        "In the model as well" in line for line in screens[2]["lines"]
+    )  # said once
     answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == LEAN)
     assert answer.startswith("It is in the model, at ") and "The error" not in answer
 
@@ -209,10 +262,10 @@ def test_an_effect_that_was_tried_beside_others_is_no_rival_of_theirs():
     ranking.sort(key=lambda r: r["effect"] not in (DRAG, beside))
     screens = tale(told("missing", [DRAG], ranking=ranking)).screens
     answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == beside)
-    assert answer == f"No: beside what was found it changes nothing, and the error stays at {top:.2f}."
+    assert answer == "No: beside what was found it changes nothing, and the error stays as it is."
     titles = [b["title"] for b in screens[3]["bars"]]
     assert TITLES[beside] not in titles and TITLES[LEAN] in titles
-    said = f"To put in {TITLES[beside]} beside it brings the error down no further."
+    said = f"Put in beside it, the error comes down no further with {TITLES[beside]}."
     assert said in screens[3]["lines"] and said not in tale(CASES["missing"]).screens[3]["lines"]
 
 

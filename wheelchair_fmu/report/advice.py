@@ -44,3 +44,21 @@ INSPECT = {
 def inspect(effect: str, title: str) -> str:
     """What to look at for an effect; of one that a user wrote, only its title is known."""
     return INSPECT.get(effect, f"Look at the chair for {title}.")
+
+
+# by how the id of a generic term begins, the more special first
+TERMS = {
+    "generic_M_w_one_sided": "Lift the front and let each caster hang: feel whether something turns it to one side.",
+    "generic_M_w": "Swing each caster by hand, on the floor and lifted: feel whether something pulls it straight.",
+    "generic_D_r": "Lift the rear and spin that wheel slowly and fast, both ways: look and listen for what holds it.",
+    "generic_F_x": "Coast down from a quick start, once in each direction: look for what rubs, and for wind.",
+    "generic_F_y": "Let the chair roll freely: see whether it drifts to a side, on this floor and in the other direction.",
+    "generic_M_z": "Turn the chair on the spot and in wide curves, to both sides: feel what turns it or holds it back.",
+    "generic_read_yaw_rate": "Let the chair stand, then turn it by hand ten times, and compare what the yaw rate adds up to.",
+    "generic_read_a": "Let the chair stand level, then tilted by a known angle, and see what the accelerometer reads.",
+}
+
+
+def inspect_term(term: str) -> str:
+    """What to look at for a generic term."""
+    return next(words for begins, words in TERMS.items() if term.startswith(begins))

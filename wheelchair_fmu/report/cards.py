@@ -18,6 +18,8 @@ from .told import (
     forces_words,
     it,
     larger_words,
+    left_words,
+    nearest_words,
     number,
     odds_words,
     rival_words,
@@ -85,9 +87,10 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return _outside(t)
     if t.verdict == "adequate":
         return "Nothing is missing", [_explained(t)]
-    return "Nothing was found", [
-        "The model explains these runs, but many effects could be large enough to matter and not show in them."
-    ]
+    hide = "many effects could be large enough to matter and not show in them"
+    if t.fall[1] < EXPLAINED:
+        return "Nothing was found", [f"The model explains these runs, but {hide}."]
+    return "Nothing was found", [_explained(t), f"Beside that, {hide.replace('them', 'these runs')}."]
 
 
 def _explained(t: Told) -> str:
@@ -123,7 +126,11 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
         errors = {f"{error:.2f}" for error in left.values()}
         if len(left) == len(t.tied) > 1 and len(errors) == 1:
             each = "either" if len(left) == 2 else "any of them"
-            together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
+            if not t.falls:
+                nothing = f"On {t.runs} nothing is gained: the error is {t.fall[0]:.2f} before, and {errors.pop()} with {each}."
+                together = [f"{nothing} What they explain shows in the runs that were fitted."]
+            else:
+                together = [f"With {each}, the error on {t.runs} comes to {errors.pop()} times what noise alone gives."]
         elif left:
             together = [f"With {t.title(e)}, the error on {t.runs} comes to {error:.2f}." for e, error in left.items()]
         else:
@@ -143,7 +150,7 @@ def _how_sure(t: Told) -> tuple[str, list[str]]:
             *forces,
         ]
     if t.verdict == "outside":
-        return "Sure that something is there, less so what", [fall, *rivals, *forces]
+        return "Sure that something is there, less so what", [*left_words(t), fall, *nearest_words(t), *rivals, *forces]
     lead, explained = _would_be_seen(t)
     return lead, [explained, fall, *forces]
 

@@ -25,6 +25,7 @@ MODULES = (
     "errors",
     "evidence",
     "figure",
+    "pen",
     "figures",
     "forest",
     "heat",

@@ -16,9 +16,11 @@ from .told import (
     capital,
     fall_words,
     forces_words,
+    helping,
     it,
     multiple_words,
     near_rivals,
+    nearest_words,
     number,
     rival_words,
     sized,
@@ -138,7 +140,7 @@ def _answer(t: Told, effect: str) -> str:
     if not t.falls:
         return "No: over all moments the runs speak less for it."
     if row["heldout_before"] is not None and row["heldout_before"] - comes < STILL:
-        return f"No: the error on {t.runs} stays at {comes:.2f}."
+        return f"No: the error on {t.runs} stays at {t.fall[0]:.2f}."
     if comes < t.fall[1] + STILL:
         return f"Close, but over all moments these runs are explained less well by it.{error}"
     return f"It helps, but not enough.{error}"
@@ -169,7 +171,7 @@ def _beside(t: Told, row: Mapping[str, Any], comes: float) -> str:
     """What an effect does that was put in beside others."""
     others = "what was found" if t.found else "the likeliest other effect"
     if row["heldout_before"] - comes < STILL:
-        return f"No: beside {others} it changes nothing, and the error stays at {comes:.2f}."
+        return f"No: beside {others} it changes nothing, and the error stays as it is."
     return f"Beside {others} it helps, but not enough: the error comes to {comes:.2f}."
 
 
@@ -183,7 +185,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
         verb = "falls" if t.falls else "goes"
         return {
             "title": "Put in what helps most",
-            "lines": [f"With {_helping(t)}, the error on {whose} {verb} from {before:.2f} to {after:.2f}."],
+            "lines": [f"With {helping(t)}, the error on {whose} {verb} from {before:.2f} to {after:.2f}."],
         }
     if t.verdict == "tie":
         known = [e for e in t.tied if t.error(e) is not None]
@@ -212,8 +214,18 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
     watch = "and watch the error fall" if t.falls else "and look where the two curves part"
     return {
         "title": f"Put {it(t)} in {watch}",
-        "lines": [fall_words(t), *together_words(t), *_as_well(t), "1.00 is what the noise of the sensors leaves."],
+        "lines": [fall_words(t), *together_words(t), *_by_itself(t), "1.00 is what the noise of the sensors leaves."],
     }
+
+
+def _by_itself(t: Told) -> list[str]:
+    """Of effects that were put in together, what the first does alone."""
+    said = []
+    for group in t.together:
+        alone = t.step_error(group[0])
+        if alone is not None and alone - t.fall[1] > STILL:
+            said.append(f"By itself, {t.title(group[0])} brings it to {alone:.2f}.")
+    return said
 
 
 def _tried(t: Told) -> dict[str, Any]:
@@ -271,14 +283,6 @@ def _comes(t: Told) -> str:
     return least if least == most else f"between {least} and {most}"
 
 
-def _helping(t: Told) -> str:
-    """What was put in where nothing in the catalogue suffices."""
-    record = t.records.get(f"effect.{t.proposal['term']}.q") if t.proposal else None
-    if record is not None:
-        return record.meaning
-    return listed([t.title(e) for e in t.found], "and") if t.found else "what is known"
-
-
 def _rivals(t: Told) -> dict[str, Any]:
     if t.verdict == "tie":
         title, lines = (
@@ -286,7 +290,7 @@ def _rivals(t: Told) -> dict[str, Any]:
             ["Each would do at a size of its own.", *(sized(t, e) for e in t.tied)],
         )
     elif t.found and t.verdict != "outside":
-        title, lines = "Why not the rivals", [*rival_words(t), *_beside_it(t), *_unmoved(t)]
+        title, lines = "Why not the rivals", [*rival_words(t), *_farther(t), *_beside_it(t), *_unmoved(t)]
     elif t.verdict == "outside":
         title, lines = (
             "Why nothing in the catalogue",
@@ -294,7 +298,7 @@ def _rivals(t: Told) -> dict[str, Any]:
                 "Each of the likeliest was put in and its size fitted; this is the error that each leaves."
                 if len(bars(t)) > 1
                 else "Every effect of the catalogue was held against what the model leaves over; these are their sizes.",
-                *_nearest(t),
+                *nearest_words(t),
                 *_bent(t),
             ],
         )
@@ -334,14 +338,15 @@ def _nothing(t: Told) -> str:
     return "Not one shows in it, but many of them could hide."
 
 
-def _nearest(t: Told) -> list[str]:
-    """Which effect of the catalogue comes nearest to a term that none of them is."""
-    alone = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])]
-    known = {e: error for e in alone if (error := t.error(e)) is not None}
-    if not t.proposal or not known:
+def _farther(t: Told) -> list[str]:
+    """What rivals leave that do not come near."""
+    near = {r["effect"] for r in near_rivals(t)}
+    tried = [e for e in t.rows if e in t.titles and e not in (*t.found, *near) and t.alone(e) and t.error(e) is not None]
+    worse = [(e, error) for e in tried[:CHOICES] if (error := t.error(e)) is not None and error > t.fall[1] + STILL]
+    if t.slight or not worse:
         return []
-    best = min(known, key=lambda e: known[e])
-    return [f"The nearest is {t.title(best)} with {known[best]:.2f}, where {_helping(t)} leaves {t.fall[1]:.2f}."]
+    place = "In its place" if it(t) == "it" else "In their place"
+    return [f"{place}, {listed([f'{t.title(e)} leaves {error:.2f}' for e, error in worse], 'and')}."]
 
 
 def _beside_it(t: Told) -> list[str]:
@@ -356,7 +361,8 @@ def _beside_it(t: Told) -> list[str]:
         return []
     more = [f"{number(len(idle) - CHOICES).lower()} more"] if len(idle) > CHOICES else []
     which = listed([*(t.title(e) for e in idle[:CHOICES]), *more], "and")
-    return [f"To put in {which} beside {it(t)} brings the error down no further."]
+    any_of = "any of these: " if len(idle) > 1 else ""
+    return [f"Put in beside {it(t)}, the error comes down no further with {any_of}{which}."]
 
 
 def _bent(t: Told) -> list[str]:
@@ -381,11 +387,13 @@ def bars(t: Told) -> list[dict[str, Any]]:
     known = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.error(r["effect"]) is not None]
     tried = [e for e in known if e in t.found or t.alone(e)]
     groups = list(dict.fromkeys(tuple(t.partners(e)) for e in tried))[:TRIED]
-    each = [
+    each: list[dict[str, Any]] = [
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups
     ]
     before, after = t.fall
+    firsts = [(g[0], error) for g in groups if len(g) > 1 and (error := t.step_error(g[0])) is not None]
+    each = [*({"title": t.title(e), "error": error, "found": True} for e, error in firsts if error - after > STILL), *each]
     several = len(t.found) > 1 and t.verdict != "tie" and not t.slight and set(t.found) != set(t.partners(t.found[0]))
     whole = [{"title": "all that was found together", "error": after, "found": True}] if several else []
-    term = [{"title": _helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []
+    term = [{"title": helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []
     return [{"title": "the calibrated model alone", "error": before, "found": False}, *each, *whole, *term]

@@ -10,12 +10,13 @@ from typing import Any
 from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
-from .advice import inspect
+from .advice import inspect, inspect_term
 from .words import AGAIN, STILL, capital, estimated, listed, printed, probability_words, spoken, strained, title_of, to_measure
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
 ALIKE = 0.005  # whitened RMS error by which that of one model differs, told twice
+UNLIKELY = 0.01  # chance of a pattern by noise alone, above which it is not told
 SURE = 1.96  # standard errors from nought, within which a size may as well be none
 
 
@@ -91,6 +92,11 @@ class Told:
         if effect in self.found and whole and not self.slight:
             return self.fall[1]
         return None if self.without_forces is not None else self.rows[effect]["heldout_after"]
+
+    def step_error(self, effect: str) -> float | None:
+        """The error after an effect was put in, as a step of the search."""
+        steps = {s["step"]: s for s in self.diagnosis["ladder"]}
+        return float(steps[f"+{effect}"][self.key]) if f"+{effect}" in steps else None
 
     def alone(self, effect: str) -> bool:
         """Was an effect put into the model that the search began with, and not beside others?"""
@@ -171,6 +177,33 @@ def _beside_words(t: Told) -> str:
     """What else is in the model at the end: a fall is not the work of what was found alone."""
     slight = [t.title(e) for e in t.slightly_in] if t.found else []
     return f", with {listed(slight, 'and')} put in as well, too little of it to matter" if slight else ""
+
+
+def left_words(t: Told) -> list[str]:
+    """How sure it is that what no effect explains is not chance."""
+    chance = (t.diagnosis.get("leftover") or {}).get("p")
+    if chance is None or chance > UNLIKELY:
+        return []
+    rare = "a million" if chance < 1e-6 else "a thousand" if chance < 1e-3 else "a hundred"
+    return [f"Of {rare} campaigns in which nothing was missing, fewer than one would leave a pattern as plain by chance."]
+
+
+def nearest_words(t: Told) -> list[str]:
+    """Which effect of the catalogue comes nearest to a term that none of them is."""
+    alone = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])]
+    known = {e: error for e in alone if (error := t.error(e)) is not None}
+    if not t.proposal or not known:
+        return []
+    best = min(known, key=lambda e: known[e])
+    return [f"The nearest is {t.title(best)} with {known[best]:.2f}, where {helping(t)} leaves {t.fall[1]:.2f}."]
+
+
+def helping(t: Told) -> str:
+    """What was put in where nothing in the catalogue suffices."""
+    record = t.records.get(f"effect.{t.proposal['term']}.q") if t.proposal else None
+    if record is not None:
+        return record.meaning
+    return listed([t.title(e) for e in t.found], "and") if t.found else "what is known"
 
 
 def forces_words(t: Told) -> list[str]:
@@ -372,12 +405,7 @@ def actions(t: Told) -> list[str]:
                 *orders,
                 "If it comes out as before, the model lacks something: write the effect as a file of one expression.",
             ]
-        return [
-            "Compare the missing force with what you know of the chair.",
-            *orders,
-            *measure,
-            "Write the effect that it suggests: a file of one expression is enough.",
-        ]
+        return [*_after(t), *orders, *measure, _written(t)]
     if t.verdict == "small":
         return ["Use the model as it is.", *(inspect(e, t.title(e)) for e in found)]
     if t.verdict == "adequate":
@@ -387,6 +415,17 @@ def actions(t: Told) -> list[str]:
             "For other manoeuvres, record some of them first and have them diagnosed too.",
         ]
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
+
+
+def _after(t: Told) -> list[str]:
+    """What to look at for a term that helps most."""
+    return [inspect_term(t.proposal["term"])] if t.proposal else ["Compare the missing force with what you know of the chair."]
+
+
+def _written(t: Told) -> str:
+    if not t.proposal:
+        return "Write the effect that it suggests: a file of one expression is enough."
+    return "Put it into the model, as a file of one expression that is written for you: wheelchair improve."
 
 
 def next_words(t: Told) -> list[str]:

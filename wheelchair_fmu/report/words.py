@@ -180,7 +180,10 @@ def particulars(
 
 def _size(effect: str, row: Mapping[str, Any], records: Mapping[str, Quantity], titles: Mapping[str, str]) -> str:
     known = {name: records[f"effect.{effect}.{name}"] for name in row["parameters"] if f"effect.{effect}.{name}" in records}
-    parts = [f"{record.meaning} = {estimated(row['parameters'][name], record.unit)}" for name, record in known.items()]
+    parts = [
+        f"{record.meaning.partition(';')[0]} = {estimated(row['parameters'][name], record.unit)}"
+        for name, record in known.items()
+    ]
     title = title_of(effect, titles)
     return f"{title[:1].upper()}{title[1:]}: {', '.join(parts)}."
 

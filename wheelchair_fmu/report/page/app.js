@@ -62,7 +62,7 @@ class App {
     this.history = { at: -1, all: [] };
     this.pick = this.picker();
     this.pins = new Pins(campaign, state.pins ?? [], () => this.pinned(), (values) => this.put(values));
-    this.story = new Story(campaign, this, state.screen, () => this.write());
+    this.story = new Story(campaign, this, state, () => this.write());
     this.buttons();
     this.foretell();
     this.set(this.controls.values);
@@ -446,7 +446,7 @@ class App {
     const { timeline, shown, campaign } = this, { time } = timeline, theme = document.documentElement.dataset.theme, round = (v) => Math.round(v * 1000) / 1000;
     const zoomed = timeline.from !== time[0] || timeline.to !== time.at(-1);
     this.hash = address.write({ ...(same(this.values, this.start.values) ? {} : { values: this.values }), run: campaign.runs[shown.run].name, channel: shown.channel, t: round(timeline.at),
-      ...(zoomed ? { from: round(timeline.from), to: round(timeline.to) } : {}), screen: this.story.at, ...(this.pins.kept.length ? { pins: this.pins.kept.map((k) => k.values) } : {}), ...(theme ? { theme } : {}) });
+      ...(zoomed ? { from: round(timeline.from), to: round(timeline.to) } : {}), screen: this.story.at, ...this.story.guess(), ...timeline.pace(), ...(this.pins.kept.length ? { pins: this.pins.kept.map((k) => k.values) } : {}), ...(theme ? { theme } : {}) });
     history.replaceState(null, "", this.hash);
   }
 

@@ -1,7 +1,7 @@
 // What the reader sets: steps of the search, effects with their sizes, calibrated values.
 
 import { h, symbols, write } from "page/dom";
-import { display, inUnit, settled, significant, unitText } from "page/numbers";
+import { decimal, display, inUnit, settled, significant, unitText } from "page/numbers";
 import { capital, stepOf } from "page/words";
 
 const STEPS = 400; // of a slider
@@ -81,16 +81,16 @@ export class Controls {
   slider(p, [low, high], row) {
     const { unit, factor } = display(p), id = `slider-${p.name}`;
     const range = h("input", { type: "range", id, min: low * factor, max: high * factor, step: "any", "aria-describedby": `${id}-help` });
-    const number = h("input", { type: "number", min: (p.lower ?? -1e300) * factor, max: (p.upper ?? 1e300) * factor, step: "any", "aria-label": `${capital(p.meaning)} [${unitText(unit) || "1"}]`, "data-name": p.name });
-    const put = (source) => {
-      const value = source.valueAsNumber / factor;
-      if (!Number.isFinite(value) || value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity)) return this.shown.delete(p.name), number.setCustomValidity(`between ${p.lower} and ${p.upper}`);
-      number.setCustomValidity("");
-      this.put({ ...this.values, [p.name]: value });
+    const number = h("input", { type: "text", inputmode: "decimal", autocomplete: "off", "aria-label": `${capital(p.meaning)} [${unitText(unit) || "1"}]`, "data-name": p.name });
+    const put = (words) => {
+      const value = decimal(words) / factor, wrong = !Number.isFinite(value) || String(words).trim() === "" ? "give a number, as in 1.5" : value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity) ? `give a number ${within(p, factor)}` : "";
+      number.setCustomValidity(wrong);
+      if (wrong) return this.shown.delete(p.name), number.reportValidity();
+      return this.put({ ...this.values, [p.name]: value });
     };
-    range.addEventListener("input", () => put(range));
+    range.addEventListener("input", () => put(range.value));
     range.addEventListener("keydown", (event) => this.stepped(event, range, (high - low) * factor));
-    number.addEventListener("change", () => put(number));
+    number.addEventListener("change", () => put(number.value));
     const found = row?.parameters[p.name.split(".").at(-1)], own = found && seen(found) ? found.estimate : null;
     const fitted = () => (row ? own : (this.stored.get(key(this.values)) ?? this.start().values)[p.name]) ?? null; // of a calibrated value, with the effects that are in
     const back = h("button", { type: "button", class: "quiet plain", title: row ? "back to the size that the search fitted" : "back to the fitted size", "aria-label": `back to the fitted size: ${p.meaning}`, onclick: () => this.put({ ...this.values, [p.name]: fitted() }) }, "↺");
@@ -170,6 +170,9 @@ function marks(p, low, high, fitted) {
   const band = p.delta && p.name.startsWith("effect.") ? h("i", { class: "of-no-interest", style: `left:${at(-p.delta)};right:calc(100% - ${at(p.delta)})` }) : null;
   return h("span", { class: "marks", "aria-hidden": "true" }, band, fitted !== null && fitted !== undefined && inside(fitted) ? h("i", { class: "fitted", style: `left:${at(fitted)}` }, "▲") : null);
 }
+
+/** Bounds in words, in the unit shown. */
+const within = ({ lower, upper }, factor) => [[lower, "from"], [upper, "to"]].filter(([b]) => Number.isFinite(b)).map(([b, word]) => `${word} ${significant(b * factor, 4)}`).join(" ");
 
 /** A value in five digits, but none below a thousandth of the size that matters. */
 function written(value, delta) {

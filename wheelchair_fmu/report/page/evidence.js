@@ -47,7 +47,7 @@ function line(campaign, row, record, later) {
   const own = (text, p) => h("div", {}, several ? h("span", { class: "parameter" }, symbols(p.name.split(".").at(-1)), " ") : null, text);
   const fall = row.heldout_after === null ? "–" : `${rms(row.heldout_before)} → ${rms(row.heldout_after)}`;
   return h("tr", { class: later ? "later" : null, "data-verdict": row.verdict },
-    h("th", { scope: "row" }, capital(record.title), row.verdict === "proposed" ? null : h("small", {}, h("code", {}, row.effect))),
+    h("th", { scope: "row", title: row.verdict === "proposed" ? null : row.effect }, capital(record.title)),
     h("td", { "data-head": "Size" }, parameters.map(([p, v]) => own(`${uncertain(v, p)}${atBound(v, p) ? ", at its bound" : ""}`, p))),
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
     h("td", { class: "number", "data-head": "Chance that it matters" }, outside && !chosen ? "–" : chance(row.probability)),

@@ -1,6 +1,7 @@
 // Every figure of the page: what it is called, how it is drawn, what its caption and its table say.
 
 import { byId, h } from "page/dom";
+import { canvas, svg } from "page/draw";
 import { byChannel, excessBy } from "page/errors";
 import { Figure } from "page/figure";
 import { fitting, forest, panels } from "page/forest";
@@ -27,7 +28,7 @@ const bowl = (heights, level) => heights.filter((v) => v !== null && v < 2 * lev
 const tabled = (rows, heads) => Object.fromEntries(Object.entries(heads).map(([name, head]) => [head, rows.map((r) => r[name])]));
 
 /** What ± is, where a number has it in place of an interval. */
-const plainly = (rows) => (rows.some((r) => r.plainly) ? " Where a number has a ±, that is one standard error, and the bar twice as long either way, as far as bounds let it." : "");
+const plainly = (rows) => (rows.some((r) => r.plainly) ? " Where a number has a ±, the bar reaches twice as far either way, as far as bounds let it." : "");
 
 export class Figures {
   /** `app` has shown, results, now, before(), timeline and motion. */
@@ -94,12 +95,12 @@ export class Figures {
       if (!own || !p.delta) return null;
       const [low, high] = endsOf(own), { unit, factor } = display(p);
       return { name: capital(titleOf(this.campaign, r.effect)) + (several ? `: ${shortOf(p.name)}` : ""), value: own.estimate / p.delta, low: low / p.delta, high: high / p.delta,
-        note: uncertain(own, p), unit_shown: unit, from: low * factor, to: high * factor, plainly: !own.interval, strong: r.verdict === "proposed" || diagnosis.effects.includes(r.effect), parameter: p.name, unit: p.unit, estimate: own.estimate, se: own.se, delta: p.delta };
+        note: uncertain(own, p), unit_shown: unit, from: low * factor, to: high * factor, plainly: !own.interval, strong: r.verdict === "proposed" || diagnosis.effects.includes(r.effect), parameter: p.name, estimate: own.estimate * factor, se: own.se === null ? null : own.se * factor, delta: p.delta * factor };
     })).filter(Boolean);
     const strong = rows.filter((r) => r.strong);
     return {
       draw: (width, look, room) => forest(width, look, rows.slice(0, Math.max(room ? fitting(room) : FIRST, strong.length)), "size, as a multiple of the smallest that would matter", "shaded: too small to matter"),
-      columns: () => tabled(rows, { parameter: "parameter", estimate: "estimate", se: "se", unit: "unit", delta: "smallest of interest", value: "in sizes of interest", low: "95 % from, in sizes of interest", high: "95 % to, in sizes of interest", from: "95 % from", to: "95 % to", unit_shown: "unit of the interval" }),
+      columns: () => tabled(rows, { name: "effect", estimate: "estimate", se: "standard error", from: "95 % from", to: "95 % to", delta: "matters from", unit_shown: "unit", value: "in sizes that matter", low: "95 % from, in sizes that matter", high: "95 % to, in sizes that matter", parameter: "name in files" }),
       caption: () => `Each effect's size as a multiple of the smallest that would matter, fitted or, of the less likely, estimated without fitting. ${strong.map((r) => `${r.name}: ${r.note}${r.note === UNSEEN || Math.abs(r.value) < 0.005 ? "" : `, ${significant(Math.abs(r.value), 2)} times that size`}`).join(". ")}${strong.length ? "." : `None of them ${diagnosis.verdict === "outside" ? "suffices" : "is needed"}.`}${rows.length > FIRST ? ` The likeliest of ${rows.length} sizes are drawn.` : ""}${plainly(rows)}`,
     };
   }
@@ -116,8 +117,8 @@ export class Figures {
         parameter: name, unit: record.unit, given: v.prior, sd: v.prior_sd, fitted: v.value, se: v.se, low_end: Math.max(ends[0], v.lower ?? -Infinity), high_end: Math.min(ends[1], v.upper ?? Infinity), lower: v.lower, upper: v.upper, plainly: !own.interval, bound: v.at_bound ? "at its bound" : "" };
     });
     return {
-      draw: (width, look) => forest(width, look, rows, "distance from what was given, in its standard deviations", "shaded: 95 % of what was given", 1.96),
-      columns: () => tabled(rows, { parameter: "parameter", unit: "unit", given: "given", sd: "sd", fitted: "fitted", se: "se", low_end: "95 % from", high_end: "95 % to", lower: "lower bound", upper: "upper bound", bound: "bound" }),
+      draw: (width, look) => forest(width, look, rows, "distance from what was given: 1 is how well that was known", "shaded: 95 % of what was given", 1.96),
+      columns: () => tabled(rows, { name: "value", unit: "unit", given: "given", sd: "given to within (standard deviation)", fitted: "fitted", se: "standard error", low_end: "95 % from", high_end: "95 % to", lower: "lower bound", upper: "upper bound", bound: "bound", parameter: "name in files" }),
       caption: () => `What calibration made of the values that the campaign gives; zero is the value given, the band its 95 % interval as it was given, and each bar the 95 % interval now.${rows.some((r) => r.bound) ? ` Upright bars are bounds, shown where a value stands on one: ${listed(rows.filter((r) => r.bound).map((r) => r.words))}.` : " None stands on a bound."}${plainly(rows)}`,
     };
   }
@@ -142,7 +143,7 @@ export class Figures {
     const all = curves.map((c) => { const { record, name } = this.sizeOf(c.parameter), { factor, unit } = display(record); return { label: `${name} [${unitText(unit) || "1"}]`, xs: c.values.map((v) => v * factor), ys: c.heights, estimate: c.estimate * factor }; });
     return {
       draw: (width, look) => profiles(width, look, all, curves[0].level),
-      columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "misfit above the best": all.flatMap((p) => p.ys) }),
+      columns: () => ({ size: all.flatMap((p) => p.xs.map(() => p.label)), value: all.flatMap((p) => p.xs), "how much worse it fits": all.flatMap((p) => p.ys) }),
       caption: () => `How much worse the model fits where a size is held at a value and all others are fitted again; below the dashed line lies 95 % by the noise of these runs alone. What is told allows besides for runs that differ by more, and for what else may be missing. ${curves.map((c) => this.sure(c)).join(" ")}`,
     };
   }
@@ -164,8 +165,8 @@ export class Figures {
     const cells = joint.about.flatMap((v, j) => joint.about.map((u, i) => [...[0, 1].map((k) => joint.best[k] + joint.axes[k][0] * u + joint.axes[k][1] * v), joint.heights[j][i]]));
     return {
       draw: (width, look) => together(width, look, drawn),
-      columns: () => ({ [`${drawn.names[0]} [${sizes[0].record.unit}]`]: cells.map((c) => c[0]), [`${drawn.names[1]} [${sizes[1].record.unit}]`]: cells.map((c) => c[1]), "misfit above the best": cells.map((c) => c[2]) }),
-      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of ${Math.round(100 * (joint.share ?? 0.95))} % within the solid line, of 50 % within the dashed one; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other.${unlikely} The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
+      columns: () => ({ ...Object.fromEntries(sizes.flatMap(({ record, name }, k) => { const { unit, factor } = display(record); return [[`${name} [${unitText(unit) || "1"}]`, cells.map((c) => c[k] * factor)], [`${name}, in sizes that matter`, cells.map((c) => c[k] / record.delta)]]; })), "how much worse it fits": cells.map((c) => c[2]) }),
+      caption: () => `Both sizes as multiples of the smallest that would matter: with a chance of ${Math.round(100 * (joint.share ?? 0.95))} % within the solid line, of 50 % within the dashed one, by the noise of these runs alone; within the shading neither would matter.${alone.every(Number.isFinite) ? ` The rings are either alone: ${sizes.map((s, k) => `“${s.name}” ${inUnit(alone[k], s.record)}`).join(", ")}.` : ""} Where the solid line meets a zero line, one effect would do without the other.${unlikely} The dot is what fits best with both in, ${listed(sizes.map((s, k) => inUnit(joint.best[k], s.record)))}.`,
     };
   }
 
@@ -181,10 +182,19 @@ export class Figures {
     };
   }
 
+  /** Where in the shown run the cursor is. */
+  sample() {
+    const { time, at } = this.app.timeline, after = time.findIndex((t) => t >= at);
+    return after < 0 ? time.length - 1 : after;
+  }
+
   above() {
     const { app } = this;
     return {
-      draw: (width, look) => path(width, look, app.motion),
+      draw: (width, look) => {
+        const above = path(width, look, app.motion), top = Number(above.getAttribute("height")), [near, high] = app.scene.sketched(this.sample(), width, look);
+        return canvas(width, top + high, [...above.childNodes, svg("g", { transform: `translate(0 ${top})` }, near)]);
+      },
       columns: () => ({ "time [s]": app.motion.time, "x [m]": app.motion.model.x, "y [m]": app.motion.model.y, "psi [rad]": app.motion.model.psi,
         ...(app.motion.measured ? { "x measured [m]": app.motion.measured.x, "y measured [m]": app.motion.measured.y } : {}),
         ...(app.motion.before ? { "x before [m]": app.motion.before.x, "y before [m]": app.motion.before.y } : {}) }),
@@ -192,7 +202,7 @@ export class Figures {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";
         const last = measured ? measured.x.findLastIndex((v, i) => Number.isFinite(v + measured.y[i])) : -1;
-        return `Solid: where the sensors say the chair went; dashed: the model.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
+        return `Solid: where the sensors say the chair went; dashed: the model. Below, the chair ${significant(app.timeline.at, 3)} s into the run.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
       },
     };
   }
@@ -208,7 +218,7 @@ export class Figures {
       columns: () => {
         const { factor, unit } = display(record()), run = campaign.runs[app.shown.run], result = app.results[app.shown.run], c = app.shown.channel, scaled = (v) => Array.from(v, (x) => x * factor), [low, high] = app.band(result).map(scaled);
         return { "time [s]": run.time, [`measured [${unit}]`]: scaled(run.channels[c]), [`model [${unit}]`]: scaled(result.predicted[c]), [`band from [${unit}]`]: low, [`band to [${unit}]`]: high,
-          ...Object.fromEntries(app.timeline.lines.filter(([name]) => !["measured", "model"].includes(name)).map(([name, values]) => [`${name} [${unit}]`, Array.from(values)])), "error [sd]": result.errors[c] };
+          ...Object.fromEntries(app.timeline.lines.filter(([name]) => !["measured", "model"].includes(name)).map(([name, values]) => [`${name} [${unit}]`, Array.from(values)])), "error, noise = 1": result.errors[c] };
       },
       caption: () => {
         const result = app.printed ?? app.results[app.shown.run], was = app.printed ? `, ${rms(byChannel(app.before())[app.shown.channel])} before (dashed)` : "";
@@ -262,7 +272,7 @@ export class Figures {
         const shown = all.map((r) => ({ name: `${capital(r.channel)} [${r.unit || "1"}]`, cells: r.values.map((v) => ({ value: v.times, ...(v.value === undefined ? {} : { shown: significant(v.value, 2), note: `${rms(v.times)} ×` }) })) }));
         return heat(width, look, all[0]?.values.map((v) => v.step) ?? [], shown);
       },
-      columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), "RMS error": cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
+      columns: () => { const cells = all.flatMap((r) => r.values.map((v) => [r.channel, v.step, v.value, r.unit, v.times])); return { channel: cells.map((c) => c[0]), step: cells.map((c) => c[1]), error: cells.map((c) => c[2]), unit: cells.map((c) => c[3]), "noise = 1": cells.map((c) => c[4]) }; },
       caption: () => `Error of each channel on ${this.app.judged()}, at each step: large, by how much the readings are missed, and small, how many times what the noise of sensors and pushes gives.${campaign.channels.some((c) => ADDS_UP.includes(c.name)) ? " In a place or a heading that noise adds up along a run, so that the two need not fall alike." : ""}${this.missed(all)}`,
     };
   }

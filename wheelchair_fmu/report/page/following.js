@@ -15,7 +15,7 @@ export function following(campaign, subject) {
   const { time, noise } = shows, [first, second] = Object.entries(shows.readings), names = [first, second].map(([id]) => `with ${titleOf(campaign, id)}`), factor = record.display[0]?.factor ?? 1;
   const scaled = [first, second].map(([, values]) => values.map((v) => v * factor)), apart = first[1].map((v, i) => (v - second[1][i]) / noise), [low, high] = extent(apart), most = Math.max(LEAST, -low, high);
   return {
-    title: `What ${told.manoeuvre} would show`, subject: () => `${subject()}, a run that was not made`, file: () => `${campaign.name}-next`,
+    title: `What ${told.manoeuvre} would show`, subject: () => `${campaign.name}, a run that is yet to be made`, file: () => `${campaign.name}-next`,
     draw: (width, look) => lines(width, look, time, [time[0], time.at(-1)], [{ label: labelled(record), lines: scaled.map((values, k) => [names[k], values, COLOURS[k], 2 - k / 2, k ? [5, 3] : null]), height: 170 },
       { label: "apart ÷ noise", lines: [["apart", apart, "error", 1.5]], reach: [-most, most], height: 90 }]),
     columns: () => ({ "time [s]": time, ...Object.fromEntries([first, second].map(([id, values]) => [`${id} [${record.unit}]`, values])), "apart, noise = 1": apart }),

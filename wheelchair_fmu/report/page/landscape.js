@@ -23,7 +23,7 @@ export function profiles(width, look, all, level) {
     drawn.push(line(x0, down(level), x0 + w, down(level), look.ink, { "stroke-dasharray": "5 4" }), text(x0 + w, down(level) + 13, "95 %", look.faint, "end", { "font-size": 11 }));
     drawn.push(line(across(p.estimate), y0, across(p.estimate), y0 + hh, look.faint), course(curve[0], curve[1].map((y) => (y < y0 ? NaN : Math.min(y, y0 + hh))), look.accent, { "stroke-width": 2 }));
     broken(p.label, wide - 36, look, 12, 400, 2).forEach((t, k) => drawn.push(text(x0 + w / 2, y0 + hh + 34 + 14 * k, t, look.ink, "middle")));
-    if (n % abreast === 0) drawn.push(text(0, 0, "misfit, above the best", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
+    if (n % abreast === 0) drawn.push(text(0, 0, "how much worse it fits", look.ink, "middle", { transform: `translate(${x0 - 33} ${y0 + hh / 2}) rotate(-90)` }));
   });
   return canvas(width, Math.ceil(all.length / abreast) * (HIGH + 10), drawn);
 }

@@ -2,7 +2,7 @@
 
 const UNITS = {
   1: "", "m/s2": "m/s²", "N.m": "N m", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s2/m2": "N s²/m²",
-  "N.m.s/rad": "N m s/rad", "N.m/rad": "N m/rad", deg: "°", "deg/s": "°/s",
+  "N.s": "N s", "N.m.s": "N m s", "N.m.s/rad": "N m s/rad", "N.m/rad": "N m/rad", deg: "°", "deg/s": "°/s",
 };
 
 /** A unit's name in print; "1" is none. */

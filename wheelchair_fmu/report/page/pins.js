@@ -2,7 +2,7 @@
 
 import { byId, h } from "page/dom";
 import { inUnit, rms } from "page/numbers";
-import { listed, titleOf } from "page/words";
+import { listed, shortOf, titleOf } from "page/words";
 
 export const LABELS = ["A", "B", "C"];
 const PLAINLY = 3, NAMED = 3; // standard errors from what was fitted, and values that are told
@@ -46,7 +46,7 @@ export class Pins {
 
   words(values) {
     const on = this.campaign.effects.filter((e) => e.parameters.some((p) => values[p.name]));
-    const effects = listed(on.map((e) => `${titleOf(this.campaign, e.id)} (${e.parameters.map((p) => inUnit(values[p.name] ?? 0, p)).join(", ")})`)) || "no effect";
+    const effects = listed(on.map((e) => `${titleOf(this.campaign, e.id)} (${e.parameters.map((p) => `${e.parameters.length > 1 ? `${shortOf(p.name)} ` : ""}${inUnit(values[p.name] ?? 0, p)}`).join(", ")})`)) || "no effect";
     return [effects, ...this.elsewhere(values).map((p) => `${p.meaning} ${inUnit(values[p.name], p)}`)].join("; ");
   }
 

@@ -2,10 +2,12 @@
 // and casters turning, and arrows of what pushes it.
 
 import { NARROW, h, sized, write } from "page/dom";
-import { extent, round, tick } from "page/draw";
+import { broken, extent, round, svg, text, tick } from "page/draw";
+import { Pen } from "page/pen";
 
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
+const SKETCH = 300; // units of drawing that the close view is high in a file, at most
 const LOW = 196; // px high on a phone, so that the chair, the player and the curves are on one screen
 
 export class Scene {
@@ -91,7 +93,7 @@ export class Scene {
 
   /** All of it at sample `i`. */
   draw(i) {
-    const c = this.canvas.getContext("2d"), { motion, look, near } = this, { model, measured } = motion;
+    const c = this.canvas.getContext("2d"), { motion, near } = this, { model, measured } = motion;
     if (!(near.w > 0)) return;
     [measured, model].forEach((p, k) => {
       const there = p && Number.isFinite(p.x[i] + p.y[i]), [x, y] = there ? this.overview(p.x[i], p.y[i]) : [-99, -99];
@@ -99,6 +101,13 @@ export class Scene {
     });
     c.setTransform(this.scale, 0, 0, this.scale, 0, 0);
     c.clearRect(0, 0, near.w, near.h);
+    this.paint(c, i);
+    this.says(i);
+  }
+
+  /** The chair at sample `i`, on a canvas or by a pen. */
+  paint(c, i) {
+    const { motion: { model, measured }, look, near } = this;
     this.floor(c, i);
     const size = Math.min(near.w, near.h) / CLOSE, pose = (p) => {
       const [right, down] = this.turned(p.x[i] - model.x[i], p.y[i] - model.y[i]);
@@ -107,7 +116,15 @@ export class Scene {
     if (measured && Number.isFinite(measured.x[i] + measured.psi[i])) this.chair(c, i, pose(measured), size, look.measured, true);
     this.chair(c, i, pose(model), size, look.model, false);
     this.arrows(c, i, pose(model), size);
-    this.says(i);
+  }
+
+  /** The same for a file: [what is drawn, its height], `width` wide, with the words of its colours below. */
+  sketched(i, width, look) {
+    const pen = new Pen(), high = Math.min(width, SKETCH), on = Object.assign(Object.create(Scene.prototype), this, { look, near: { w: width, h: high } });
+    on.paint(pen, i);
+    const rows = this.colours().flatMap(([words, colour]) => broken(`${words}${colour === "error" ? this.missed(i) : ""}`, width - 20, look, 11).map((t, k) => [t, k ? null : colour]));
+    const named = rows.map(([t, colour], k) => [colour ? svg("rect", { x: 2, y: high + 10 + 15 * k, width: 9, height: 9, fill: look[colour] }) : null, text(18, high + 18 + 15 * k, t, look.ink, "start", { "font-size": 11 })]);
+    return [[svg("svg", { width, height: high, viewBox: `0 0 ${width} ${high}`, overflow: "hidden" }, pen.drawn), named], high + 15 * rows.length + 14];
   }
 
   /** Tiles that stay on the floor, so that one sees it move. */
@@ -205,19 +222,27 @@ export class Scene {
 
   /** What is what, where that has changed. */
   legend() {
-    const { lacking, measured } = this.motion, rows = [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good"], ["side force of a tyre", "ink"],
-      (lacking.force || lacking.moment) && ["force that is missing to move as was measured (arrow × 10): ", "error"]].filter(Boolean), shape = rows.join();
+    const rows = this.colours(), shape = rows.join();
     if (shape === this.shape) return;
     this.shape = shape;
     this.key.replaceChildren(...rows.map(([words, colour]) => h("li", {}, h("i", { style: `background:var(--${colour})` }), words, colour === "error" ? this.amount : null)));
   }
 
+  /** What is what: [words, colour]. */
+  colours() {
+    const { lacking, measured } = this.motion;
+    return [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good"], ["side force of a tyre", "ink"],
+      (lacking.force || lacking.moment) && ["force that is missing to move as was measured (arrow × 10): ", "error"]].filter(Boolean);
+  }
+
+  says(i) { write(this.amount, this.missed(i)); }
+
   /** How much is missing at sample `i`. */
-  says(i) {
+  missed(i) {
     const { lacking } = this.motion, said = [], [force, moment] = [lacking.force?.(i), lacking.moment?.(i)];
     if (Number.isFinite(force)) said.push(`${tick(Number(force.toFixed(1)))} N`);
     if (Number.isFinite(moment)) said.push(`${tick(Number(moment.toFixed(2)))} N m`);
-    write(this.amount, said.join(", ") || "not known here");
+    return said.join(", ") || "not known here";
   }
 }
 

@@ -8,7 +8,7 @@ import { Figure } from "page/figure";
 import { bars } from "page/forest";
 import { labelled, lines } from "page/lines";
 import { rms } from "page/numbers";
-import { capital, channelOf, runOf } from "page/words";
+import { capital, channelOf, runOf, titleOf } from "page/words";
 
 const SLIGHT = 1.5; // error of a channel, noise = 1: below that, its curves hardly part to the eye
 const LEAST = 0.6; // of an axis of mean errors either side of zero, so that what is next to nothing looks it
@@ -29,7 +29,7 @@ function smooth(time, values) {
 
 export class Story {
   /** `app` has values, results and put; `turned(screen)` hears which is open. */
-  constructor(campaign, app, open, turned) {
+  constructor(campaign, app, { screen, guess }, turned) {
     Object.assign(this, { campaign, app, turned });
     this.screens = [...document.querySelectorAll(".screen")];
     this.last = campaign.diagnosis.models.at(-1);
@@ -45,7 +45,13 @@ export class Story {
     this.putting();
     this.advising();
     new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; }).observe(this.curve);
-    this.go(Math.min(Math.max(Math.round(open ?? 0), 0), this.screens.length - 1));
+    this.go(Math.min(Math.max(Math.round(screen ?? 0), 0), this.screens.length - 1));
+    this.guesses.get(guess)?.click();
+  }
+
+  /** What was guessed, for the address. */
+  guess() {
+    return this.choice ? { guess: this.choice.effect } : {};
   }
 
   told(kind) {
@@ -66,13 +72,15 @@ export class Story {
   guessing() {
     const answer = h("p", { class: "answer", role: "status" });
     this.guessed = h("div", { class: "curve" });
-    const choices = this.told("guess").choices.map((c) => h("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: ({ currentTarget }) => {
+    const told = this.told("guess").choices, choices = told.map((c) => h("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: ({ currentTarget }) => {
       for (const b of choices) b.setAttribute("aria-pressed", b === currentTarget);
       currentTarget.dataset.right = c.right;
       answer.textContent = c.answer;
       this.choice = c;
       this.reveal();
+      this.turned();
     } }, capital(c.title)));
+    this.guesses = new Map(told.map((c, i) => [c.effect, choices[i]]));
     this.stages.guess.replaceChildren(h("div", { class: "choices-list" }, choices), answer, this.guessed);
   }
 
@@ -160,8 +168,9 @@ export class Story {
 
   /** The button as it is now, though the numbers may still come. */
   pressed() {
-    const it = this.told("put").title.startsWith("Put them") ? "them" : "it";
-    this.toggle.textContent = this.isIn() ? `take ${it} out again` : `put ${it} in`;
+    const { diagnosis } = this.campaign, [first] = diagnosis.effects.filter((e) => diagnosis.ties.flat().includes(e)), told = this.told("put").title;
+    const it = told.startsWith("Put them") ? "them" : "it", which = told.startsWith("Put one in") && first ? titleOf(this.campaign, first) : "";
+    this.toggle.textContent = which ? `${this.isIn() ? "take out" : "put in"}: ${which}` : this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
   }
 

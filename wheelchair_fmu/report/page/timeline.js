@@ -57,6 +57,7 @@ export class Timeline {
     this.scrub.addEventListener("input", () => { this.stop(); this.go(this.scrub.valueAsNumber); this.moved(); });
     this.speed = h("select", { "aria-label": "speed of playing" }, SPEEDS.map((s) => h("option", { value: s, selected: s === 1 }, `${s}×`)));
     this.loop = h("input", { type: "checkbox", id: "loop" });
+    for (const one of [this.speed, this.loop]) one.addEventListener("change", () => this.moved());
     this.clock = h("output", { class: "clock" });
     this.whole = button("whole run", "show the whole run", () => { this.zoom(this.time[0], this.time.at(-1)); this.moved(); });
     return h("div", { class: "player" }, this.play, this.scrub, this.clock, this.speed, h("label", { for: "loop" }, this.loop, " loop"), this.whole);
@@ -74,6 +75,8 @@ export class Timeline {
     [this.from, this.to] = [kept?.from ?? this.time[0], kept?.to ?? this.time.at(-1)];
     if (!(this.from < this.to)) [this.from, this.to] = [this.time[0], this.time.at(-1)];
     this.at = Math.min(Math.max(kept?.t ?? this.time[0], this.time[0]), this.time.at(-1));
+    if (SPEEDS.includes(kept?.speed)) this.speed.value = kept.speed;
+    if (kept?.loop) this.loop.checked = true;
     [this.scrub.min, this.scrub.max] = [this.time[0], this.time.at(-1)];
     this.drawn.clear();
     this.cells = Object.keys(run.channels).map((name, k) => {
@@ -223,6 +226,11 @@ export class Timeline {
       this.scrub.setAttribute("aria-valuetext", said);
     }
     this.scene.draw(i);
+  }
+
+  /** How it is played, for the address, where that is not as it begins. */
+  pace() {
+    return { ...(this.speed.value === "1" ? {} : { speed: Number(this.speed.value) }), ...(this.loop.checked ? { loop: true } : {}) };
   }
 
   toggle() {

@@ -115,6 +115,7 @@ class Workbench {
 
   show(state) {
     this.state = state;
+    byId("loading").hidden = true;
     write(byId("remark"), state.remark ?? "");
     byId("name").textContent = state.files.length ? state.campaign?.campaign?.name ?? "" : "";
     this.showForms();
@@ -289,7 +290,7 @@ class Workbench {
     write(words, kept ? "" : running ? this.progressed(job, bar) : waits ? spent(doing) : news ? this.came(job) : "");
     byId("cancel").hidden = !running;
     byId("shut").hidden = running || waits;
-    const to = news && job.state === "done" ? SEE[job.kind] : null;
+    const mend = job?.kind === "import" && this.state.faults.some((f) => f.severity === "error"), to = news && job.state === "done" ? (mend ? TO_MEND : SEE[job.kind]) : null;
     byId("see").hidden = !to;
     if (to) [byId("see").href, byId("see").textContent] = to;
     write(byId("said"), running ? this.plain(job.lines.at(-1) ?? "starting") : waits ? doing.words : words.textContent);
@@ -301,10 +302,11 @@ class Workbench {
     const several = Array.isArray(this.state.campaign?.recording), first = kind === "diagnose" && several ? OF_LABS : STEPS[kind] + (kind === "calibrate" ? this.state.campaign.run.length : 0);
     const many = usual?.steps ?? first, length = usual?.seconds ?? (steps >= FEW_STEPS ? (seconds * many) / steps : null), late = usual?.seconds ? seconds >= usual.seconds : many && steps > many;
     if (usual || (many && steps <= many)) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
-    const left = length ? length - seconds : Infinity, least = this.left = steps <= 1 ? left : Math.min(this.left ?? Infinity, left); // it says no more than before,
-    const told = left < LONGER * least ? least : Infinity; // and nothing once that is far too little
+    if (!length || steps <= 1) this.ends = length; // when it is thought to end, which is not put off for every little
+    else if (!this.ends || length < this.ends || length - seconds > LONGER * (this.ends - seconds)) this.ends = length;
+    const told = this.ends ? this.ends - seconds : Infinity;
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
-      late ? usual ? "longer than the last time" : "these recordings take longer than most" : told >= 1 && told < Infinity ? `about ${whole(told)} left` : ""].filter(Boolean).join(" · ");
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : told >= 1 && Number.isFinite(told) ? `about ${whole(told)} left` : ""].filter(Boolean).join(" · ");
   }
 
   /** What came of a job, in a sentence. */
@@ -491,7 +493,9 @@ class Workbench {
     form.elements.to.addEventListener("change", () => { this.showWords(); check(); });
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
-      const text = (name) => form.elements[name].value.trim(), number = (name) => form.elements[name].valueAsNumber;
+      const text = (name) => form.elements[name].value.trim(), number = (name) => decimal(form.elements[name].value);
+      for (const name of ["size", "lower", "upper"]) form.elements[name].setCustomValidity(Number.isFinite(number(name)) ? "" : "give a number, as in 0.5");
+      if (!form.reportValidity()) return;
       const content = { id: text("id"), title: text("title"), to: text("to"), expression: text("expression"), size: number("size"), lower: number("lower"), upper: number("upper") };
       byId("tried").textContent = "It is put into the catalogue …";
       const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
@@ -565,6 +569,7 @@ const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { month: "
 const whole = (seconds) => (seconds < 120 ? `${Math.round(seconds)} s` : `${Math.floor(seconds / 60)} min ${String(Math.round(seconds % 60)).padStart(2, "0")} s`);
 
 /** Where to look once it has ended: [address, words]. */
+const TO_MEND = ["#faults", "see what is to be mended"];
 const SEE = { import: ["#measurements-title", "see what is in them"], diagnose: ["#outcome", "read the verdict"], calibrate: ["#history", "see the models"], add: ["#history", "see the models"], try: ["#tried", "see what it does"] };
 
 /** Which end of which job it is, so that it can be put away. */
