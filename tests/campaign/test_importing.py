@@ -64,6 +64,35 @@ def test_recordings_without_a_pattern_are_runs_of_one_device():
     }
 
 
+SEVERAL = [f"run{i}_{device}" for i in range(1, 4) for device in ("torque.csv", "imu.csv", "cart.csv")]
+LOGGERS = [f"{logger}_{what}.csv" for what in ("slalom", "coast", "spin") for logger in ("alpha", "beta", "gamma")]
+
+
+def test_most_files_of_a_device_decide_where_one_has_other_columns():
+    found = named(SEVERAL, lambda file: "odd" if file == "run1_imu.csv" else file.partition("_")[2])
+    assert set(found.values()) == {(f"run{i}", device) for i in (1, 2, 3) for device in ("torque", "imu", "cart")}
+
+
+def test_most_is_more_than_half():
+    two = [file for file in SEVERAL if not file.startswith("run3")]
+    found = named(two, lambda file: "odd" if file == "run1_imu.csv" else file.partition("_")[2])
+    assert len({run for run, _ in found.values()}) == len(two), "of two files nobody knows which one is meant"
+
+
+def test_loggers_are_no_runs_though_most_of_them_have_the_same_columns():
+    """Of each manoeuvre there are files of two kinds; its loggers are alike by name alone, so nothing tells them apart."""
+    found = named(LOGGERS, lambda file: "wheels" if file.startswith("gamma") else "imu")
+    assert not {run for run, _ in found.values()} & {"alpha", "beta", "gamma"}
+    assert len(set(found.values())) == len(LOGGERS)
+
+
+def test_a_pattern_of_one_device_stands_where_headings_are_only_spelt_otherwise():
+    files, odd = [f"run{i}.csv" for i in range(1, 5)], "run2.csv"
+    kind = {file: int(file == odd) for file in files}
+    assert {p.device for p in placed(files, kind, lambda one, other: True)} == {"csv"}
+    assert len({p.device for p in placed(files, kind, lambda one, other: False)}) == 2, "as other columns are another logger's"
+
+
 @pytest.mark.parametrize(
     ("header", "quantity", "axis", "side"),
     [
@@ -224,6 +253,61 @@ def test_sensors_without_names_are_told_by_what_they_saw(tmp_path):
     found, by = chosen(make(tmp_path, write))
     assert ("imu1", "wheel_speed_r") in by and ("imu3", "wheel_speed_l") in by and ("imu2", "yaw_rate") in by
     assert not [d for p in found.plans for d in p.doubts]
+
+
+def torques(folder, run, s, rng, names=("links [N·m]", "rechts [N·m]"), size=1.0):
+    """A logger of both rims with three columns, and one of the chair's speed."""
+    time, left, right = lab.seen(s, 100, 0.5, "F_rl", "F_rr")
+    values = [size * lab.RADIUS * push + rng.normal(0, 0.1 * size, len(time)) for push in (left, right)]
+    table = {"Zeit [s]": time} | {f"Antriebsmoment {n}": v for n, v in zip(names, values, strict=True)}
+    pd.DataFrame(table).to_csv(folder / f"{run}_Moment.csv", index=False)
+    time, left, right = lab.seen(s, 100, 0.2, "wheel_speed_l", "wheel_speed_r")
+    pd.DataFrame({"Zeit [s]": time, "v links [m/s]": left, "v rechts [m/s]": right}).to_csv(folder / f"{run}.csv", index=False)
+
+
+@pytest.mark.parametrize("odd", ["run01", "run02"])
+@pytest.mark.parametrize(
+    ("names", "size", "lost"),
+    [
+        (("link [N·m]", "rechts [N·m]"), 1.0, True),
+        (("left [N·m]", "rechts [N·m]"), 1.0, True),
+        (("links [kN·m]", "rechts [kN·m]"), 1e-3, False),
+    ],
+)
+def test_a_heading_that_one_file_has_otherwise_takes_no_lab_apart(tmp_path, odd, names, size, lost):
+    def write(folder, run, s, rng):
+        torques(folder, run, s, rng, *((names, size) if run == odd else ()))
+
+    found, by = chosen(make(tmp_path, write, 4))
+    assert found.runs == ["run01", "run02", "run03", "run04"]
+    assert [plan.name for plan in found.plans] == ["csv", "moment"] and all(len(of) == 2 for of in found.files.values())
+    choice = by["moment", "F_rl"]
+    assert choice.header == "Antriebsmoment links [N·m]", "as most files call it, also where the first one does not"
+    series = {run: found.plans[1].series(run, choice) for run in found.runs}
+    assert [run for run in found.runs if series[run] is None] == ([odd] if lost else [])
+    peaks = [np.max(one[1]) for one in series.values() if one is not None]
+    assert max(peaks) < 5 * min(peaks), "each file is read in its own unit"
+
+
+def test_files_without_a_pattern_stay_one_device_s_where_one_is_spelt_otherwise(tmp_path):
+    names = ("slalom-quick", "slalom-slow", "straight-quick", "straight-slow")
+    for i, (name, s) in enumerate(zip(names, lab.rides(0, 4), strict=True)):
+        time, left, right = lab.seen(s, 100, 0.2, "wheel_speed_l", "wheel_speed_r")
+        table = {"Zeit [s]": time, "v wheel links [m/s]": left, "v wheel rechts [m/s]": right}
+        table = {h.replace("rechts", "recht") if i == 1 else h: v for h, v in table.items()}
+        pd.DataFrame(table).to_csv(tmp_path / f"{name}.csv", index=False)
+    found = find([tmp_path], lab.RADIUS)
+    assert len(found.plans) == 1 and len(found.runs) == len(names)
+
+
+def test_loggers_of_two_wheels_that_differ_in_the_side_alone_stay_two(tmp_path):
+    """Nothing in the names tells them apart, but each heading says its side."""
+    for i, s in enumerate(lab.rides(0, 5)):
+        time, push = lab.seen(s, 100, 0.2, "F_rl")
+        side = "links" if i < 3 else "rechts"
+        table = {"Zeit [s]": time, f"Antriebskraft {side} [N]": push}
+        pd.DataFrame(table).to_csv(tmp_path / f"{('slalom', 'spin', 'coast', 'eight', 'start')[i]}.csv", index=False)
+    assert len(find([tmp_path], lab.RADIUS).plans) == 2
 
 
 def test_a_unit_that_no_file_gives_is_told_by_the_signals_and_marked(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import tomllib
 
 import numpy as np
@@ -98,6 +99,19 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
 def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
     done = imported(raw, "-o", tmp_path / "c", *words)
     assert done.exit_code == 2 and said in done.output and not (tmp_path / "c").exists()
+
+
+def test_a_misspelt_heading_is_said_by_import(raw, tmp_path):
+    folder = tmp_path / "raw"
+    shutil.copytree(raw, folder)
+    odd = folder / "run02_imu.csv"
+    odd.write_text(odd.read_text().replace("Gyroscope Z", "Gyrscope Z"))
+    done = imported(folder, "-o", tmp_path / "c", "--radius", lab.RADIUS)
+    said = [line for line in done.output.splitlines() if "Gyrscope Z" in line]
+    assert said == [
+        "warning: run runs/run02_imu.csv line 1 column 'Gyrscope Z (deg/s)': it is called 'Gyroscope Z (deg/s)' in 2 other "
+        "files, and yaw_rate is not read from it; correct the header in this file"
+    ]
 
 
 def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):

@@ -39,6 +39,13 @@ def test_a_misspelt_column_is_asked_after_beside_it() -> None:
     assert fault["column"] == "ay [m/s2]" and fault["file"] == "a.csv"
 
 
+def test_a_heading_that_one_file_spells_otherwise_is_corrected_in_the_file() -> None:
+    fact = "it is called 'v links' in 6 other files, and wheel_speed_l is not read from it"
+    fault = told(run_fault("a.csv", fact, "correct the header in this file", 1, "v link", WARNING))
+    assert fault["what"] == f"{fact}; correct it in the file, and drop the file here again"
+    assert fault["column"] == "v link" and fault["file"] == "a.csv"
+
+
 def test_faults_of_a_loggers_file_name_no_place_of_a_file_that_nobody_sees(tmp_path) -> None:
     session = Session.begin(tmp_path)
     (session.campaign / "odd.csv").write_bytes(BAD)

@@ -71,7 +71,7 @@ def bind(device: Device, table: Table, taken: Collection[str] = ()) -> Bindings:
     found: dict[str, Binding] = {}
     faults: list[Fault] = list(_twice(file, headers))
     absent: list[str] = []
-    places = _Places(headers)
+    places = Places(headers)
     for channel in (TIME, *BY_NAME.values(), *SOURCES):
         want = wanted(device, channel.name)
         if want.renamed and not want.header:
@@ -119,7 +119,7 @@ def _near(header: str, missing: Sequence[str]) -> list[str]:
     return [name for name, ratio in alike.items() if ratio == best >= NEAR]
 
 
-class _Places:
+class Places:
     """Where each header stands: by the whole header first, then without the bracket, then without an ending that tells the
     unit."""
 
@@ -144,15 +144,13 @@ def _twice(file: str, headers: Sequence[str]) -> Iterator[Fault]:
 
 
 def _scaled(device: Device, table: Table, channel: Channel, want: Wanted, index: int) -> tuple[Binding, list[Fault]]:
-    """The binding with its factor to SI; 1 where there is none, and then a fault."""
+    """The binding with its factor to SI; 1 where there is none, and then a fault. The unit that the file gives goes before that
+    of the header in [columns]; a check of all files says where these differ."""
     file, header = table.file, table.headers[index]
     own, asked = table.units[index], split(want.header)[1]
     faults = []
     if index in table.moments:  # read into seconds already
         want, own, asked = replace(want, unit=None), "s", None
-    if own is not None and asked is not None and own != asked and want.unit is None:
-        fact = f"[columns] {channel.name} says [{asked}], the file says [{own}]"
-        faults.append(run_fault(file, fact, "correct one of them, or settle it by unit = ...", 1, header))
     unit = next((u for u in (want.unit, own, asked) if u is not None), None)
     if unit is None and want.renamed:
         fact = f"the column that is {channel.name} gives no unit"

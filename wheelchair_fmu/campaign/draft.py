@@ -95,7 +95,7 @@ class Draft(Readings):
         """Without what only checks of the run itself read: the file's text and its columns as they were."""
         return replace(
             self,
-            table=FrameTable(self.file, self.table.headers, frame=pd.DataFrame()),
+            table=FrameTable(self.file, self.table.headers, self.table.units, moments=self.table.moments, frame=pd.DataFrame()),
             rows=Rows({}, None),
             whole_time=None,
             stamps=None,

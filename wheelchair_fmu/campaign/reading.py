@@ -15,12 +15,12 @@ from ..given import what_is
 from ..model.former import renamed
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
-from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, RUN_CHECKS, Assembly
+from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, HEADING_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
 from .checks.sides import exchanged
 from .devices import Part, parts, point_of
 from .document import FILE, Document, Entry, flatten, load, numbers
-from .draft import prepare
+from .draft import Draft, prepare
 from .noise import gather
 from .recorded import Recorded
 from .records import Campaign, Run
@@ -73,18 +73,19 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
     if doc is None:
         return None, faults
     faults += crowded(doc) or _by_line(fault for judge in DOCUMENT_CHECKS for fault in _few(judge(doc, known)))
-    runs, tables = [], dict[Any, Any]()
+    runs, of_runs, tables = [], list[Fault](), dict[Any, Any]()
     of_run = [parts(doc, entry) for entry in doc.entries]
     left = Counter(part.file for some in of_run for part in some)
     for entry, some in zip(doc.entries, of_run, strict=True):
         recorded, met = _recorded(doc, entry, some, tables)
         if recorded is not None:
             runs.append(recorded.slim())
-        faults += met
+        of_runs += met
         for part in some:
             left[part.file] -= 1
         if not any(left[part.file] for part in some):
             tables.clear()  # cuts of one file stand together as a rule; what is needed again is read again
+    faults += [*_of_headings(runs), *of_runs]  # a heading first, as it is the cause of what a run lacks
     asked = _asked(doc)
     shown = rims(runs, asked) if asked else {}
     faults += unfounded(runs, shown)
@@ -92,6 +93,14 @@ def _assess(path: str | Path, known: Known | None) -> tuple[Assembly | None, lis
     if runs:
         faults += [fault for judge in CAMPAIGN_CHECKS for fault in judge(assembly)]
     return assembly, once(faults)
+
+
+def _of_headings(runs: Iterable[Recorded]) -> list[Fault]:
+    """What is odd in the headings of each device's files, beside one another."""
+    devices: dict[str, list[Draft]] = {}
+    for draft in (draft for run in runs for draft in run.drafts):
+        devices.setdefault(draft.part.device.name, []).append(draft)
+    return [fault for judge in HEADING_CHECKS for own in devices.values() for fault in judge(own)]
 
 
 def _asked(doc: Document) -> list[str]:

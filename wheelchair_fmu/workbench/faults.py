@@ -19,6 +19,8 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"remove it and write constant = .*", f"say under “{RUNS}” that nobody pushed, or give the values"),
     (r"add columns such as .*", f"choose under “{COLUMNS}” what at least one column is"),
     (r"correct the header, or name it .*", f"say what it is under “{COLUMNS}”"),
+    (r"correct the header in this file", "correct it in the file, and drop the file here again"),
+    (r"correct the header in this file if .*", "where it is wrong, correct it in the file, and drop the file here again"),
     (r"name them in \[columns\] if .*", f"where they measure something, say under “{COLUMNS}” what"),
     (r"remove one, or choose one by its whole header .*", f"make one of them “not used” under “{COLUMNS}”"),
     (r"write \[columns\] .* with its unit", f"write its unit beside it under “{COLUMNS}”"),

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import ERROR, WARNING, Fault, run_fault
-from ..channels import BODY_NAMES, BY_NAME, INPUT_NAMES, TIME
-from ..draft import Draft, constants
+from ..channels import BODY_NAMES, BY_NAME, INPUT_NAMES
+from ..draft import Draft
 from ..resampled import REPEATED
 
 FEWEST = 10  # samples of a run
@@ -116,14 +116,6 @@ def spike(draft: Draft) -> Iterator[Fault]:
         yield run_fault(draft.file, fact, cure, draft.line(i), draft.header(name), WARNING)
 
 
-def absent_column(draft: Draft) -> Iterator[Fault]:
-    """Only a warning: another run may have it. That no run has it is an error of the campaign."""
-    for name in draft.bindings.absent:
-        if name != TIME.name and name not in draft.values and name not in constants(draft.entry):
-            cure = "not measured in this run; give it by constant if it is known"
-            yield run_fault(draft.file, f"no column for {name}, which [columns] renames", cure, 1, severity=WARNING)
-
-
 FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
     too_short,
     input_gap,
@@ -132,5 +124,4 @@ FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
     implausible,
     resampled,
     spike,
-    absent_column,
 )

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,9 @@ import numpy as np
 from ...faults import NOTE, WARNING, Fault
 from ...tables import Table
 from ...units import UnitError, factor
+from ..binding import Places
 from ..formats import open_recording, read_head
+from ..spelling import respelt
 from .guesses import Guess, guess, side_of, sides
 from .naming import placed
 
@@ -50,11 +54,13 @@ class Opened:
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A device: its recordings by run, its columns, the side that its name tells, its time column and the unit of that."""
+    """A device: its recordings by run, the one of these that its columns are of, these, the side that its name tells, its time
+    column and the unit of that."""
 
     name: str
     side: str
     files: Mapping[str, Opened]
+    typical: Opened
     columns: tuple[Column, ...]
     time: Column | None
     time_unit: str
@@ -69,28 +75,43 @@ class Source:
         file's. None where the run has no such column."""
         if run not in self.files or self.time is None:
             return None
-        key = run, column.index
+        key, table = (run, column.index), self.files[run].table
         if key not in self._known:
-            self._known[key] = self._read(self.files[run].table, column)
+            self._known[key] = self._read(table, column)
         found = self._known[key]
         if found is None or not si:
             return found
-        return found[0], scale_of(unit if unit is not None else column.unit, si) * found[1]
+        return found[0], scale_of(unit if unit is not None else _unit_in(table, column), si) * found[1]
 
     def _read(self, table: Table, column: Column) -> Series | None:
         assert self.time is not None
-        if column.header not in table.headers or self.time.header not in table.headers:
+        clock, at = _place_in(table, self.time), _place_in(table, column)
+        if clock is None or at is None:
             return None
-        clock, at = table.headers.index(self.time.header), table.headers.index(column.header)
         values = table.rows(sorted({clock, at})).values
         if not np.isfinite(values[clock]).any():
             return None
-        time = values[clock] * (1.0 if clock in table.moments else scale_of(self.time_unit, "s"))
+        unit = self.time_unit if self.time_by_size else _unit_in(table, self.time) or self.time_unit
+        time = values[clock] * (1.0 if clock in table.moments else scale_of(unit, "s"))
         good = np.isfinite(time)
         good[good] = np.concatenate([[True], np.diff(time[good]) > 0])[: good.sum()]
         good &= time < np.nanmin(time) + LONGEST
         found = np.where(np.isfinite(values[at]), values[at], np.nan)[good]
         return (time[good], found) if np.isfinite(found).sum() > FEWEST else None
+
+
+def _place_in(table: Table, column: Column) -> int | None:
+    """Where a column stands in a file, whose header may have another unit than in others."""
+    if column.header in table.headers:
+        return table.headers.index(column.header)
+    return next(iter(Places(table.headers).of(column.header)), None)
+
+
+def _unit_in(table: Table, column: Column) -> str | None:
+    """The unit that a file gives for a column; where it gives none, that which others give."""
+    at = _place_in(table, column)
+    own = table.units[at] if at is not None else None
+    return own if own is not None else column.unit
 
 
 def scale_of(unit: str | None, si: str) -> float:
@@ -140,23 +161,34 @@ def _lacking(table: Table, file: str) -> Fault | None:
     return None
 
 
-def kinds(files: Sequence[Opened]) -> dict[str, int]:
+Kind = frozenset[str]  # the headers of the first of its files
+
+
+def kinds(files: Sequence[Opened]) -> dict[str, Kind]:
     """Which files may be of one device: those with mostly the same headers, as a marker more or a column less may happen."""
-    heads: list[set[str]] = []
+    heads: list[Kind] = []
     found = {}
     for one in files:
-        own = set(one.table.headers)
-        near = next((i for i, head in enumerate(heads) if len(own & head) > ALIKE * len(own | head)), len(heads))
-        if near == len(heads):
+        own = frozenset(one.table.headers)
+        near = next((head for head in heads if len(own & head) > ALIKE * len(own | head)), None)
+        if near is None:
             heads.append(own)
-        found[one.file] = near
+        found[one.file] = own if near is None else near
     return found
+
+
+@lru_cache(256)
+def same_but_spelt(one: Kind, other: Kind) -> bool:
+    """Are these mostly the same headers, where those count as the same that are only spelt otherwise?"""
+    again = respelt(one, other)
+    same = len(one & other) + len(again)
+    return bool(again) and same > ALIKE * (len(one) + len(other) - same)
 
 
 def sources(files: Sequence[Opened], on: Mapping[str, str] = {}) -> tuple[list[Source], list[str]]:
     """The devices, and the names of the runs in order. `on` is the side of devices of which somebody has said it."""
     by_file = {one.file: one for one in files}
-    places = placed(list(by_file), kinds(files))
+    places = placed(list(by_file), kinds(files), same_but_spelt)
     runs = sorted({place.run for place in places}, key=_natural)
     devices = list(dict.fromkeys(place.device for place in sorted(places, key=lambda p: _natural(p.run))))
     told = {**sides(devices), **on}
@@ -171,8 +203,8 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 def _source(name: str, side: str, files: Mapping[str, Opened]) -> Source:
     files = dict(sorted(files.items(), key=lambda item: _natural(item[0])))
-    first = next(iter(files.values()))
-    table = first.table
+    typical = _typical(list(files.values()))
+    table = typical.table
     columns = tuple(
         Column(i, header, unit, guess(header, unit) if header else None)
         for i, (header, unit) in enumerate(zip(table.headers, table.units, strict=True))
@@ -180,7 +212,14 @@ def _source(name: str, side: str, files: Mapping[str, Opened]) -> Source:
     time = next((c for c in columns if c.index == table.time), None)
     time = time or next((c for c in columns if c.quantity == "time" and (c.unit is None or c.unit not in ("1", "-"))), None)
     unit, by_size = _time_unit(table, time)
-    return Source(name, side or _written_side(first), files, columns, time, unit, by_size)
+    return Source(name, side or _written_side(typical), files, typical, columns, time, unit, by_size)
+
+
+def _typical(files: Sequence[Opened]) -> Opened:
+    """The first recording that has the most of the headers that more than half of them have: none is spelt otherwise there."""
+    counts = Counter(header for one in files for header in set(one.table.headers))
+    usual = {header for header, n in counts.items() if 2 * n > len(files)}
+    return max(files, key=lambda one: len(usual.intersection(one.table.headers)))
 
 
 def _time_unit(table: Table, time: Column | None) -> tuple[str, bool]:

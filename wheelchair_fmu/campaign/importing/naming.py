@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePath
+from typing import Any
 
 RUN_WORDS = (
     "run",
@@ -80,14 +81,28 @@ def parted(file: str) -> Name:
     return Name(file, tuple(word for word in words if word), plain.suffix.lstrip(".").lower())
 
 
-def placed(files: Sequence[str], kind: Mapping[str, Hashable]) -> list[Placed]:
-    """The run and the device of each file. Files of equal `kind` have the same columns: only these can be one device's."""
+Alike = Callable[[Any, Any], bool]  # of two kinds
+Judge = Callable[[Mapping[str, Sequence[Hashable]]], dict[str, set[Hashable]]]  # by device, kinds that its files may have
+
+
+def placed(files: Sequence[str], kind: Mapping[str, Hashable], respelt: Alike | None = None) -> list[Placed]:
+    """The run and the device of each file. Files of equal `kind` have the same columns: only these can be one device's, as a
+    pattern that takes loggers for runs has files of several loggers as one device's.
+
+    Where no pattern holds then, one does in which most files of each device have the same columns, so that a wrong heading in
+    one file takes no lab apart. Most are more than half, and the others have to be `respelt`, the same columns but for how
+    headings are spelt; or half of the devices, at least, have to agree in all their files, which they do not where loggers are
+    taken for runs: there each device has files of every logger.
+    """
     names = [parted(file) for file in files]
-    for way in (*_by_number(names), *_by_word(names)):
-        found = _tried(names, way, kind)
-        if found:
-            return found
-    return _apart(names, kind)
+    ways = [*_by_number(names), *_by_word(names)]
+    alike = respelt or (lambda one, other: False)
+    for judge in (_as_they_are, partial(_spelt_alike, alike=alike), _outvoted):
+        for way in ways:
+            found = _tried(names, way, kind, judge)
+            if found:
+                return found
+    return _apart(names, _joined(kind, alike))
 
 
 def slug(text: str) -> str:
@@ -143,7 +158,9 @@ def _last_words(name: Name, k: int) -> Split | None:
     return ("_".join(name.words[-k:]), name.words[:-k]) if len(name.words) > k else None
 
 
-def _tried(names: Sequence[Name], way: Callable[[Name], Split | None], kind: Mapping[str, Hashable]) -> list[Placed] | None:
+def _tried(
+    names: Sequence[Name], way: Callable[[Name], Split | None], kind: Mapping[str, Hashable], judge: Judge
+) -> list[Placed] | None:
     """The files placed by one way; None where it places one not at all, two alike, or files of several kinds as one device's,
     or where each run has a device of its own."""
     splits = [way(name) for name in names]
@@ -152,14 +169,45 @@ def _tried(names: Sequence[Name], way: Callable[[Name], Split | None], kind: Map
     found = [(name, *split) for name, split in zip(names, splits, strict=True) if split is not None]
     devices = _devices([(name, rest) for name, _, rest in found], kind)
     result = [Placed(name.file, run, device) for (name, run, _), device in zip(found, devices, strict=True)]
-    runs, kinds = defaultdict(set), defaultdict(set)
+    runs, every = defaultdict(set), defaultdict(list)
     for one in result:
         runs[one.run].add(one.device)
-        kinds[one.device].add(kind.get(one.file))
+        every[one.device].append(kind.get(one.file))
+    kinds = judge(every)
     twice = len({(one.run, one.device) for one in result}) < len(result)
     crossed = len(runs) == 1 or len(kinds) < len(result)
     mixed = any(len(of) > 1 for of in kinds.values()) or any(_of_devices(run.split("_")) for run in runs)
     return None if twice or mixed or not crossed or _merely_named(kinds) else result
+
+
+def _as_they_are(of: Mapping[str, Sequence[Hashable]]) -> dict[str, set[Hashable]]:
+    return {device: set(kinds) for device, kinds in of.items()}
+
+
+def _spelt_alike(of: Mapping[str, Sequence[Hashable]], alike: Alike) -> dict[str, set[Hashable]]:
+    """The kind of more than half of a device's files alone, where all others are like it."""
+    return {device: _usual(kinds, alike) for device, kinds in of.items()}
+
+
+def _outvoted(of: Mapping[str, Sequence[Hashable]]) -> dict[str, set[Hashable]]:
+    """The kind of more than half of a device's files alone, where at least half of the devices agree in all their files."""
+    several = [kinds for kinds in of.values() if len(kinds) > 1]
+    agreeing = sum(len(set(kinds)) == 1 for kinds in several)
+    if not agreeing or 2 * agreeing < len(several):
+        return _as_they_are(of)
+    return {device: _usual(kinds, lambda one, other: True) for device, kinds in of.items()}
+
+
+def _usual(kinds: Sequence[Hashable], alike: Alike) -> set[Hashable]:
+    (usual, most), *others = Counter(kinds).most_common()
+    return {usual} if 2 * most > len(kinds) and all(alike(other, usual) for other, _ in others) else set(kinds)
+
+
+def _joined(kind: Mapping[str, Hashable], alike: Alike) -> dict[str, Hashable]:
+    """The kinds of files; in the place of one that is like another, which more files have, that other."""
+    counts = Counter(kind.values()).most_common()
+    meant = {one: next((other for other, more in counts if more > n and alike(one, other)), one) for one, n in counts}
+    return {file: meant[one] for file, one in kind.items()}
 
 
 def _of_devices(words: Sequence[str]) -> bool:

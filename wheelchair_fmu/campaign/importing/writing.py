@@ -212,7 +212,7 @@ def _time(before: str, plan: Plan) -> Iterator[str]:
     source = plan.source
     if source.time is None:
         return
-    table = next(iter(source.files.values())).table
+    table = source.typical.table
     if source.time_by_size:
         entry = f"{before}time = {{ column = {quoted(source.time.header)}, unit = {quoted(source.time_unit)} }}"
         yield _line(entry, "the file gives no unit: by the size of its steps")
