@@ -40,7 +40,11 @@ def told(verdict, effects=(), ties=(), **more):
     [
         ("missing", ["drag"], "Missing from the model: air that resists."),
         ("missing", ["drag", "slope"], "Missing from the model: air that resists, and a floor that slopes."),
-        ("small", ["drag"], "The model is adequate: air that resists is there, but too small to matter."),
+        (
+            "small",
+            ["drag"],
+            "Air that resists is there, too small to matter by itself; without it the model leaves more than noise.",
+        ),
         ("adequate", [], "The model is adequate: nothing is missing that this campaign could have shown."),
         ("outside", [], "Something is left that no effect in the catalogue explains."),
         (
@@ -58,6 +62,7 @@ def test_what_is_small_is_there_whatever_a_test_of_the_fitted_runs_alone_says():
     """The verdict rests on fitted and held-out runs together; of several that are named, these runs cannot tell which it is."""
     found = told("small", ["drag", "slope"])
     found["ranking"][0]["p"] = 0.8
+    found["ladder"] = [step for step in found["ladder"] if not step["step"].startswith("+")]
     said = "The model is adequate: air that resists or a floor that slopes is there, but too small to matter."
     assert sentence(found, TITLES) == said
 

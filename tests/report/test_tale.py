@@ -17,7 +17,7 @@ from wheelchair_fmu.report.advice import INSPECT, inspect, inspect_term
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, exceeds, near_rivals
-from wheelchair_fmu.report.words import headline, in_full, probability_words
+from wheelchair_fmu.report.words import headline, in_full, needed, probability_words
 
 EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
@@ -506,3 +506,10 @@ def test_a_size_whose_interval_has_nought_in_it_is_not_on_the_card():
     ranking = [{**r, "parameters": {"amplitude": forward, "swing": swing}} if r is row else r for r in SAMPLE["ranking"]]
     lines = tale(told("missing", ["trunk_motion"], ranking=ranking)).cards[0]["lines"]
     assert len(lines) == 2 and lines[0].endswith("0.023 m (95 % sure: 0.013 to 0.034 m).")
+
+
+def test_what_is_small_and_brings_the_error_down_is_worth_putting_in():
+    do = tale(CASES["small"]).cards[2]
+    assert do["lead"] == f"Put it into the model, which leaves more than noise without: wheelchair add {DRAG}."
+    assert tale(CASES["small, left out"]).cards[2]["lead"] == "Use the model as it is."
+    assert needed(CASES["small"]) and not needed(CASES["small, left out"]) and not needed(CASES["missing"])

@@ -18,7 +18,7 @@ from ..inference.decision.verdict import Diagnosis, insufficient
 from ..model.effects import bundled
 from ..model.generic import terms, told_at
 from ..report.saving import save
-from ..report.words import helpers, listed, outside, probably, tied, to_measure, verdict_words
+from ..report.words import helpers, listed, needed, outside, probably, tied, to_measure, verdict_words
 from ..writing import written
 from .files import write_json
 from .group import Progress, console, working
@@ -31,6 +31,7 @@ LIKELIEST = 8  # effects, of which the table tells
 SENTENCES = {
     "missing": "Missing: {effects}.",
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
+    "needed": "There, too small to matter by itself: {effects}. Without, the model leaves more than noise.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
     "cannot_see": "Nothing was found, but many effects could be of interesting size and these runs would not show it.",
 }
@@ -124,7 +125,8 @@ def _verdict(d: Diagnosis, content: Mapping[str, Any], ids: Mapping[str, str]) -
         return tied(d.effects, d.ties, ids)
     named = [probably(content, e) + e for e in d.effects]
     effects = listed(named, "or") if d.verdict == "small" else ", ".join(named)  # of several small ones it is one
-    return outside(content) if d.verdict == "outside" else SENTENCES.get(d.verdict, "").format(effects=effects)
+    said = SENTENCES.get("needed" if needed(content) else d.verdict, "").format(effects=effects)
+    return outside(content) if d.verdict == "outside" else said
 
 
 def _show_bootstrap(b: Bootstrap) -> None:

@@ -11,7 +11,20 @@ from ..inference.decision.verdict import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect, inspect_term
-from .words import AGAIN, STILL, capital, estimated, listed, printed, probability_words, spoken, strained, title_of, to_measure
+from .words import (
+    AGAIN,
+    STILL,
+    capital,
+    estimated,
+    listed,
+    needed,
+    printed,
+    probability_words,
+    spoken,
+    strained,
+    title_of,
+    to_measure,
+)
 
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
@@ -407,7 +420,10 @@ def actions(t: Told) -> list[str]:
             ]
         return [*_after(t), *orders, *measure, _written(t)]
     if t.verdict == "small":
-        return ["Use the model as it is.", *(inspect(e, t.title(e)) for e in found)]
+        look = [inspect(e, t.title(e)) for e in found]
+        if needed(t.diagnosis):
+            return [f"Put {it(t)} into the model, which leaves more than noise without: wheelchair add {found[0]}.", *look]
+        return ["Use the model as it is.", *look]
     if t.verdict == "adequate":
         return [
             "Use the model as it is, for manoeuvres like these.",

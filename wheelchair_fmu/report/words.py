@@ -48,12 +48,23 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     return {
         "missing": f"Missing from the model: {_all_of(missing)}.",
-        "small": f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
+        "small": f"{capital(listed(names, 'or'))} is there, too small to matter by itself; without it the model leaves more than noise."
+        if needed(diagnosis)
+        else f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found, but many effects could be of a size that matters and these runs would not show them.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
+
+
+def needed(diagnosis: Mapping[str, Any]) -> bool:
+    """Does what is small bring the error down by what one would see, so that the model is not adequate without it?"""
+    ladder = diagnosis["ladder"]
+    steps, key = {s["step"]: s for s in ladder}, "heldout" if ladder[-1].get("heldout") is not None else "fit"
+    put_in = any(f"+{effect}" in steps for effect in diagnosis["effects"])
+    before = next((steps[name] for name in (FORCES, diagnosis.get("begins", "calibrated")) if name in steps), ladder[0])
+    return diagnosis["verdict"] == "small" and put_in and before[key] - ladder[-1][key] > STILL
 
 
 def probably(diagnosis: Mapping[str, Any], effect: str) -> str:
