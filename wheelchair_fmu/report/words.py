@@ -48,14 +48,19 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     helping = helpers(diagnosis["effects"], diagnosis["ties"], titles)
     return {
         "missing": f"Missing from the model: {_all_of(missing)}.",
-        "small": f"{capital(listed(names, 'or'))} is there, too small to matter by itself; without it the model leaves more than noise."
-        if needed(diagnosis)
-        else f"The model is adequate: {listed(names, 'or')} is there, but too small to matter.",
+        "small": _small(names, needed(diagnosis)),
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
         "cannot_see": "Nothing was found, but many effects could be of a size that matters and these runs would not show them.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]
+
+
+def _small(names: Sequence[str], put_in: bool) -> str:
+    if put_in:
+        there = f"{capital(listed(names, 'or'))} is there, too small to matter by itself"
+        return f"{there}; without it the model leaves more than noise."
+    return f"The model is adequate: {listed(names, 'or')} is there, but too small to matter."
 
 
 def needed(diagnosis: Mapping[str, Any]) -> bool:

@@ -226,7 +226,7 @@ class App {
     const words = `There the ${most.channel} is missed by ${was} before and ${now} after.`;
     const card = document.querySelectorAll(".card")[1];
     if (!card) return; // a page may tell of a campaign alone
-    [...card.querySelectorAll("p:not(.lead)")].find((p) => /kept back|fitted to/.test(p.textContent))?.after(h("p", { class: "physical" }, words));
+    [...card.querySelectorAll("p:not(.lead)")].find((p) => /\berror\b/.test(p.textContent) && /kept back|fitted to/.test(p.textContent))?.after(h("p", { class: "physical" }, words));
   }
 
   /** Where the search gained most is what the reader sees, unless he has chosen. */
