@@ -133,7 +133,7 @@ def test_a_misspelt_column_is_asked_after_where_it_is_named(page: Any, tmp_path:
     (tmp_path / "run.csv").write_text("\n".join(rows))
     take_in(page, tmp_path / "run.csv")
     row = page.locator("#forms .columns tbody tr", has=page.locator("th", has_text="wheel_sped_r"))
-    assert row.is_visible() and "It looks like wheel_speed_r, but is not used" in row.locator(".wrong").inner_text()
+    assert row.is_visible() and "It looks like the right wheel's speed, but is not used" in row.locator(".wrong").inner_text()
     page.select_option('[aria-label="channel of wheel_sped_r [m/s]"]', "wheel_speed_r")
     page.wait_for_function("() => !document.querySelector('#forms .columns').innerText.includes('looks like')")
     assert page.evaluate("workbench.state.campaign.columns.wheel_speed_r.column") == "wheel_sped_r [m/s]"

@@ -32,17 +32,33 @@ def test_a_cure_names_the_form_in_which_it_is_done() -> None:
     assert told(strange)["text"] == "campaign.toml line 3: odd; make it even"
 
 
+@pytest.mark.parametrize(
+    ("fact", "said"),
+    [
+        ("no u0 and no speed measured to take it from", "no speed at the start and no speed measured to take it from"),
+        ("F_rl reaches 3000 N", "the push on the left wheel reaches 3000 N"),
+        ("the baseline of F_rr cannot be told", "the baseline of the push on the right wheel cannot be told"),
+        ("no column for yaw_rate, which [columns] renames", "no column for the yaw rate"),
+        ("the header 'F_rl [N]' stands there 2 times", "the header 'F_rl [N]' stands there 2 times"),
+    ],
+)
+def test_channels_are_called_by_words_but_for_what_stands_in_a_file(fact, said) -> None:
+    assert told(run_fault("a.csv", fact, "nothing is to be done", 1))["what"] == said
+
+
 def test_a_misspelt_column_is_asked_after_beside_it() -> None:
     cure = "correct the header, or name it in [columns]"
     fault = told(run_fault("a.csv", "it looks like a_y, but is not used", cure, 1, "ay [m/s2]", WARNING))
-    assert fault["what"] == "it looks like a_y, but is not used; say what it is under “Columns and their units”"
+    said = "it looks like the sideways acceleration, but is not used; say what it is under “Columns and their units”"
+    assert fault["what"] == said
     assert fault["column"] == "ay [m/s2]" and fault["file"] == "a.csv"
 
 
 def test_a_heading_that_one_file_spells_otherwise_is_corrected_in_the_file() -> None:
     fact = "it is called 'v links' in 6 other files, and wheel_speed_l is not read from it"
     fault = told(run_fault("a.csv", fact, "correct the header in this file", 1, "v link", WARNING))
-    assert fault["what"] == f"{fact}; correct it in the file, and drop the file here again"
+    said = fact.replace("wheel_speed_l", "the left wheel's speed")
+    assert fault["what"] == f"{said}; correct it in the file, and drop the file here again"
     assert fault["column"] == "v link" and fault["file"] == "a.csv"
 
 

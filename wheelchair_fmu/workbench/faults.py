@@ -9,7 +9,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from ..campaign.channels import CHANNEL_NAMES
 from ..faults import Fault, short
+from ..report.words import channel_words
 
 COLUMNS, RUNS, NOISE = "Columns and their units", "Runs", "Noise of the sensors"  # forms, as the page heads them
 GUESS = "guess"  # severity of what was assumed, and may be right
@@ -47,14 +49,20 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"export it as CSV, or name its format", f"export it as CSV and drop that, and take this one out under “{RUNS}”"),
     (r"export it again, or leave it out", f"export it again and drop it here, or take it out under “{RUNS}”"),
 )  # (what a cure is in full, what the page says in its place)
-NAMED = {"F_rl": "on the left wheel", "F_rr": "on the right wheel"}
+SIDES = {"l": "left", "r": "right"}
+PUSHES = {f"F_r{s}": f"the push on the {side} wheel" for s, side in SIDES.items()}
+PUSHES |= {f"M_r{s}": f"the torque on the {side} axle" for s, side in SIDES.items()}
+CODES = {**{name: channel_words(name) for name in CHANNEL_NAMES if "_" in name}, **PUSHES, "u0": "speed at the start"}
+CODE = re.compile(rf"\b({'|'.join(CODES)})\b")
+QUOTED = re.compile(r"('[^']*')")  # what stands in a file is said as it stands there
 
 
 def told(fault: Fault) -> dict[str, Any]:
     """{"text": the fault in one sentence; "what": the same without its place; "where": that place; "severity"; "column" and
     "file", where it is of one; "at": the key of campaign.toml that it is of}."""
     cure = next((words for pattern, words in CURES if re.fullmatch(pattern, fault.cure)), fault.cure)
-    fact = re.sub(r"^no push force (F_r[lr])$", lambda m: f"the push {NAMED[m[1]]} is missing", short(fault.fact))
+    fact = re.sub(r"^no push force (F_r[lr])$", lambda m: f"{PUSHES[m[1]]} is missing", short(fault.fact))
+    fact = _in_words(fact.replace(", which [columns] renames", ""))
     what = fact if cure == NOTHING else f"{fact}; {cure}"
     line = "" if fault.line is None or (fault.in_run and fault.line == 1) else f" line {fault.line}"
     column = f" column {short(fault.column)}" if fault.column is not None else ""
@@ -68,6 +76,11 @@ def told(fault: Fault) -> dict[str, Any]:
         "file": fault.file if fault.in_run else None,
         "at": fault.place,
     }
+
+
+def _in_words(fact: str) -> str:
+    """What campaign.toml calls a channel, in words."""
+    return "".join(part if part.startswith("'") else CODE.sub(lambda m: CODES[m[1]], part) for part in QUOTED.split(fact))
 
 
 def to_look_at(what: str, device: str, column: str, file: str, at: str) -> dict[str, Any]:
