@@ -212,3 +212,9 @@ def test_commands_and_symbols_are_printed_as_such():
     assert marked("Put it in: wheelchair add drag toe_in.") == "Put it in: <code>wheelchair add drag toe_in</code>"
     assert marked("Stiffness C_λ of one_tyre & more") == "Stiffness C<sub>λ</sub> of one_tyre &amp; more"
     assert marked("1 ± 2 m, 95 % of") == "1\u00a0±\u00a02 m, 95\u00a0% of"  # no line ends between them
+
+
+def test_a_note_on_the_page_has_no_statistics_in_it():
+    note = "resistance.f_f comes out at 0.02, 2.2 standard deviations from the usual 0.01 ± 0.004"
+    said = particulars(told("adequate", notes=[note]), {})[-1]
+    assert said.endswith("comes out at 0.02, 2.2 times the ± away from the usual 0.01 ± 0.004.")

@@ -136,6 +136,7 @@ def channel_words(channel: str) -> str:
 def named(text: str, titles: Mapping[str, str], records: Mapping[str, Quantity]) -> str:
     """Text of the search with what code names mean in their place, and units as they are printed."""
     text = UNIT.sub(lambda found: found.group().replace(".", " ").replace("2", "²"), text)
+    text = re.sub(r"([\d.]+) standard deviations from the ", r"\1 times the ± away from the ", text)
 
     def plain(found: re.Match[str]) -> str:
         name = found.group()
