@@ -209,7 +209,8 @@ def test_a_page_says_what_it_was_made_by():
 
 
 def test_commands_and_symbols_are_printed_as_such():
-    assert marked("Put it in: wheelchair add drag toe_in.") == "Put it in: <code>wheelchair add drag toe_in</code>"
+    for command in ("wheelchair add drag CAMPAIGN -o better.toml", "wheelchair improve CAMPAIGN -o better.toml"):
+        assert marked(f"Put it in: {command}.") == f"Put it in: <code>{command}</code>"
     assert marked("Stiffness C_λ of one_tyre & more") == "Stiffness C<sub>λ</sub> of one_tyre &amp; more"
     assert marked("1 ± 2 m, 95 % of") == "1\u00a0±\u00a02 m, 95\u00a0% of"  # no line ends between them
 

@@ -104,7 +104,7 @@ def test_three_cards_and_five_screens_in_plain_sentences(case):
     assert [s["kind"] for s in story.screens] == ["errs", "guess", "put", "rivals", "next"]
     for line in texts([*story.cards, *story.screens]):
         assert line and line[0] == line[0].upper(), line
-        plain = re.sub(r"wheelchair add [\w ]+", "", line)
+        plain = re.sub(r"wheelchair (add|improve) [\w ]+ -o better.toml", "", line)
         assert "_" not in plain, f"a code name: {line}"
         assert "None" not in line and "nan" not in line.lower().split(), line
     for line in texts(story.cards):
@@ -119,7 +119,8 @@ def test_what_is_missing_is_told_as_a_multiple_of_what_matters():
     before, after = (CASES["missing"]["ladder"][i]["heldout"] for i in (1, -1))
     assert f"from {before:.2f} to {after:.2f}" in sure["lines"][0]
     assert do["lead"] == "Lift the rear and spin both wheels."
-    assert do["lines"][-1].endswith(f"wheelchair add {DRAG}.")
+    assert do["lines"][-1].endswith(f"wheelchair add {DRAG} CAMPAIGN -o better.toml.")
+    assert "wheelchair improve CAMPAIGN" in tale(CASES["two"]).cards[2]["lines"][-1], "which adds all, as add takes one"
 
 
 @pytest.mark.parametrize(("chance", "hedge"), [(0.61, "probably "), (0.95, "")])
@@ -510,6 +511,9 @@ def test_a_size_whose_interval_has_nought_in_it_is_not_on_the_card():
 
 def test_what_is_small_and_brings_the_error_down_is_worth_putting_in():
     do = tale(CASES["small"]).cards[2]
-    assert do["lead"] == f"Put it into the model, which leaves more than noise without: wheelchair add {DRAG}."
+    assert (
+        do["lead"]
+        == f"Put it into the model, which leaves more than noise without: wheelchair add {DRAG} CAMPAIGN -o better.toml."
+    )
     assert tale(CASES["small, left out"]).cards[2]["lead"] == "Use the model as it is."
     assert needed(CASES["small"]) and not needed(CASES["small, left out"]) and not needed(CASES["missing"])

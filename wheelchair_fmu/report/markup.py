@@ -9,7 +9,7 @@ from typing import Any
 
 from .words import capital
 
-COMMAND = re.compile(r"(wheelchair add [\w ]+)\.$")  # at the end of a sentence, as somebody types it
+COMMAND = re.compile(r"(wheelchair (?:add|improve) [\w .-]+?)\.$")  # at the end of a sentence, as somebody types it
 KEPT = re.compile(r"(?<=\d) (?=[%±])|(?<=±) ")
 SYMBOL = re.compile(r"\b([^\W\d_])_([^\W_]+)\b")  # one letter with an index: C_λ
 

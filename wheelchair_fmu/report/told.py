@@ -29,6 +29,7 @@ from .words import (
 NEAR = 0.97  # of the gain in likelihood of what was found: a rival that gains as much does about as well
 NAMED = 3  # rivals in a sentence
 ALIKE = 0.005  # whitened RMS error by which that of one model differs, told twice
+IMPROVE = "wheelchair improve CAMPAIGN -o better.toml"
 UNLIKELY = 0.01  # chance of a pattern by noise alone, above which it is not told
 SURE = 1.96  # standard errors from nought, within which a size may as well be none
 
@@ -409,7 +410,7 @@ def actions(t: Told) -> list[str]:
             if near
             else []
         )
-        return [*look, *also, *measure, f"Put {it(t)} into the model: wheelchair add {' '.join(found)}."]
+        return [*look, *also, *measure, f"Put {it(t)} into the model: {_command(found)}."]
     if t.verdict == "outside":
         orders = [f"{printed(capital(o['words']))}." for o in (t.diagnosis.get("disturbance") or {}).get("orders", ())]
         if strained(t.diagnosis, t.records) and not t.proposal:
@@ -422,7 +423,7 @@ def actions(t: Told) -> list[str]:
     if t.verdict == "small":
         look = [inspect(e, t.title(e)) for e in found]
         if needed(t.diagnosis):
-            return [f"Put {it(t)} into the model, which leaves more than noise without: wheelchair add {found[0]}.", *look]
+            return [f"Put {it(t)} into the model, which leaves more than noise without: {_command(found[:1])}.", *look]
         return ["Use the model as it is.", *look]
     if t.verdict == "adequate":
         return [
@@ -433,6 +434,11 @@ def actions(t: Told) -> list[str]:
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
 
 
+def _command(found: Sequence[str]) -> str:
+    """What puts effects into the model, as somebody types it."""
+    return f"wheelchair add {found[0]} CAMPAIGN -o better.toml" if len(found) == 1 else IMPROVE
+
+
 def _after(t: Told) -> list[str]:
     """What to look at for a term that helps most."""
     return [inspect_term(t.proposal["term"])] if t.proposal else ["Compare the missing force with what you know of the chair."]
@@ -441,7 +447,7 @@ def _after(t: Told) -> list[str]:
 def _written(t: Told) -> str:
     if not t.proposal:
         return "Write the effect that it suggests: a file of one expression is enough."
-    return "Put it into the model, as a file of one expression that is written for you: wheelchair improve."
+    return f"Put it into the model, as a file of one expression that is written for you: {IMPROVE}."
 
 
 def next_words(t: Told) -> list[str]:
