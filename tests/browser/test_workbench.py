@@ -390,8 +390,7 @@ def test_values_that_are_typed_fast_are_all_kept(page: Any) -> None:
     page.click("text=What is known of the chair")
     values = {"chair.I_z": 3.3, "tyre.C_lambda": 5047, "resistance.f_r": 0.011, "resistance.f_f": 0.019}
     for name, value in values.items():
-        page.locator(f'input[aria-label^="{name}:"]').fill(str(value))
-    page.keyboard.press("Tab")
+        typed(page.locator(f'input[aria-label^="{name}:"]'), str(value))
     page.wait_for_function("() => workbench.saving === 0 && workbench.state.campaign.resistance?.f_f === 0.019")
     page.reload()
     page.wait_for_function("() => window.workbench?.state?.files.length")

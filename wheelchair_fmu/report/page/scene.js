@@ -8,7 +8,7 @@ import { Pen } from "page/pen";
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11 }; // px per N; what is missing is small
 const CLOSE = 1.5; // m across the close view
 const SKETCH = 300; // units of drawing that the close view is high in a file, at most
-const LOW = 196; // px high on a phone, so that the chair, the player and the curves are on one screen
+const LOW = 184; // px high on a phone, so that the chair, the player and the curves are on one screen
 
 export class Scene {
   constructor(place, campaign) {

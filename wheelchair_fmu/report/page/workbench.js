@@ -411,7 +411,8 @@ class Workbench {
   /** Whoever used what is gone now, or rests, goes on from the head of its section, and not from the top of the page. */
   refocus() {
     const { element, section } = this.used ?? {};
-    if (document.activeElement !== document.body || !section || (element.isConnected && !element.disabled && element.getClientRects().length)) return;
+    const { activeElement: active } = document; // Firefox leaves the focus on what is hidden
+    if (!section || (active !== document.body && active !== element) || (element.isConnected && !element.disabled && element.getClientRects().length)) return;
     this.used = null;
     const head = section.querySelector("h2");
     head.tabIndex = -1;
