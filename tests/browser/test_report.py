@@ -328,6 +328,9 @@ def test_tables_hold_the_numbers_of_the_diagnosis(open_report, tmp_path):
         assert float(row["standard error"] or "nan") == pytest.approx(se, nan_ok=True)
         assert float(row["matters from"]) == pytest.approx(factor * told["smallest_interesting"])
         assert float(row["in sizes that matter"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
+    open_report.page.click("#forest details.numbers summary")
+    heads = open_report.page.locator("#forest details.numbers th").all_inner_texts()
+    assert "±" in heads and not {"name in files", "standard error"} & set(heads), "the page's own table is in plain words"
     for row in table_of(open_report, "calibration", tmp_path):
         told = TOLD["calibration"][row["name in files"]]
         heads = ("fitted", "standard error", "given", "given to within (standard deviation)")

@@ -4,6 +4,7 @@ import { csv, h, save } from "page/dom";
 import { look } from "page/draw";
 import { WIDTHS, publish } from "page/publish";
 
+const HEADS = { "standard error": "±", "given to within (standard deviation)": "given ±", "name in files": null }; // of the table in the page, for readers of it; the CSV has them as they are
 const ROWS = 60; // of a table in the page; the CSV has all
 let open = null;
 
@@ -47,11 +48,11 @@ export class Figure {
 
   tabulate() {
     if (!this.numbers.open) return;
-    const columns = this.says.columns(), names = Object.keys(columns), length = Math.max(...names.map((n) => columns[n].length));
+    const columns = this.says.columns(), names = Object.keys(columns).filter((n) => HEADS[n] !== null), length = Math.max(...names.map((n) => columns[n].length));
     const every = Math.max(1, Math.ceil(length / ROWS)), shown = Array.from({ length: Math.ceil(length / every) }, (_, i) => i * every);
     this.numbers.replaceChildren(this.numbers.firstElementChild, h("div", { class: "wide", tabindex: 0, role: "region", "aria-label": `Numbers of ${this.says.title}` },
       h("table", {}, h("caption", {}, every > 1 ? `One row in ${every}; the CSV has all` : this.says.title),
-        h("thead", {}, h("tr", {}, names.map((n) => h("th", { scope: "col" }, n)))),
+        h("thead", {}, h("tr", {}, names.map((n) => h("th", { scope: "col" }, HEADS[n] ?? n)))),
         h("tbody", {}, shown.map((i) => h("tr", {}, names.map((n) => h("td", {}, printed(columns[n][i])))))))));
   }
 }
