@@ -329,6 +329,7 @@ def test_tables_hold_the_numbers_of_the_diagnosis(open_report, tmp_path):
         assert float(row["matters from"]) == pytest.approx(factor * told["smallest_interesting"])
         assert float(row["in sizes that matter"]) == pytest.approx(told["estimate"] / told["smallest_interesting"])
     open_report.page.click("#forest details.numbers summary")
+    open_report.page.wait_for_selector("#forest details.numbers th")
     heads = open_report.page.locator("#forest details.numbers th").all_inner_texts()
     assert "±" in heads and not {"name in files", "standard error"} & set(heads), "the page's own table is in plain words"
     for row in table_of(open_report, "calibration", tmp_path):
