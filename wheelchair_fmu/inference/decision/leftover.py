@@ -41,9 +41,9 @@ def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | N
         joint = judge(models, first.model, top, TOGETHER.join(later), names, len(first.scores))
         if alone.winner is not None and _likelier(alone.winner, joint, models.policy, len(first.scores)):
             return alone, alone.winner
-    if at_the_floor(base.evidence, top.heldout):
+    if later and at_the_floor(base.evidence, top.heldout):
         scores = (s.score for s in screen(terms, top, list(generic)))
-        return Round(top.effects, base, top.heldout, tuple(scores), ()), None  # nothing is left that anything could be behind
+        return Round(top.effects, base, top.heldout, tuple(scores), ()), None  # too little is left to call what was found wrong
     known = [c for r in rounds if r.effects == top.effects for c in r.every if c.possible]
     left = _terms(terms, generic, top, HALFWAY * max((c.drop for c in known), default=0.0))
     best = left.winner
