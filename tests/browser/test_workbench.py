@@ -117,6 +117,15 @@ def test_bad_files_show_their_faults_in_the_page(page: Any, tmp_path: Path) -> N
     assert beside.inner_text() == ""
 
 
+def test_a_size_that_was_no_number_can_be_put_right(page: Any) -> None:
+    page.wait_for_function("() => window.workbench?.state")
+    size = page.locator("input[name=size]")
+    for words, told in (("much", "give a number, as in 0.5"), ("0,25", "")):
+        size.evaluate("(e) => e.closest('details')?.setAttribute('open', '')")
+        size.evaluate("(e, words) => { e.value = words; e.dispatchEvent(new Event('input')); }", words)
+        assert size.evaluate("(e) => e.validationMessage") == told
+
+
 def test_what_points_left_in_a_file_is_said_beside_its_column(page: Any) -> None:
     page.click("#sample")
     page.wait_for_function("() => window.workbench?.state?.files.length === 10")

@@ -87,10 +87,10 @@ def _what(t: Told) -> tuple[str, list[str]]:
         return _outside(t)
     if t.verdict == "adequate":
         return "Nothing is missing", [_explained(t)]
-    hide = "many effects could be large enough to matter and not show in them"
+    hide = "many effects could be large enough to matter and not show in"
     if t.fall[1] < EXPLAINED:
-        return "Nothing was found", [f"The model explains these runs, but {hide}."]
-    return "Nothing was found", [_explained(t), f"Beside that, {hide.replace('them', 'these runs')}."]
+        return "Nothing was found", [f"The model explains these runs, but {hide} them."]
+    return "Nothing was found", [_explained(t), f"Beside that, {hide} these runs."]
 
 
 def _explained(t: Told) -> str:

@@ -220,12 +220,7 @@ def _put(t: Told, before: float, after: float) -> dict[str, Any]:
 
 def _by_itself(t: Told) -> list[str]:
     """Of effects that were put in together, what the first does alone."""
-    said = []
-    for group in t.together:
-        alone = t.step_error(group[0])
-        if alone is not None and alone - t.fall[1] > STILL:
-            said.append(f"By itself, {t.title(group[0])} brings it to {alone:.2f}.")
-    return said
+    return [f"By itself, {t.title(e)} brings it to {error:.2f}." for e, error in t.firsts.items()]
 
 
 def _tried(t: Told) -> dict[str, Any]:
@@ -340,9 +335,9 @@ def _nothing(t: Told) -> str:
 
 def _farther(t: Told) -> list[str]:
     """What rivals leave that do not come near."""
-    near = {r["effect"] for r in near_rivals(t)}
-    tried = [e for e in t.rows if e in t.titles and e not in (*t.found, *near) and t.alone(e) and t.error(e) is not None]
-    worse = [(e, error) for e in tried[:CHOICES] if (error := t.error(e)) is not None and error > t.fall[1] + STILL]
+    known = {*t.found, *(r["effect"] for r in near_rivals(t))}
+    tried = [(e, error) for e, error in t.alone_errors.items() if e not in known]
+    worse = [(e, error) for e, error in tried[:CHOICES] if error > t.fall[1] + STILL]
     if t.slight or not worse:
         return []
     place = "In its place" if it(t) == "it" else "In their place"
@@ -391,8 +386,7 @@ def bars(t: Told) -> list[dict[str, Any]]:
         {"title": listed([t.title(e) for e in g], "with"), "error": t.error(g[-1]), "found": g[0] in t.found} for g in groups
     ]
     before, after = t.fall
-    firsts = [(g[0], error) for g in groups if len(g) > 1 and (error := t.step_error(g[0])) is not None]
-    each = [*({"title": t.title(e), "error": error, "found": True} for e, error in firsts if error - after > STILL), *each]
+    each = [*({"title": t.title(e), "error": error, "found": True} for e, error in t.firsts.items()), *each]
     several = len(t.found) > 1 and t.verdict != "tie" and not t.slight and set(t.found) != set(t.partners(t.found[0]))
     whole = [{"title": "all that was found together", "error": after, "found": True}] if several else []
     term = [{"title": helping(t), "error": after, "found": True}] if t.verdict == "outside" and t.proposal else []

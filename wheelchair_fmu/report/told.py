@@ -16,10 +16,13 @@ from .words import (
     STILL,
     capital,
     estimated,
+    fall,
+    judged_by,
     listed,
     needed,
     printed,
     probability_words,
+    put_in,
     spoken,
     strained,
     title_of,
@@ -57,7 +60,7 @@ class Told:
     @property
     def key(self) -> str:
         """Which error is told: on runs held out, where there are any."""
-        return "heldout" if self.diagnosis["ladder"][-1].get("heldout") is not None else "fit"
+        return judged_by(self.diagnosis)
 
     @property
     def runs(self) -> str:
@@ -66,9 +69,7 @@ class Told:
     @property
     def fall(self) -> tuple[float, float]:
         """The error before anything was put in, and at the end."""
-        ladder = self.diagnosis["ladder"]
-        before = [s for s in ladder if s["step"] in (self.diagnosis.get("begins", "calibrated"), FORCES)] or ladder
-        return float(before[-1][self.key]), float(ladder[-1][self.key])
+        return fall(self.diagnosis)
 
     @property
     def without_forces(self) -> float | None:
@@ -79,8 +80,7 @@ class Told:
     @property
     def slight(self) -> bool:
         """Was all that was found left out of the model, as it is too small to matter?"""
-        steps = {s["step"] for s in self.diagnosis["ladder"]}
-        return self.verdict == "small" and not any(f"+{e}" in steps for e in self.found)
+        return self.verdict == "small" and not put_in(self.diagnosis)
 
     @property
     def falls(self) -> bool:
@@ -116,6 +116,19 @@ class Told:
         """Was an effect put into the model that the search began with, and not beside others?"""
         before = self.rows[effect]["heldout_before"]
         return before is None or abs(before - self.fall[0]) < ALIKE
+
+    @property
+    def alone_errors(self) -> dict[str, float]:
+        """The error with each effect that was put in alone, the likeliest first, where it is known."""
+        alone = [e for e in self.rows if e in self.titles and self.alone(e)]
+        return {e: error for e in alone if (error := self.error(e)) is not None}
+
+    @property
+    def firsts(self) -> dict[str, float]:
+        """Of effects that were put in together, the first of each group, with the error that it alone leaves, where the others
+        bring that down."""
+        alone = {group[0]: self.step_error(group[0]) for group in self.together}
+        return {e: error for e, error in alone.items() if error is not None and error - self.fall[1] > STILL}
 
     @property
     def tied(self) -> list[str]:
@@ -204,8 +217,7 @@ def left_words(t: Told) -> list[str]:
 
 def nearest_words(t: Told) -> list[str]:
     """Which effect of the catalogue comes nearest to a term that none of them is."""
-    alone = [r["effect"] for r in t.diagnosis["ranking"] if r["effect"] in t.titles and t.alone(r["effect"])]
-    known = {e: error for e in alone if (error := t.error(e)) is not None}
+    known = t.alone_errors
     if not t.proposal or not known:
         return []
     best = min(known, key=lambda e: known[e])

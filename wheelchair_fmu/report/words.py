@@ -56,8 +56,8 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
     }[diagnosis["verdict"]]
 
 
-def _small(names: Sequence[str], put_in: bool) -> str:
-    if put_in:
+def _small(names: Sequence[str], helps: bool) -> str:
+    if helps:
         there = f"{capital(listed(names, 'or'))} is there, too small to matter by itself"
         return f"{there}; without it the model leaves more than noise."
     return f"The model is adequate: {listed(names, 'or')} is there, but too small to matter."
@@ -65,11 +65,26 @@ def _small(names: Sequence[str], put_in: bool) -> str:
 
 def needed(diagnosis: Mapping[str, Any]) -> bool:
     """Does what is small bring the error down by what one would see, so that the model is not adequate without it?"""
-    ladder = diagnosis["ladder"]
-    steps, key = {s["step"]: s for s in ladder}, "heldout" if ladder[-1].get("heldout") is not None else "fit"
-    put_in = any(f"+{effect}" in steps for effect in diagnosis["effects"])
-    before = next((steps[name] for name in (FORCES, diagnosis.get("begins", "calibrated")) if name in steps), ladder[0])
-    return diagnosis["verdict"] == "small" and put_in and before[key] - ladder[-1][key] > STILL
+    before, after = fall(diagnosis)
+    return diagnosis["verdict"] == "small" and put_in(diagnosis) and before - after > STILL
+
+
+def put_in(diagnosis: Mapping[str, Any]) -> bool:
+    """Is any of what was found a step of the search?"""
+    steps = {s["step"] for s in diagnosis["ladder"]}
+    return any(f"+{effect}" in steps for effect in diagnosis["effects"])
+
+
+def judged_by(diagnosis: Mapping[str, Any]) -> str:
+    """Which error is told: on runs held out, where there are any."""
+    return "heldout" if diagnosis["ladder"][-1].get("heldout") is not None else "fit"
+
+
+def fall(diagnosis: Mapping[str, Any]) -> tuple[float, float]:
+    """The error before anything was put in, and at the end."""
+    ladder, key = diagnosis["ladder"], judged_by(diagnosis)
+    before = [s for s in ladder if s["step"] in (diagnosis.get("begins", "calibrated"), FORCES)] or ladder
+    return float(before[-1][key]), float(ladder[-1][key])
 
 
 def probably(diagnosis: Mapping[str, Any], effect: str) -> str:

@@ -83,7 +83,7 @@ export class Controls {
     const range = h("input", { type: "range", id, min: low * factor, max: high * factor, step: "any", "aria-describedby": `${id}-help` });
     const number = h("input", { type: "text", inputmode: "decimal", autocomplete: "off", "aria-label": `${capital(p.meaning)} [${unitText(unit) || "1"}]`, "data-name": p.name });
     const put = (words) => {
-      const value = decimal(words) / factor, wrong = !Number.isFinite(value) || String(words).trim() === "" ? "give a number, as in 1.5" : value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity) ? `give a number ${within(p, factor)}` : "";
+      const value = words.trim() ? decimal(words) / factor : NaN, wrong = amiss(value, p, factor);
       number.setCustomValidity(wrong);
       if (wrong) return this.shown.delete(p.name), number.reportValidity();
       return this.put({ ...this.values, [p.name]: value });
@@ -169,6 +169,12 @@ function marks(p, low, high, fitted) {
   const at = (v) => `calc(8px + (100% - 16px) * ${Math.min(1, Math.max(0, (v - low) / (high - low))).toFixed(4)})`, inside = (v) => v >= low && v <= high;
   const band = p.delta && p.name.startsWith("effect.") ? h("i", { class: "of-no-interest", style: `left:${at(-p.delta)};right:calc(100% - ${at(p.delta)})` }) : null;
   return h("span", { class: "marks", "aria-hidden": "true" }, band, fitted !== null && fitted !== undefined && inside(fitted) ? h("i", { class: "fitted", style: `left:${at(fitted)}` }, "▲") : null);
+}
+
+/** What is wrong with a value, in a sentence; nothing of one that may be. */
+function amiss(value, p, factor) {
+  if (!Number.isFinite(value)) return "give a number, as in 1.5";
+  return value < (p.lower ?? -Infinity) || value > (p.upper ?? Infinity) ? `give a number ${within(p, factor)}` : "";
 }
 
 /** Bounds in words, in the unit shown. */

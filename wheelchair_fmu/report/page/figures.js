@@ -182,17 +182,11 @@ export class Figures {
     };
   }
 
-  /** Where in the shown run the cursor is. */
-  sample() {
-    const { time, at } = this.app.timeline, after = time.findIndex((t) => t >= at);
-    return after < 0 ? time.length - 1 : after;
-  }
-
   above() {
     const { app } = this;
     return {
       draw: (width, look) => {
-        const above = path(width, look, app.motion), top = Number(above.getAttribute("height")), [near, high] = app.scene.sketched(this.sample(), width, look);
+        const above = path(width, look, app.motion), top = Number(above.getAttribute("height")), [near, high] = app.scene.sketched(app.timeline.sample, width, look);
         return canvas(width, top + high, [...above.childNodes, svg("g", { transform: `translate(0 ${top})` }, near)]);
       },
       columns: () => ({ "time [s]": app.motion.time, "x [m]": app.motion.model.x, "y [m]": app.motion.model.y, "psi [rad]": app.motion.model.psi,

@@ -168,8 +168,8 @@ export class Story {
 
   /** The button as it is now, though the numbers may still come. */
   pressed() {
-    const { diagnosis } = this.campaign, [first] = diagnosis.effects.filter((e) => diagnosis.ties.flat().includes(e)), told = this.told("put").title;
-    const it = told.startsWith("Put them") ? "them" : "it", which = told.startsWith("Put one in") && first ? titleOf(this.campaign, first) : "";
+    const { verdict, effects, ties } = this.campaign.diagnosis, tied = ties.flat(), alone = verdict === "tie" && effects.every((e) => tied.includes(e));
+    const it = this.told("put").title.startsWith("Put them") ? "them" : "it", which = alone ? titleOf(this.campaign, effects[0]) : "";
     this.toggle.textContent = which ? `${this.isIn() ? "take out" : "put in"}: ${which}` : this.isIn() ? `take ${it} out again` : `put ${it} in`;
     this.toggle.setAttribute("aria-pressed", this.isIn());
   }

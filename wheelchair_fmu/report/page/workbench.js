@@ -304,9 +304,9 @@ class Workbench {
     if (usual || (many && steps <= many)) bar.value = Math.min(0.98, usual ? seconds / length : steps / many);
     if (!length || steps <= 1) this.ends = length; // when it is thought to end, which is not put off for every little
     else if (!this.ends || length < this.ends || length - seconds > LONGER * (this.ends - seconds)) this.ends = length;
-    const told = this.ends ? this.ends - seconds : Infinity;
+    const left = this.ends ? this.ends - seconds : 0;
     return [capital(this.plain(lines.at(-1) ?? "starting")), `step ${Math.max(1, steps)}${many && steps <= many ? ` of about ${many}` : ""}`, `${whole(seconds)} so far`,
-      late ? usual ? "longer than the last time" : "these recordings take longer than most" : told >= 1 && Number.isFinite(told) ? `about ${whole(told)} left` : ""].filter(Boolean).join(" · ");
+      late ? usual ? "longer than the last time" : "these recordings take longer than most" : left >= 1 ? `about ${whole(left)} left` : ""].filter(Boolean).join(" · ");
   }
 
   /** What came of a job, in a sentence. */
@@ -492,11 +492,10 @@ class Workbench {
     const soon = () => { clearTimeout(this.typing); this.typing = setTimeout(check, TYPED); };
     form.elements.expression.addEventListener("input", soon);
     form.elements.to.addEventListener("change", () => { this.showWords(); check(); });
+    for (const name of ["size", "lower", "upper"]) form.elements[name].addEventListener("input", ({ target }) => target.setCustomValidity(Number.isFinite(decimal(target.value)) ? "" : "give a number, as in 0.5"));
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
       const text = (name) => form.elements[name].value.trim(), number = (name) => decimal(form.elements[name].value);
-      for (const name of ["size", "lower", "upper"]) form.elements[name].setCustomValidity(Number.isFinite(number(name)) ? "" : "give a number, as in 0.5");
-      if (!form.reportValidity()) return;
       const content = { id: text("id"), title: text("title"), to: text("to"), expression: text("expression"), size: number("size"), lower: number("lower"), upper: number("upper") };
       byId("tried").textContent = "It is put into the catalogue …";
       const there = await this.take(() => send("POST", "effects", content), "Putting it into the catalogue …");
