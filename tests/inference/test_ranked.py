@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import special
 
-from wheelchair_fmu.inference.decision.verdict import _instead_of_small
+from wheelchair_fmu.inference.decision.verdict import _instead_of_small, _slight
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
@@ -145,7 +145,9 @@ def test_a_group_is_as_probable_as_an_effect_of_as_many_parameters():
     assert set(instead(r, _rivals(r, "c", {"c", "b"}))) == {"c"}, "a member was found beside it"
 
 
-@pytest.mark.parametrize(("size", "found"), [(0.8, False), (0.95, True), (-0.95, True), (4.0, True)])
+@pytest.mark.parametrize(
+    ("size", "found"), [(0.5, False), (0.8, False), (0.85, False), (0.95, True), (-0.95, True), (4.0, True)]
+)
 def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, found):
     """Known to a twentieth of δ, in a catalogue of thirty."""
     known = candidate("a", (size / 0.05) ** 2, np.array([size]), np.array([[0.05**2]]))
@@ -153,6 +155,7 @@ def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, fo
     assert (r.winner is not None) == found
     assert (r.winner is not None) == (r.beliefs["a"].there > 0.5)
     assert r.slight == [known], "however small, it is surely there"
+    assert found or (_slight(r) == ("a",) and _instead_of_small(r) == ()), "one or the other, and never neither"
     assert replace(r, odds=1e-4).winner is None or size == 4.0
 
 

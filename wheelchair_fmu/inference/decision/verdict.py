@@ -450,7 +450,7 @@ def _structured(left: Evidence, policy: SearchPolicy) -> bool:
 def _slight(first: Round) -> tuple[str, ...]:
     """Effects that are surely there and slight, and foretell what was held out better than by chance: the likeliest, and those
     that data cannot tell from it."""
-    small = [c for c in first.slight if not c.matters and (c.gain is None or c.gain[1] > 0)]
+    small = [c for c in first.slight if first.likelier_slight(c) and (c.gain is None or c.gain[1] > 0)]
     return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
 
 
@@ -471,8 +471,9 @@ class Larger(NamedTuple):
 
 def _instead_of_small(first: Round) -> tuple[Larger, ...]:
     """Effects that would be large, and that data cannot tell from those that are slight."""
-    likeliest = max((c.support.slight for c in first.slight), default=0.0)
-    behind = ((c, likeliest - first.log_prior - c.support.large) for c in first.candidates if c.matters and not c.worsens)
+    likeliest, small = max((c.support.slight for c in first.slight), default=0.0), _slight(first)
+    others = (c for c in first.candidates if c.matters and not c.worsens and c.effect not in small)
+    behind = ((c, likeliest - first.log_prior - c.support.large) for c in others)
     return tuple(
         Larger(c.effect, float(np.linalg.norm(c.size / c.delta)), float(np.exp(log_odds)))
         for c, log_odds in behind

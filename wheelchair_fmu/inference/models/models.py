@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...campaign import Campaign
+from ...errors import SimulationError
 from ...model.stage import Effect
 from ..estimation.fit import Fit, Problem, fit, sizes_an_effect, start_value
 from ..estimation.foretelling import foretold_by
@@ -16,7 +17,7 @@ from ..estimation.inverse import inverse
 from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence
-from ..evidence.initial_state import TUNING
+from ..evidence.initial_state import CASTERS, TUNING
 from ..evidence.likelihood import Likelihood, offsets_of
 from ..evidence.noise import QUIETER, by_run, noise_model_of, shown
 from ..policy import DEFAULT, SearchPolicy
@@ -90,8 +91,27 @@ class Models:
         """The same followed to its end, once: who asks again gets what came of the first start."""
         hypothesis = Hypothesis(tuple(effects), without)
         if hypothesis not in self._fits:
-            self._fits[hypothesis] = fit(self.likelihood(effects), self.names(effects, without), start)
+            found = fit(self.likelihood(effects), self.names(effects, without), start)
+            self._fits[hypothesis] = self.started(effects, found)
         return self._fits[hypothesis]
+
+    def started(self, effects: Sequence[str], found: Fit) -> Fit:
+        """A fit of these effects; where it has states that no model of this setting had, again from where its runs start by it,
+        if that is likelier."""
+        likelihood = self.likelihood(effects)
+        if not self._unstarted(likelihood):
+            return found
+        try:
+            again = self.restarted(likelihood, found.names, found.values)
+        except SimulationError:
+            return found
+        return min(found, again, key=lambda f: f.misfit)
+
+    def _unstarted(self, likelihood: Likelihood) -> bool:
+        """Have the models of a likelihood casters that swing, and had none yet in this setting? Nobody asked then how these
+        stand where runs start, and from elsewhere a chair may go another way altogether."""
+        asked = (name for start in self.setting.starts.values() for name in start)
+        return not self.factory.leads and not set(CASTERS).intersection(likelihood.start_names) <= set(asked)
 
     def model(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Model:
         """`fitted`, and held out."""
@@ -107,7 +127,8 @@ class Models:
 
     def heldout(self, likelihood: Likelihood, found: Fit, tune_start: int = 1) -> Evidence:
         """Evidence of the held-out runs, as a fit foretells them; only where each starts is estimated on them, in so many
-        steps."""
+        steps, or more in models that were not started yet."""
+        tune_start = TUNING if self._unstarted(likelihood) else tune_start
         held = likelihood.evidence(self.campaign.holdout, found.values, found.names, tune_start=tune_start)
         records = [likelihood.records[n] for n in found.names]
         sizes = [self.policy.large * r.delta if sizes_an_effect(r) else np.inf for r in records]

@@ -118,7 +118,8 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
     promising = most_promising(likelihood, known, names, thetas, BEGUN, known.r)
     begun = sorted((fit for fit in parallel_map(one_step, promising) if fit), key=_misfit)
     ended = parallel_map(lambda fit: models.refit(every, fit.values, fit.evidence), begun[:ENDED])
-    return min(ended, key=_misfit, default=None)
+    best = min(ended, key=_misfit, default=None)
+    return best and models.started(every, best)
 
 
 def _misfit(fit: Fit) -> float:

@@ -49,7 +49,7 @@ def candidate(
     found = _best_of(models, effects, starts, min(rival, base.fit.misfit))  # which it has as a special case
     if found is None:
         return None
-    found = models.compared(found, effect, base.fit)
+    found = models.compared(models.started(effects, found), effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
     if found.evidence.rms > RISEN * base.fit.evidence.rms:
         return None  # no fit: the model without the effect is one with it

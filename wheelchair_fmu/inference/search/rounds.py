@@ -92,6 +92,10 @@ class Round:
         sure = (c for c in self.candidates if c.possible and not c.worsens and self.present[c.effect] > self.policy.sure)
         return sorted(sure, key=lambda c: -c.support.slight)
 
+    def likelier_slight(self, c: Candidate) -> bool:
+        """Is a candidate that is there likelier slight than large, by what is expected beforehand and by what was measured?"""
+        return c.support.slight > self.log_prior + c.support.large
+
     @property
     def log_prior(self) -> float:
         return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds)) - self._of_laws
