@@ -136,3 +136,4 @@ def test_of_a_chair_that_only_went_straight_nothing_is_found_by_how_it_turned_el
     straight = [r for r in campaign.runs if r.role == "holdout" or r.name in ("coast-down", "straight-strokes")]
     found = diagnose(replace(campaign, runs=tuple(straight)))
     assert found.verdict == "cannot_see" and not found.effects
+    assert found.ladder[-1].heldout > 1.3 and any('role = "fit"' in note for note in found.notes), "it says which run to fit"

@@ -45,6 +45,7 @@ from ..search.rounds import Belief, Round
 from ..search.screen import screen
 from ..search.selection import Selection, selection
 from ..search.ties import grouped, probable, tied
+from .ahead import Ahead, ahead, which_to_fit
 from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worsened
 from .leftover import leftover, settled
@@ -88,6 +89,7 @@ class Diagnosis:
     seconds: float = 0.0
     unexplained: Unexplained | None = None
     seen: float | None = None  # share of the catalogue's causes that would have been seen, where nothing was
+    ahead: Ahead = Ahead()
 
     @property
     def top(self) -> Fit:
@@ -153,7 +155,7 @@ def diagnose(
     models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
     found = _diagnosed(models, generic or {}, experiments, stepped)
     found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
-    if found.verdict == "outside" and experiments:
+    if found.verdict == "outside" and experiments and not which_to_fit(found.ladder, found.ahead, policy):
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     notes = (*found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
@@ -227,7 +229,8 @@ def _diagnosed(
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
-    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, base.evidence, strained)
+    held = ahead(models, found.top, found.ladder[-1].heldout) if proposal is None else Ahead()
+    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *beginning.heard(in_time))
@@ -252,9 +255,10 @@ def _diagnosed(
         retimed=beginning.retimed,
         clocks=in_time,
         heard=heard,
-        notes=_notes(found, heard, verdict, proposal, values),
+        notes=(*_notes(found, heard, verdict, proposal, values), *which_to_fit(ladder, held, models.policy)),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
         seen=seen,
+        ahead=held,
     )
 
 
@@ -394,19 +398,20 @@ def _verdict(
     rounds: Sequence[Round],
     proposal: Candidate | None,
     ladder: Sequence[Step],
-    left: Evidence,
+    left: tuple[Evidence, Ahead],
     strained: Sequence[str],
 ) -> tuple[str, float | None]:
     """The verdict, and the share of causes that would have been seen, where it rests on that."""
     if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
         return "outside", None
     # Where forces lead the runs, what lasts is theirs: whether anything is behind that is asked of them (see `Unexplained`).
-    lasting = not models.factory.leads and correlation_time(left) > models.policy.lasting
-    if effects and insufficient(ladder, models.policy) and lasting:
+    fitted, held = left
+    lasting = not models.factory.leads and correlation_time(fitted) > models.policy.lasting
+    if effects and ((lasting and insufficient(ladder, models.policy)) or held.unexplained(models.policy, ladder[1].heldout)):
         return "outside", None
     if effects:
         return ("tie" if ties else "missing"), None
-    if lasting and _structured(left, models.policy):
+    if (lasting and _structured(fitted, models.policy)) or held.unexplained(models.policy):
         return "outside", None
     if _slight(rounds[0]):
         return "small", None

@@ -39,6 +39,22 @@ def foretold_by(found: Fit, held: Evidence, prior: np.ndarray) -> Evidence:
     return Evidence(tuple(runs), ())
 
 
+def unforetold(found: Fit, held: Evidence, prior: np.ndarray) -> tuple[Evidence, dict[str, float]]:
+    """Held-out runs, whose evidence has slopes by what a fit estimated, in its order, with the innovations that they leave once
+    all values are as these runs want them, within what the fit leaves open; and by how much (RMS) each value moves them for
+    that. `prior` is as in `foretold_by`."""
+    root, S = _root(found, prior), held.S
+    scaled = S @ root
+    step = root @ np.linalg.solve(np.eye(len(root)) + scaled.T @ scaled, scaled.T @ held.r)
+    left, runs = held.r - S @ step, list[RunEvidence]()
+    for e, good, part in held.parts():
+        r = np.full(e.r.shape, np.nan)
+        r[good] = left[part]
+        runs.append(replace(e, r=r, S=np.empty((*e.r.shape, 0))))
+    moved = np.abs(step) * np.sqrt(np.mean(S**2, axis=0))
+    return Evidence(tuple(runs), ()), dict(zip(found.names, moved.tolist(), strict=True))
+
+
 def _root(found: Fit, prior: np.ndarray) -> np.ndarray:
     """A square root (k, k) of the values' covariance."""
     covariance = inverse(inverse(found.covariance) + np.diag(prior))

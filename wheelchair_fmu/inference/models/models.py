@@ -130,9 +130,13 @@ class Models:
         steps, or more in models that were not started yet."""
         tune_start = TUNING if self._unstarted(likelihood) else tune_start
         held = likelihood.evidence(self.campaign.holdout, found.values, found.names, tune_start=tune_start)
+        return foretold_by(found, held, self.unknown(likelihood, found))
+
+    def unknown(self, likelihood: Likelihood, found: Fit) -> np.ndarray:
+        """Inverse variances (k,) of what a fit took for unknown beforehand: how large effects of interest are."""
         records = [likelihood.records[n] for n in found.names]
         sizes = [self.policy.large * r.delta if sizes_an_effect(r) else np.inf for r in records]
-        return foretold_by(found, held, np.array(sizes) ** -2.0)
+        return np.array(sizes) ** -2.0
 
     def weight(self, found: Fit, effect: str) -> float:
         """How far an effect's estimate is from what a model without it has, by its covariance: about as much as −2 log

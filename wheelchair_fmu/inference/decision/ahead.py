@@ -1,0 +1,86 @@
+"""What a model leaves of runs that were held out, beside what it leaves of those it was fitted on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..estimation.foretelling import unforetold
+from ..estimation.statistics import correlation_time
+from ..evidence.evidence import Evidence
+from ..evidence.initial_state import TUNING
+from ..models.hypothesis import Model
+from ..models.models import Models
+from ..policy import DEFAULT, SearchPolicy
+from ..residual.staircase import Step
+
+NAMED = 3  # values that are said to explain an error, at most
+MUCH = 0.5  # of what the one that explains most does
+
+
+@dataclass(frozen=True)
+class Ahead:
+    """Innovations of held-out runs with all values as these want them, within what the fitted runs leave open, by how much
+    (RMS) each value `moved` them: what is still left no value explains."""
+
+    left: Evidence = field(default_factory=lambda: Evidence((), ()))
+    moved: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def rms(self) -> float:
+        """Over all runs and channels; 1.0 is the noise floor."""
+        return float(np.sqrt(np.mean(self.left.r**2))) if len(self.left.r) else 1.0
+
+    @property
+    def worst(self) -> tuple[float, str, str]:
+        """The largest of one channel in one run, with the run and the channel."""
+        runs = ((e.run.name, c, e.r[:, i]) for e in self.left.runs for i, c in enumerate(e.channels))
+        seen = ((float(np.sqrt(np.nanmean(r**2))), run, c) for run, c, r in runs if np.isfinite(r).any())
+        return max(seen, default=(1.0, "", ""))
+
+    def unexplained(self, policy: SearchPolicy, before: float | None = None) -> bool:
+        """Is more left than noise accounts for, and does it last? Beside what was found, which calibration left `before` of, no
+        law is exact."""
+        if not self.left.runs or correlation_time(self.left) <= policy.lasting:
+            return False
+        if before is None:
+            return self.rms > policy.structured or self.worst[0] > policy.far_off
+        return self.rms > policy.a_little and self.rms**2 - 1 > policy.rest * (before**2 - 1)
+
+
+def ahead(models: Models, top: Model, error: float) -> Ahead:
+    """Of the last model of a search. Nothing is asked where an `error` on held-out runs is the noise, or where forces lead the
+    runs: what lasts there is theirs."""
+    if models.factory.leads or not error > models.policy.a_little:
+        return Ahead()
+    likelihood, fit = models.likelihood(top.effects), top.fit
+    held = likelihood.evidence(models.campaign.holdout, fit.values, fit.names, tune_start=TUNING)
+    return Ahead(*unforetold(fit, held, models.unknown(likelihood, fit)))
+
+
+def which_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> tuple[str, ...]:
+    """A sentence where only held-out runs show an error: on what it rests, and which run to fit."""
+    last = ladder[-1]
+    if not told.left.runs or last.fit > policy.structured or not last.heldout > policy.unexplained:
+        return ()
+    if told.unexplained(policy, ladder[1].heldout if len(ladder) > 2 else None):
+        size, where, channel = told.worst
+        return (
+            f"{where}: runs that were held out show what the fitted ones do not, {channel} most, with {size:.1f} times the "
+            f'noise, and no value of the chair explains it; give {where} role = "fit", and diagnose again',
+        )
+    most = max(told.moved.values(), default=0.0)
+    names = sorted((n for n, by in told.moved.items() if by >= MUCH * most), key=lambda n: -told.moved[n])
+    run, values = _furthest(told), ", ".join(names[:NAMED])
+    return (
+        f"{run}: runs that were held out are off by {last.heldout:.1f} times the noise, as the fitted ones leave uncertain "
+        f'what these depend on ({values}); give {run} role = "fit", and diagnose again',
+    )
+
+
+def _furthest(told: Ahead) -> str:
+    """The held-out run that the model is furthest off in."""
+    errors = {e.run.name: float(np.sqrt(np.nanmean(e.e**2))) for e in told.left.runs}
+    return max(errors, key=lambda run: errors[run])
