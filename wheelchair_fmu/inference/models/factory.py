@@ -14,6 +14,7 @@ import numpy as np
 
 from ...campaign import BY_NAME, Campaign, moving, sets_off
 from ...campaign.channels import MOMENTUM
+from ...model.caster import LAWS as CASTERS
 from ...model.stage import Effect
 from ...model.variant import Variant
 from ...model.wheelchair import adds_state
@@ -29,6 +30,7 @@ CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", 
 
 SCALE = "rider.scale"
 ONSET = "resistance.onset"
+BEARING = "caster.M"
 TOGETHER = "+"  # between the names of effects in that of their group
 
 
@@ -41,6 +43,12 @@ def _of_a_standing_start(campaign: Campaign) -> tuple[str, ...]:
     """What is calibrated where a chair sets off: nobody measures how its drag builds up from rest, and it decides when it lets
     go."""
     return (ONSET,) if sets_off(campaign) else ()
+
+
+def _of_swinging_casters(chair: Variant) -> tuple[str, ...]:
+    """What is calibrated where casters swing by the chair's own law: in that chairs differ, and nobody measures it well."""
+    law = CASTERS[chair.choice.caster]
+    return tuple(p.name for p in law.parameters if p.among_chairs) if law.rows else ()
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,12 @@ class ModelFactory:
     @cached_property
     def calibrated(self) -> tuple[str, ...]:
         """The parameters that every fit estimates."""
-        names = (*self.usual, *_of_the_body(self.campaign), *_of_a_standing_start(self.campaign))
+        names = (
+            *self.usual,
+            *_of_swinging_casters(self.chair),
+            *_of_the_body(self.campaign),
+            *_of_a_standing_start(self.campaign),
+        )
         return tuple(n for n in dict.fromkeys(names) if n not in self.fixed)
 
     @cached_property

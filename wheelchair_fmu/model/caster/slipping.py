@@ -24,6 +24,8 @@ up: the front axle's load changes with the mean of both cosines of δ.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as cs
 
 from ...quantities import FRONT, KG_M2, M_S, N_M, N_M_S, N_RAD, ONE, RAD, RAD_S, REAR, M, N, Parameter, S, State
@@ -34,7 +36,11 @@ from ..stage import Alternative, Row, define, stage
 from . import swivelling
 
 PARAMETERS = (
-    *(p for p in swivelling.PARAMETERS if p.name != "regularisation.trail"),
+    *(
+        replace(p, among_chairs=0.01) if p.name == "caster.trail" else p
+        for p in swivelling.PARAMETERS
+        if p.name != "regularisation.trail"
+    ),
     Parameter(
         "caster.I",
         KG_M2,
@@ -43,6 +49,7 @@ PARAMETERS = (
         lower=1e-5,
         upper=0.5,
         symbol="I_caster",
+        among_chairs=1.5e-3,
         source="chosen: half a kilogram about 0.08 m",
     ),
     Parameter(
@@ -53,6 +60,7 @@ PARAMETERS = (
         lower=0.0,
         upper=5.0,
         symbol="M_bearing",
+        among_chairs=0.01,
         source="chosen: a clean ball bearing",
     ),
     Parameter(
@@ -73,6 +81,7 @@ PARAMETERS = (
         lower=10.0,
         upper=1e5,
         symbol="C_caster",
+        among_chairs=750.0,
         source="chosen: half a rear tyre's",
     ),
     Parameter(
