@@ -18,6 +18,12 @@ PAIRS = (
     ("gyro_bias", "aerodynamic_drag"),
 )
 ALONE = (("trunk_motion", "swing"),)  # a body that goes on after the push, of second order where the catalogue's law is linear
+SWINGING: tuple[tuple[tuple[str, ...], str], ...] = (  # asked by a law of casters that swing, as the other chair's do
+    ((), "everyday"),
+    ((), "slow"),
+    (("rolling_resistance_asymmetry",), "everyday"),
+    (("pivot_torque",), "one-handed"),
+)
 NEAR_TIES = ("aerodynamic_drag", "rolling_resistance_speed")  # on straight runs, where nobody can tell them apart
 
 
@@ -33,12 +39,14 @@ class Case:
     left_out: tuple[str, ...] = ()
     seed: int = 0
     only: str = ""  # the one parameter of the effect that is hidden, where not all are
+    casters: str = "ideal"  # the law of casters that it is asked by
 
     @property
     def name(self) -> str:
         what = "+".join(self.effects) or "none"
         what += f".{self.only}" if self.only else ""
-        return f"{self.kind}-{what}-{self.times:g}-{self.noise}-{self.manoeuvres}-{self.seed}"
+        by = f"-{self.casters}" if self.casters != "ideal" else ""
+        return f"{self.kind}-{what}-{self.times:g}-{self.noise}-{self.manoeuvres}{by}-{self.seed}"
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -84,6 +92,8 @@ class Plan:
                 self._add("pair", pair, (3.0,), "white", seed)
             for effect, parameter in ALONE:
                 self.cases += [Case("rider", (effect,), times, seed=seed, only=parameter) for times in SIZES]
+            for hidden, manoeuvres in SWINGING:
+                self.cases.append(Case("casters", hidden, 3.0, manoeuvres=manoeuvres, seed=seed, casters="slipping"))
             for effect in NEAR_TIES:
                 self._add("near-tie", (effect,), (2.0,), "white", seed, "straight")
 

@@ -108,6 +108,7 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
     by = {kind: [t for t in trials if t["kind"] == kind] for kind in {t["kind"] for t in trials}}
     single = [t for t in by.get("effect", []) if detectable(t, floor)]
     nulls, small = by.get("null", []), [t for t in by.get("effect", []) if t["times"] < 1]
+    still, moved = ([t for t in by.get("casters", []) if bool(t["effects"]) == there] for there in (False, True))
     missing = [t for t in single if t["verdict"] in ("missing", "tie")]
     inside = [c for t in missing for c in covered(t)]
     won = gains(missing)
@@ -126,6 +127,8 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("wheels that slip: said so, and nothing named", share(by.get("slipping", []), slipped), ""),
         ("pairs: both found", share(by.get("pair", []), lambda t: set(t["effects"]) <= named(t)), ""),
         ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),
+        ("casters that swing by law: nothing said to be missing", share(still, lambda t: t["verdict"] in QUIET), ""),
+        ("  hidden effect named", share(moved, lambda t: set(t["effects"]) <= named(t)), ""),
         ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),
         ("held-out gain, median", f"{np.median(won):.2f} of {len(won)}" if won else "none run", ""),
         ("true value within the 95 % interval", f"{np.mean(inside):.0%} of {len(inside)}" if inside else "none run", "93–97 %"),

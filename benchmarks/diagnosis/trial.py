@@ -14,6 +14,7 @@ from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import Choice
 
 from ..independent.campaigns import make
 from .baselines import baselines
@@ -23,12 +24,12 @@ from .cases import Case
 def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
     """What was hidden, and what the loop and its baselines said."""
     catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
-    chair = Variant(catalogue=catalogue)
+    chair = Variant(Choice(caster=case.casters), catalogue=catalogue)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "campaign"
-        campaign = read(
-            make(folder, case.hidden, noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
-        )
+        how = dict(noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
+        at_patches = {"patch_load": 1.0} if case.casters != "ideal" else None  # where that law has the front axle's load
+        campaign = read(make(folder, case.hidden, chair=at_patches, **how))
         began = time.process_time()
         found = diagnose(campaign, chair, library())
         said = as_json(found)
