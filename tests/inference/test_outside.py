@@ -8,11 +8,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from benchmarks.independent.campaigns import make
+from benchmarks.independent.hidden import usual
 from tests.inference.conftest import measured
+from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
 from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
-from wheelchair_fmu.model.generic import terms
+from wheelchair_fmu.model.generic import library, terms
 
 
 @pytest.fixture(scope="module")
@@ -55,3 +58,11 @@ def test_what_is_missing_goes_with_the_casters_angle_and_with_no_other_variable(
     for variable in ("speed", "push of both hands"):
         assert max(abs(v) for v in panels[variable]["estimate"] if v is not None) < 0.5 * max(map(abs, angle))
     assert (folder / "missing.png").exists()
+
+
+@pytest.mark.nightly
+def test_a_wobble_is_outside_though_casters_that_swing_take_it_for_errors_of_the_pushes(tmp_path):
+    """With them a model leaves less than the noise, and no force leads its runs, as casters flip by chance."""
+    folder = make(tmp_path / "wobble", {"steering_wobble": usual("steering_wobble", 3.0)}, seed=93)
+    found = diagnose(read(folder), generic=library())
+    assert found.verdict == "outside" and found.ladder[-1].heldout < 1.03

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy import special
 
+from tests.inference.linear import evidence
 from wheelchair_fmu.inference.decision.verdict import _instead_of_small, _slight
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.search.candidate import Candidate, ranked
 from wheelchair_fmu.inference.search.probability import _rivals
+from wheelchair_fmu.inference.search.refitting import risen
 from wheelchair_fmu.inference.search.rounds import Round, instead
 from wheelchair_fmu.inference.search.ties import probable
 
@@ -225,3 +227,14 @@ def test_what_was_found_is_named_as_long_as_it_or_its_rivals_are_probable():
     assert max(b.there for b in r.beliefs.values()) < 0.5 and all(probable(r, e) for e in "abc")
     needless = Round(("x",), NONE, Evidence((), ()), (), (candidate("a", 3.0, np.array([0.2]), certain),), again=True)
     assert not probable(needless, "a")
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "rises"), [(0.88, 0.99, False), (0.88, 1.2, True), (2.0, 2.1, False), (2.0, 2.3, True)]
+)
+def test_an_error_that_comes_to_the_noise_has_not_risen(before, after, rises):
+    """Whatever is below the noise is there by errors of the pushes, and is no gain that another effect could lose."""
+    one, other = (
+        replace(NONE, evidence=evidence([np.full((50, 1), rms)], [np.zeros((50, 1, 0))], ())) for rms in (before, after)
+    )
+    assert risen(one, other) == rises

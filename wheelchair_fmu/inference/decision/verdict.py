@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -198,12 +199,13 @@ def _left(found: Diagnosis, before: Strength) -> Unexplained:
 
 def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength, Evidence]:
     """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
-    term, which no likelihood of the search knows."""
+    term, which no likelihood of the search knows, and where no force can lead the runs, as casters flip by chance."""
     likelihood = found.models.likelihood(effects)
-    if not set(at.names) <= set(likelihood.records):
-        chair = likelihood.chair(at.values)
-        return strength(at.evidence, chair["chair.t_r"], chair["chair.b"]), at.evidence
-    return acting(likelihood, at.values)
+    if set(at.names) <= set(likelihood.records):
+        with suppress(SimulationError):
+            return acting(likelihood, at.values)
+    chair = likelihood.chair(at.values)
+    return strength(at.evidence, chair["chair.t_r"], chair["chair.b"]), at.evidence
 
 
 def _diagnosed(

@@ -51,13 +51,19 @@ def candidate(
         return None
     found = models.compared(models.started(effects, found), effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-    if found.evidence.rms > RISEN * base.fit.evidence.rms:
+    if risen(base.fit, found):
         return None  # no fit: the model without the effect is one with it
     try:
         held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
     except SimulationError:
         return None  # a model that cannot be simulated on what was held out foretells nothing of it
     return judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
+
+
+def risen(before: Fit, after: Fit) -> bool:
+    """Does one more effect cost fitted runs an error above the noise? A model whose casters swing may leave less than that, as
+    errors of the pushes are found with them."""
+    return after.evidence.rms > RISEN * max(1.0, before.evidence.rms)
 
 
 def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:

@@ -17,7 +17,7 @@ from .candidate import Candidate
 from .joint import parted, together
 from .judge import surely_large
 from .pruning import pruned
-from .refitting import RISEN
+from .refitting import risen
 from .rounds import Round
 from .screen import AT_THE_FLOOR
 from .search import searched
@@ -92,7 +92,7 @@ class Selection:
             models, top = self.models.settled((*self.rounds[-1].effects, best.effect), best.fit)
         except SimulationError:
             return None
-        if top.fit.evidence.rms > RISEN * self.top.fit.evidence.rms:
+        if risen(self.top.fit, top.fit):
             return None
         return replace(self, models=models, top=top)._step()._pruned()
 
