@@ -15,6 +15,7 @@ from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.estimation.foretelling import unforetold
 from wheelchair_fmu.inference.evidence.evidence import Evidence
+from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.residual.staircase import Step
 
@@ -90,3 +91,4 @@ def test_a_model_is_not_adequate_where_held_out_runs_have_what_no_fitted_one_sho
     assert found.ladder[-1].fit < 1.05 and found.ladder[-1].heldout > 1.3
     assert found.verdict == "outside" and not found.effects
     assert any(note.startswith(tuple(swung)) and "yaw_rate most" in note for note in found.notes)
+    assert found.to_fit in swung and as_json(found)["to_fit"] == found.to_fit

@@ -16,7 +16,7 @@ from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.advice import INSPECT, inspect, inspect_term
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
-from wheelchair_fmu.report.told import Told, exceeds, near_rivals
+from wheelchair_fmu.report.told import Told, actions, exceeds, near_rivals
 from wheelchair_fmu.report.words import headline, in_full, needed, probability_words
 
 EFFECTS = {**bundled(), **library()}
@@ -517,3 +517,11 @@ def test_what_is_small_and_brings_the_error_down_is_worth_putting_in():
     )
     assert tale(CASES["small, left out"]).cards[2]["lead"] == "Use the model as it is."
     assert needed(CASES["small"]) and not needed(CASES["small, left out"]) and not needed(CASES["missing"])
+
+
+def test_a_held_out_run_that_shows_more_is_to_be_fitted_before_anything_else():
+    """Not "compare the missing force", of which the fitted runs have none."""
+    t = Told({**CASES["outside"], "to_fit": "slalom-2"}, TITLES, RECORDS)
+    first, *others = actions(t)
+    assert first.startswith('Give slalom-2 role = "fit" in campaign.toml') and others
+    assert actions(Told({**CASES["outside"], "to_fit": None}, TITLES, RECORDS))[0] != first

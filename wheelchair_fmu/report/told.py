@@ -410,7 +410,9 @@ def _lower(words: str) -> str:
 
 def actions(t: Told) -> list[str]:
     """What to do, the first thing first: inspect, measure, add."""
-    found, following = t.found, t.diagnosis.get("next_experiment")
+    found, following, run = t.found, t.diagnosis.get("next_experiment"), t.diagnosis.get("to_fit")
+    if run:
+        return [f'Give {run} role = "fit" in campaign.toml, hold another run out, and diagnose again.', *_whatever_comes(t)]
     measure = [f"Measure {_what_next(t)}: {_why_next(t)}."] if following else []
     if t.verdict == "tie":
         return [*measure, *(inspect(e, t.title(e)) for e in found)] or ["Measure again where the causes differ."]
@@ -444,6 +446,11 @@ def actions(t: Told) -> list[str]:
             "For other manoeuvres, record some of them first and have them diagnosed too.",
         ]
     return [*measure, "Make livelier runs: tighter turns, other speeds, stronger pushes."]
+
+
+def _whatever_comes(t: Told) -> list[str]:
+    """What to do about what was found, where a run that was held out is to be fitted as well."""
+    return [inspect(e, t.title(e)) for e in t.found] or ["Until then, trust the model for runs like the fitted ones only."]
 
 
 def _command(found: Sequence[str]) -> str:

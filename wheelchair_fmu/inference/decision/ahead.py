@@ -60,24 +60,35 @@ def ahead(models: Models, top: Model, error: float) -> Ahead:
     return Ahead(*unforetold(fit, held, models.unknown(likelihood, fit)))
 
 
-def which_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> tuple[str, ...]:
-    """A sentence where only held-out runs show an error: on what it rests, and which run to fit."""
+def run_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> str | None:
+    """The held-out run to fit as well, where only such runs show an error."""
     last = ladder[-1]
     if not told.left.runs or last.fit > policy.structured or not last.heldout > policy.unexplained:
+        return None
+    return told.worst[1] if _nothing_explains(ladder, told, policy) else _furthest(told)
+
+
+def which_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> tuple[str, ...]:
+    """A sentence on that run, and on what its error rests."""
+    run = run_to_fit(ladder, told, policy)
+    if run is None:
         return ()
-    if told.unexplained(policy, ladder[1].heldout if len(ladder) > 2 else None):
-        size, where, channel = told.worst
+    if _nothing_explains(ladder, told, policy):
+        size, _, channel = told.worst
         return (
-            f"{where}: runs that were held out show what the fitted ones do not, {channel} most, with {size:.1f} times the "
-            f'noise, and no value of the chair explains it; give {where} role = "fit", and diagnose again',
+            f"{run}: runs that were held out show what the fitted ones do not, {channel} most, with {size:.1f} times the "
+            f'noise, and no value of the chair explains it; give {run} role = "fit", and diagnose again',
         )
     most = max(told.moved.values(), default=0.0)
     names = sorted((n for n, by in told.moved.items() if by >= MUCH * most), key=lambda n: -told.moved[n])
-    run, values = _furthest(told), ", ".join(names[:NAMED])
     return (
-        f"{run}: runs that were held out are off by {last.heldout:.1f} times the noise, as the fitted ones leave uncertain "
-        f'what these depend on ({values}); give {run} role = "fit", and diagnose again',
+        f"{run}: runs that were held out are off by {ladder[-1].heldout:.1f} times the noise, as the fitted ones leave "
+        f'uncertain what these depend on ({", ".join(names[:NAMED])}); give {run} role = "fit", and diagnose again',
     )
+
+
+def _nothing_explains(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy) -> bool:
+    return told.unexplained(policy, ladder[1].heldout if len(ladder) > 2 else None)
 
 
 def _furthest(told: Ahead) -> str:

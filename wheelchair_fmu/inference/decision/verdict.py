@@ -46,7 +46,7 @@ from ..search.rounds import Belief, Round
 from ..search.screen import screen
 from ..search.selection import Selection, selection
 from ..search.ties import grouped, probable, tied
-from .ahead import Ahead, ahead, which_to_fit
+from .ahead import Ahead, ahead, run_to_fit, which_to_fit
 from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worsened
 from .leftover import leftover, settled
@@ -109,6 +109,11 @@ class Diagnosis:
         return tuple(shared(group, self._decided(group[0])) for group in self.ties)
 
     @property
+    def to_fit(self) -> str | None:
+        """The held-out run to fit as well, where only such runs show an error."""
+        return run_to_fit(self.ladder, self.ahead, self.models.policy)
+
+    @property
     def larger(self) -> tuple[Larger, ...]:
         """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
         return _instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
@@ -156,7 +161,7 @@ def diagnose(
     models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
     found = _diagnosed(models, generic or {}, experiments, stepped)
     found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
-    if found.verdict == "outside" and experiments and not which_to_fit(found.ladder, found.ahead, policy):
+    if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     notes = (*found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)

@@ -32,6 +32,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "ladder": [step.as_json() for step in d.ladder],
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
+        "to_fit": d.to_fit,
         "seen": d.seen,
         "sync": {
             run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}
