@@ -62,7 +62,7 @@ def test_what_values_explain_is_nothing_missing_and_what_none_explains_is():
 def test_beside_what_was_found_a_share_of_what_it_explained_may_be_left():
     told = Ahead(*unforetold(*foretold(np.random.default_rng(3), WAVE), NOTHING_KNOWN))
     assert 1.1 < told.rms < 1.4
-    assert told.unexplained(DEFAULT, before=1.2) and not told.unexplained(DEFAULT, before=5.0)
+    assert replace(told, before=1.2).unexplained(DEFAULT) and not replace(told, before=5.0).unexplained(DEFAULT)
 
 
 def step(fit: float, heldout: float) -> Step:

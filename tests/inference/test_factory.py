@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.model.caster import slipping
+from wheelchair_fmu.model.choice import Choice, OwnLaw
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
@@ -48,3 +52,13 @@ def test_a_variant_s_own_effects_are_on_every_likelihood(sample):
     for likelihood in (shop.likelihood(), shop.wide(), shop.rerun(["trunk_motion"])):
         assert "relaxation_length" in likelihood.variant.effects
     assert TOE in shop.wide().records and TOE not in shop.likelihood().records
+
+
+def test_what_a_law_of_swinging_casters_leaves_open_is_calibrated_whoever_wrote_it(sample):
+    """Be it bundled, or a user's own that comes along with the chair; ideal casters leave nothing open."""
+    text = Path(slipping.__file__).read_text(encoding="utf-8").replace('"slipping"', '"mine"')
+    own = Choice(caster="mine", own=(OwnLaw("caster", "mine", text, "mine.py"),))
+    ideal, bundled_, mine = (ModelFactory(sample, Variant(c)).calibrated for c in (Choice(), Choice(caster="slipping"), own))
+    assert not any(n.startswith("caster.") for n in ideal)
+    assert {"caster.trail", "caster.I", "caster.M", "caster.C_lambda"} == set(bundled_) - set(ideal)
+    assert mine == bundled_

@@ -78,6 +78,14 @@ class SearchPolicy:
         """Fall of −2 log likelihood that `tie_odds` are."""
         return 2 * log(self.tie_odds)
 
+    def is_structured(self, rms: float, worst: float) -> bool:
+        """Is a whitened RMS error, or the `worst` of one channel in one run, more than noise where nothing was found?"""
+        return rms > self.structured or worst > self.far_off
+
+    def is_rest(self, after: float, before: float) -> bool:
+        """Is a whitened RMS error beside what was found more than a little, and too large a share of what calibration left?"""
+        return after > self.a_little and after**2 - 1 > self.rest * (before**2 - 1)
+
     def log_prior(self, effects: int) -> float:
         """Log odds, before anything was measured, that one of so many effects is missing."""
         share = min(self.expected / max(effects, 2), 0.5)

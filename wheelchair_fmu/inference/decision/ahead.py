@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,10 +23,12 @@ MUCH = 0.5  # of what the one that explains most does
 @dataclass(frozen=True)
 class Ahead:
     """Innovations of held-out runs with all values as these want them, within what the fitted runs leave open, by how much
-    (RMS) each value `moved` them: what is still left no value explains."""
+    (RMS) each value `moved` them: what is still left no value explains. Where something was found, `before` is the error that
+    calibration left of these runs."""
 
-    left: Evidence = field(default_factory=lambda: Evidence((), ()))
+    left: Evidence = Evidence((), ())
     moved: Mapping[str, float] = field(default_factory=dict)
+    before: float | None = None
 
     @property
     def rms(self) -> float:
@@ -40,40 +42,39 @@ class Ahead:
         seen = ((float(np.sqrt(np.nanmean(r**2))), run, c) for run, c, r in runs if np.isfinite(r).any())
         return max(seen, default=(1.0, "", ""))
 
-    def unexplained(self, policy: SearchPolicy, before: float | None = None) -> bool:
-        """Is more left than noise accounts for, and does it last? Beside what was found, which calibration left `before` of, no
-        law is exact."""
-        if not self.left.runs or correlation_time(self.left) <= policy.lasting:
+    def unexplained(self, policy: SearchPolicy) -> bool:
+        """Is more left than noise accounts for, or than laws that are not exact, and does it last?"""
+        if correlation_time(self.left) <= policy.lasting:
             return False
-        if before is None:
-            return self.rms > policy.structured or self.worst[0] > policy.far_off
-        return self.rms > policy.a_little and self.rms**2 - 1 > policy.rest * (before**2 - 1)
+        if self.before is None:
+            return policy.is_structured(self.rms, self.worst[0])
+        return policy.is_rest(self.rms, self.before)
 
 
-def ahead(models: Models, top: Model, error: float) -> Ahead:
-    """Of the last model of a search. Nothing is asked where an `error` on held-out runs is the noise, or where forces lead the
-    runs: what lasts there is theirs."""
-    if models.factory.leads or not error > models.policy.a_little:
+def ahead(models: Models, top: Model, ladder: Sequence[Step], found: bool) -> Ahead:
+    """Of the last model of a search, in which something was `found` or not. Nothing is asked where the error on held-out runs
+    is the noise, or where forces lead the runs: what lasts there is theirs."""
+    if models.factory.leads or not ladder[-1].heldout > models.policy.a_little:
         return Ahead()
     likelihood, fit = models.likelihood(top.effects), top.fit
     held = likelihood.evidence(models.campaign.holdout, fit.values, fit.names, tune_start=TUNING)
-    return Ahead(*unforetold(fit, held, models.unknown(likelihood, fit)))
+    return Ahead(*unforetold(fit, held, models.unknown(likelihood, fit)), ladder[1].heldout if found else None)
 
 
-def run_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> str | None:
+def run_to_fit(ladder: Sequence[Step], told: Ahead, policy: SearchPolicy = DEFAULT) -> str | None:
     """The held-out run to fit as well, where only such runs show an error."""
     last = ladder[-1]
     if not told.left.runs or last.fit > policy.structured or not last.heldout > policy.unexplained:
         return None
-    return told.worst[1] if _nothing_explains(ladder, told, policy) else _furthest(told)
+    return told.worst[1] if told.unexplained(policy) else _furthest(told)
 
 
-def which_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = DEFAULT) -> tuple[str, ...]:
+def which_to_fit(ladder: Sequence[Step], told: Ahead, policy: SearchPolicy = DEFAULT) -> tuple[str, ...]:
     """A sentence on that run, and on what its error rests."""
     run = run_to_fit(ladder, told, policy)
     if run is None:
         return ()
-    if _nothing_explains(ladder, told, policy):
+    if told.unexplained(policy):
         size, _, channel = told.worst
         return (
             f"{run}: runs that were held out show what the fitted ones do not, {channel} most, with {size:.1f} times the "
@@ -85,10 +86,6 @@ def which_to_fit(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy = D
         f"{run}: runs that were held out are off by {ladder[-1].heldout:.1f} times the noise, as the fitted ones leave "
         f'uncertain what these depend on ({", ".join(names[:NAMED])}); give {run} role = "fit", and diagnose again',
     )
-
-
-def _nothing_explains(ladder: tuple[Step, ...], told: Ahead, policy: SearchPolicy) -> bool:
-    return told.unexplained(policy, ladder[1].heldout if len(ladder) > 2 else None)
 
 
 def _furthest(told: Ahead) -> str:

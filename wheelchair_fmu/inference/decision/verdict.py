@@ -236,7 +236,7 @@ def _diagnosed(
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
-    held = ahead(models, found.top, found.ladder[-1].heldout) if proposal is None else Ahead()
+    held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
@@ -414,7 +414,7 @@ def _verdict(
     # Where forces lead the runs, what lasts is theirs: whether anything is behind that is asked of them (see `Unexplained`).
     fitted, held = left
     lasting = not models.factory.leads and correlation_time(fitted) > models.policy.lasting
-    if effects and ((lasting and insufficient(ladder, models.policy)) or held.unexplained(models.policy, ladder[1].heldout)):
+    if effects and ((lasting and insufficient(ladder, models.policy)) or held.unexplained(models.policy)):
         return "outside", None
     if effects:
         return ("tie" if ties else "missing"), None
@@ -449,14 +449,13 @@ def insufficient(ladder: Sequence[Step], policy: SearchPolicy = DEFAULT) -> bool
     a share of what calibration left above the noise?"""
     top, calibrated = ladder[-1], ladder[1]
     sides = ((top.fit, calibrated.fit), (top.heldout, calibrated.heldout))
-    rests = (after > policy.a_little and after**2 - 1 > policy.rest * (before**2 - 1) for after, before in sides)
-    return top.left > policy.unexplained or any(rests)
+    return top.left > policy.unexplained or any(policy.is_rest(after, before) for after, before in sides)
 
 
 def _structured(left: Evidence, policy: SearchPolicy) -> bool:
     """Is there more left than noise accounts for, over all or in one channel of one run?"""
     worst = max((rms for row in left.table().values() for rms in row.values()), default=0.0)
-    return left.rms > policy.structured or worst > policy.far_off
+    return policy.is_structured(left.rms, worst)
 
 
 def _slight(first: Round) -> tuple[str, ...]:

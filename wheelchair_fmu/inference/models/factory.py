@@ -14,7 +14,7 @@ import numpy as np
 
 from ...campaign import BY_NAME, Campaign, moving, sets_off
 from ...campaign.channels import MOMENTUM
-from ...model.caster import LAWS as CASTERS
+from ...model.choice import law
 from ...model.stage import Effect
 from ...model.variant import Variant
 from ...model.wheelchair import adds_state
@@ -47,8 +47,8 @@ def _of_a_standing_start(campaign: Campaign) -> tuple[str, ...]:
 
 def _of_swinging_casters(chair: Variant) -> tuple[str, ...]:
     """What is calibrated where casters swing by the chair's own law: in that chairs differ, and nobody measures it well."""
-    law = CASTERS[chair.choice.caster]
-    return tuple(p.name for p in law.parameters if p.among_chairs) if law.rows else ()
+    casters = law("caster", chair.choice)
+    return tuple(p.name for p in casters.parameters if p.among_chairs) if casters.rows else ()
 
 
 @dataclass(frozen=True)

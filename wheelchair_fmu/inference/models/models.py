@@ -26,10 +26,9 @@ from .factory import BEARING, ONSET, ModelFactory
 from .hypothesis import Hypothesis, Model
 from .setting import Setting
 
-# From where a fit begins as well that comes to no end near the noise, N m and m/s: dry friction that is more or sharper than a
-# chair's holds it and its casters where they stand, and no slope tells of it then.
-LOOSE = ({BEARING: 0.002, ONSET: 0.003}, {ONSET: 0.003}, {BEARING: 0.002, ONSET: 0.01}, {ONSET: 0.01})
-ABOUT_RIGHT = 1.05  # whitened RMS error
+# Where a fit begins as well that comes to no end near the noise, in standard deviations of its prior from what is usual: dry
+# friction that is more or sharper than a chair's holds it and its casters where they stand, and no slope tells of it then.
+LOOSE = ({BEARING: -1.0, ONSET: 0.3}, {ONSET: 0.3}, {BEARING: -1.0, ONSET: 1.0}, {ONSET: 1.0})
 
 
 def quiet(words: str) -> None:
@@ -164,10 +163,11 @@ class Models:
         nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=1)
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
         found = self._from(likelihood, names, start, nominal)
-        for loose in LOOSE if BEARING in names else ():
-            if found.evidence.rms < ABOUT_RIGHT:
+        for loose in LOOSE if BEARING in names and not self.factory.leads else ():
+            if found.evidence.rms < self.policy.a_little:
                 break
-            again, there = self.likelihood(), {**start, **{n: value for n, value in loose.items() if n in names}}
+            again = self.likelihood()
+            there = self._loosened(again, names, loose)
             here = again.evidence(self.campaign.fit, there, names, tune_start=1)
             other = self._from(again, names, there, here)
             found, likelihood = min((found, likelihood), (other, again), key=lambda one: one[0].misfit)
@@ -176,6 +176,13 @@ class Models:
         if self.factory.leads:
             setting = replace(setting, begun=dict(found.values))
         return replace(self, setting=setting), Model((), found, held), nominal, nominal_held
+
+    def _loosened(self, likelihood: Likelihood, names: Sequence[str], by: Mapping[str, float]) -> dict[str, float]:
+        """What is usual, or given, with some values so many standard deviations of their priors from that, within bounds."""
+        problem = Problem(likelihood, names)
+        mean, sd = problem.prior.mean, problem.prior.sd
+        off = np.array([by[n] * s if n in by else 0.0 for n, s in zip(names, sd, strict=True)])
+        return problem.values(np.clip(mean + off, problem.lower, problem.upper))
 
     def _from(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], here: Evidence) -> Fit:
         """A fit from `start`, with the evidence `here`, and again from where its runs start by it."""
