@@ -61,6 +61,8 @@ NOISE = {
     "v": 0.008,
 }
 AR1 = 0.9
+AHEAD = 0.35  # s before the hands push, at which a body starts forward
+YIELDS_TO_NO_PUSH = 1e-9  # m of lean, of a body that only does what it means to
 CALIBRATION = {"C_lambda": 0.12, "C_m_lambda": 0.08, "f_r": 0.06, "f_f": 0.06, "I_z": 0.05}
 """Half-widths of the uniform relative difference between the true chair and the file."""
 MEASURED = {"m": 0.02, "a": 0.04, "b": 0.05, "t_r": 0.015}
@@ -128,8 +130,28 @@ def record(run: Run, true: Truth, *, seed: int = 0, turned: tuple[float, float] 
     pressure = (told + true.pressure_change) / REFERENCE_PRESSURE
     chair = replace(true.chair, m=true.chair.m + run.added_mass, pressure=pressure)
     tools = true.instruments
-    motion = simulate(chair, tools.felt(F_rl), tools.felt(F_rr), start, interval=INTERVAL)
+    felt = tools.felt(F_rl), tools.felt(F_rr)
+    if true.reach:
+        chair = replace(chair, lean=chair.lean or YIELDS_TO_NO_PUSH)
+    motion = simulate(chair, *felt, start, urge=reaching(time, felt[0] + felt[1], true.reach), interval=INTERVAL)
     return Recorded(run, {"time": time, **tools.forces(time, F_rl, F_rr), **tools.motion(motion, chair.g)})
+
+
+def reaching(time: np.ndarray, push: np.ndarray, reach: float) -> np.ndarray | None:
+    """Where the rider means to be (m), by themselves: forward from AHEAD s before a stroke begins, and back a cycle later. None
+    of a rider who sits still."""
+    if not reach:
+        return None
+    pushing = push > 0.02 * push.max()
+    begin = time[1:][pushing[1:] & ~pushing[:-1]]
+    if len(begin) < 3 or np.ptp(np.diff(begin)) > 0.1:
+        return None
+    cycle = float(np.mean(np.diff(begin)))
+    out = np.zeros(len(time))
+    for start in begin - AHEAD:
+        since = (time - start) / cycle
+        out += np.where((since > 0) & (since < 1), reach * np.sin(np.pi * since) ** 2, 0.0)
+    return out
 
 
 def noisy(recorded: Recorded, names: Sequence[str], kind: str, scale: float, seed: int) -> Columns:
@@ -188,7 +210,12 @@ def answer(
     return {
         "hidden": {effect: dict(values) for effect, values in hidden.items()},
         "catalogued": all(EFFECTS[effect].catalogued for effect in hidden),
-        "true": {**asdict(true.chair), **asdict(true.instruments), "pressure_change": true.pressure_change},
+        "true": {
+            **asdict(true.chair),
+            **asdict(true.instruments),
+            "pressure_change": true.pressure_change,
+            "reach": true.reach,
+        },
         "signal_to_noise": signal(
             hidden, manoeuvres=manoeuvres, channels=channels, seed=seed, noise_scale=noise_scale, chair=chair
         ),

@@ -78,11 +78,12 @@ class Instruments:
 
 @dataclass(frozen=True)
 class Truth:
-    """The chair as it is, its instruments, and how far the pressure is off what the gauge said."""
+    """The chair as it is, its instruments, how far the pressure is off what the gauge said, and what the rider's body does."""
 
     chair: Chair = Chair()
     instruments: Instruments = Instruments()
     pressure_change: float = 0.0
+    reach: float = 0.0  # m by which the rider means to be ahead by themselves before each stroke
 
 
 def _add(old: float, new: float) -> float:
@@ -95,7 +96,7 @@ def _at_least(old: float, new: float) -> float:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter: `where` is "chair.x", "instruments.x" or "pressure_change"; it is usually hidden at `pattern` times δ.
+    """One parameter: `where` is "chair.x", "instruments.x", "pressure_change" or "reach"; usually hidden at `pattern` times δ.
 
     `sides` are what the right and the left one get of it, where `where` has {} for one of a pair.
     """
@@ -111,7 +112,7 @@ class Parameter:
     def put(self, truth: Truth, value: float) -> Truth:
         owner, _, name = self.where.rpartition(".")
         if not owner:
-            return replace(truth, pressure_change=self.combine(truth.pressure_change, value))
+            return replace(truth, **{name: self.combine(getattr(truth, name), value)})
         part = getattr(truth, owner)
         shares = {name: 1.0} if self.sides is None else dict(zip((name.format("r"), name.format("l")), self.sides, strict=True))
         changed = replace(part, **{n: self.combine(getattr(part, n), share * value) for n, share in shares.items()})
@@ -212,6 +213,9 @@ EFFECTS: dict[str, Effect] = {
                 pattern=0.0,
             ),
         }
+    ),
+    "stroke_motion": Effect(
+        _one("reach", "reach", "m", 0.01, "the body means to go forward by this and back, once around each stroke's beginning")
     ),
     "caster_inertia": Effect(
         _one("I", "chair.I_swivel", "kg m2", 0.005, "each caster's; replaces their own 0.003", combine=_at_least), sees="slow"

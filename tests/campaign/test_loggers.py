@@ -70,7 +70,7 @@ def test_the_sample_campaign_by_nine_loggers(tmp_path):
     for was, run in zip(old.runs, new.runs, strict=True):
         np.testing.assert_allclose(run.time, was.time, atol=2e-6)
         for name in (*was.channels, *was.inputs):
-            np.testing.assert_allclose({**run.channels, **run.inputs}[name], {**was.channels, **was.inputs}[name], rtol=1e-9)
+            np.testing.assert_allclose({**run.channels, **run.inputs}[name], {**was.channels, **was.inputs}[name], rtol=1e-8)
 
 
 def test_absolute_starts_relate_two_devices(frame, tmp_path):

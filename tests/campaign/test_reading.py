@@ -51,7 +51,9 @@ def test_the_fingerprint_follows_every_file(campaign):
 def test_every_channel_has_a_prediction_and_a_meaning():
     assert [c.name for c in CHANNELS] == ["wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y", "x", "y", "yaw", "u", "v"]
     pushed = ["push.F_rl", "push.M_rl", "brake.rl", "push.F_rr", "push.M_rr", "brake.rr"]
-    assert sorted(c.fmu for c in INPUTS) == sorted([*pushed, "rider.s", "rider.momentum", "rider.force"])
+    assert sorted(c.fmu for c in INPUTS) == sorted(
+        [*pushed, "rider.s", "rider.momentum", "rider.force", "stroke.phase", "stroke.rate"]
+    )
     assert all(c.meaning and c.fmu and c.low < c.high for c in CHANNELS + INPUTS)
 
 

@@ -44,6 +44,7 @@ IDS = {
     "longitudinal_load_transfer",
     "cm_lateral_offset",
     "trunk_motion",
+    "stroke_motion",
     "caster_inertia",
     "caster_friction",
     "caster_trail",

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.diagnosis.cases import Case, Plan
+from benchmarks.independent.campaigns import reaching
 from benchmarks.independent.chair import Chair, simulate
 
 SMOOTH = replace(Chair(), f_r=0.0, f_f=0.0)
@@ -79,3 +80,15 @@ def test_trials_have_it():
     assert case == Case("rider", ("trunk_motion",), 3.0, seed=1, only="swing")
     assert case.hidden == {"trunk_motion": {"swing": pytest.approx(0.015)}}
     assert case.name == "rider-trunk_motion.swing-3-white-everyday-1"
+
+
+def test_who_reaches_forward_is_ahead_of_the_hands():
+    """Once in each stroke and back, though no push leans them; where nobody strokes, they sit still."""
+    time = np.arange(1201) * 0.01
+    push = np.where((time > 1) & (np.mod(time - 1, 1.1) < 0.55), 40.0, 0.0)
+    urge = reaching(time, push, 0.03)
+    assert urge.max() == pytest.approx(0.03, rel=1e-3) and not urge[time < 0.6].any()
+    begins = time[np.flatnonzero(np.diff(push) > 0)]
+    np.testing.assert_allclose(np.interp(begins - 0.35, time, urge), 0.0, atol=1e-4)
+    np.testing.assert_allclose(np.interp(begins - 0.35 + 0.55, time, urge), 0.03, atol=1e-3)
+    assert reaching(time, np.full(1201, 12.0), 0.03) is None and reaching(time, push, 0.0) is None

@@ -81,6 +81,6 @@ def ridden(
         felt = dict(zip(EXTERNAL, (F, M), strict=True))
         channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), values, start)
         read = {c: v + rng.normal(0, campaign.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
-        record = {n: w + rng.normal(0, 0.4, len(w)) for n, w in run.inputs.items()}
+        record = {n: w + rng.normal(0, 0.4, len(w)) if n in HANDS else w for n, w in run.inputs.items()}
         runs.append(replace(run, inputs=record, channels=read))
     return replace(campaign, runs=tuple(runs))

@@ -35,8 +35,8 @@ def test_pieces_compared_are_the_run_compared(sample):
     run = next(r for r in sample.runs if r.name == "slalom-slow")
     parts = pieces(run, 4.0)
     likelihood = Likelihood(replace(sample, runs=tuple(parts)), Variant())
-    results = [o.name for o in likelihood.variant.model().outputs]
-    errors = [errors_of(e, None, REGIMES, results) for e in likelihood.evidence(parts, {}, tune_start=1).runs]
+    outputs = likelihood.variant.model().outputs
+    errors = [errors_of(e, None, REGIMES, outputs) for e in likelihood.evidence(parts, {}, tune_start=1).runs]
     whole = together(run.name, errors)
     assert len(parts) == 3 and whole.name == run.name and whole.e.shape == (len(run.time), len(run.channels))
     squares = sum(float(np.nansum(e.e**2)) for e in errors)

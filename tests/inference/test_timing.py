@@ -133,3 +133,21 @@ def test_where_the_push_that_tells_a_shift_was_not_recorded_the_run_is_named(sam
 def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair):
     """Strokes that are all alike, a slalom whose shift bends C_λ, and a turn that hides its shift behind the missing effect."""
     assert same_verdict(sample, name, seconds, chair) == pytest.approx(seconds, abs=0.01)
+
+
+@among("stroke_motion", "push_force_delay", "rolling_resistance_asymmetry")
+def test_a_body_that_moves_with_each_stroke_is_no_clock(tmp_path, chair):
+    """It is ahead of the hands, as pushes are that were recorded early; the runs without strokes have no share in it."""
+    campaign = read(make(tmp_path / "reaching", {"stroke_motion": {"reach": 0.03}}, seed=5))
+    assert [n for n in campaign.runs[1].inputs if n.startswith("stroke.")] and campaign.runs[1].name == "straight-strokes"
+    found = diagnose(campaign, chair)
+    assert found.effects == ("stroke_motion",) and found.clocks == {}
+    assert found.ladder[-1].heldout < 0.5 * found.ladder[1].heldout
+
+
+@pytest.mark.nightly
+def test_a_body_that_is_ahead_of_the_push_is_found_in_the_whole_catalogue(tmp_path):
+    """By a simulator whose body has a will of its own, and inertia; no law that the push drives foretells it."""
+    found = diagnose(read(make(tmp_path / "reaching", {"stroke_motion": {"reach": 0.03}}, seed=5)))
+    assert found.verdict in ("missing", "tie") and "stroke_motion" in found.effects and found.clocks == {}
+    assert found.ladder[-1].heldout < 1.1 and found.ladder[1].heldout > 4

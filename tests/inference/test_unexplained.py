@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from wheelchair_fmu.campaign.strokes import begun, phase
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
-from wheelchair_fmu.inference.residual.strokes import begun, phase
 from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Missing, Order, Unexplained, _lone, unexplained
 from wheelchair_fmu.model.variant import Variant
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.kit import anywhere
+from tests.model.effects.chair import snapshot
 from wheelchair_fmu.contracts.places import Place, evaluate
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.model.variant import Variant
@@ -90,6 +91,15 @@ def test_held_by_rolling_resistance_it_creeps_less_than_a_tenth_of_a_millimetre_
     result = run({"start.u": 0.0}, {axis: slope}, T=20)
     speed = np.hypot(result["chair.u"], result["chair.v"])
     assert speed[100:].max() < 1e-4
+
+
+@pytest.mark.parametrize(("fall_x", "fall_y"), [(0.3, 0.0), (0.3, -0.4), (0.5, 0.5)])
+def test_gravity_is_as_strong_on_a_slope_as_on_the_level(fall_x, fall_y):
+    """Along the floor's axes, whichever way the chair stands, and into the floor, it is one vector of length g."""
+    now = snapshot({"start.psi": 0.7}, {"floor.slope_x": fall_x, "floor.slope_y": fall_y})
+    assert np.linalg.norm([now["g_x"], now["g_y"], now["g_z"]]) == pytest.approx(9.81, rel=1e-12)
+    to_room = np.exp(0.7j) * (now["g_x"] + 1j * now["g_y"])
+    assert (to_room.real, to_room.imag) == pytest.approx((9.81 * np.sin(fall_x), 9.81 * np.sin(fall_y)))
 
 
 def test_it_rolls_where_the_slope_pulls_harder():

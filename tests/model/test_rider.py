@@ -84,3 +84,22 @@ def test_the_accelerometer_adds_up_to_the_frames_speed():
     result = run({**SMOOTH, "start.u": 1.0, "rider.m": BODY}, swinging(), T=2.0, n=2001)
     added = cumulative_simpson(result["sensor.a_x"], x=result.time, initial=0)
     np.testing.assert_allclose(result["sensor.wheel_speed_l"] - result["sensor.wheel_speed_l"][0], added, atol=2e-6)
+
+
+@pytest.mark.parametrize(("c", "d"), [(0.02, 0.0), (-0.01, 0.015)])
+def test_a_body_that_moves_with_each_stroke_is_one_whose_motion_was_measured(c, d):
+    """The whole person as a mass that moves by c (cos θ − 1) + d sin θ, in a turn with strokes."""
+    rate = 2 * np.pi * 1.1
+    by_stroke = {"stroke.phase": lambda t: 1.1 * t, "stroke.rate": 1.1}
+    measured = {
+        "rider.s": lambda t: c * (np.cos(rate * t) - 1) + d * np.sin(rate * t),
+        "rider.momentum": lambda t: MASS * rate * (d * np.cos(rate * t) - c * np.sin(rate * t)),
+        "rider.force": lambda t: -MASS * rate**2 * (c * np.cos(rate * t) + d * np.sin(rate * t)),
+    }
+    values = {**SMOOTH, "start.u": 1.0, "start.psi_dot": 0.4}
+    pushes = {"push.F_rl": lambda t: 25 * np.sin(rate * t / 2) ** 2, "push.F_rr": lambda t: 15 * np.sin(rate * t / 2) ** 2}
+    one = run({**values, "effect.stroke_motion.cos": c, "effect.stroke_motion.sin": d}, {**pushes, **by_stroke}, T=2.0, n=2001)
+    other = run({**values, "rider.m": MASS}, {**pushes, **measured}, T=2.0, n=2001)
+    for name in ("sensor.wheel_speed_l", "sensor.a_x", "sensor.a_y", "sensor.x", "sensor.y", "sensor.yaw", "chair.u"):
+        np.testing.assert_allclose(one[name], other[name], atol=2e-5, err_msg=name)
+    assert np.ptp(one["sensor.wheel_speed_l"] - one["chair.u"]) > 0.1

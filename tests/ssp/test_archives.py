@@ -124,9 +124,9 @@ def test_other_readers_see_the_same_system(slalom):
     from pyssp_standard.ssp import SSP
 
     system = read_ssd(str(slalom)).system
-    assert [e.name for e in system.elements] == list(sources.COMPONENTS) and len(system.connections) == 12
+    assert [e.name for e in system.elements] == list(sources.COMPONENTS) and len(system.connections) == 14
     with SSP(slalom, mode="r") as archive, archive.system_structure as description:
-        assert len(description.connections()) == 12
+        assert len(description.connections()) == 14
         assert description.check_connections(connector_not_in_system=True) == []
 
 

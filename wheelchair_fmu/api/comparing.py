@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from ..campaign import Campaign, pieces, windows
 from ..errors import UsageError, unknown
-from ..inference.estimation.calibration import Calibrated, calibration
+from ..inference.estimation.calibration import Calibrated, calibration, doubts
 from ..inference.estimation.fit import fit, start_value
 from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
@@ -34,6 +34,11 @@ class Compared:
     errors: Comparison
     values: Mapping[str, float]
     calibration: tuple[Calibrated, ...] = ()
+
+    @property
+    def notes(self) -> list[str]:
+        """A sentence for each fitted value that nobody should believe, and for each run in which the model holds no longer."""
+        return [*doubts(self.calibration), *self.errors.limits]
 
 
 def compared(
@@ -75,7 +80,7 @@ def _through_fmu(
     """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
     cut = {run.name: pieces(run, PIECE) for run in measured.runs}
     likelihood = Likelihood(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
-    results = [o.name for o in chair.model().outputs]
+    outputs = chair.model().outputs
     batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
     batch_by_batch = _ahead(likelihood.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
     evidence = chain.from_iterable(batch_by_batch)
@@ -87,7 +92,7 @@ def _through_fmu(
                 given = {**measured.known, **values, **e.started}
                 given = {n: v for n, v in given.items() if n in fmu.parameters}
                 predicted = run_campaign_run(fmu, likelihood.on_time(e.run, values, e.start), given)
-                found.append(errors_of(e, predicted, REGIMES, results))
+                found.append(errors_of(e, predicted, REGIMES, outputs))
             yield together(name, found)
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from ..inference.estimation.calibration import doubts
 from ..inference.subject import applied
 from ..report.figures import overlay_figure, where_figure
 from .campaigns import UNIT_OF, Campaign
@@ -54,12 +53,13 @@ class Comparison:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A sentence for each fitted value that ends at a bound, or far from what was given.
+        """A sentence for each fitted value that ends at a bound, or far from what was given, and for each run in which the
+        model is beyond a limit of its own, as where a wheel leaves the ground.
 
         >>> compared.notes
         ()
         """
-        return tuple(doubts(self._compared.calibration))
+        return tuple(self._compared.notes)
 
     @property
     def rms(self) -> pd.DataFrame:

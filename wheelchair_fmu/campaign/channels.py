@@ -7,7 +7,7 @@ from math import pi
 
 from ..model.readings import READINGS
 from ..model.sensors import Reading
-from ..quantities import M_S, M_S2, N_M, N_S, ONE, RAD, RAD_S, M, N, S, Unit
+from ..quantities import HZ, M_S, M_S2, N_M, N_S, ONE, RAD, RAD_S, M, N, S, Unit
 
 
 @dataclass(frozen=True)
@@ -189,9 +189,22 @@ RIDER: tuple[Channel, ...] = (
     Channel("rider.force", N, "rider.force", "rate of change of rider.momentum", -3000.0, 3000.0),
 )
 
+STROKE: tuple[Channel, ...] = (
+    Channel(
+        "stroke.phase",
+        ONE,
+        "stroke.phase",
+        "strokes since the first, as a number that grows steadily from one to the next; without it, the pushes tell",
+        -1e5,
+        1e5,
+    ),
+    Channel("stroke.rate", HZ, "stroke.rate", "rate of change of stroke.phase", -20.0, 20.0),
+)
+
 INPUTS: tuple[Channel, ...] = (
     *(channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair),
     *RIDER,
+    *STROKE,
 )
 
 # What a file may hold that channels are made from: the turn of a wheel, by which its ripple goes too.
@@ -215,8 +228,9 @@ INTEGRALS: dict[str, int] = {channel.name: channel.integrals for channel in CHAN
 SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.side)  # the left one first
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
-PUSHED = tuple(channel.name for channel in INPUTS if channel not in RIDER)  # what hands give
+PUSHED = tuple(channel.name for channel in INPUTS if channel not in (*RIDER, *STROKE))  # what hands give
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
 MOUNTED = {"accelerometer_offset": ("a_x", "a_y"), "marker_offset": ("x", "y", "u", "v")}  # what has one point together
 BODY_NAMES = POSITION, MOMENTUM, FORCE = tuple(channel.name for channel in RIDER)  # of the rider's body
+PHASE, PHASE_RATE = (channel.name for channel in STROKE)
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

@@ -12,6 +12,7 @@ from typing import Any
 from ..errors import CampaignError
 from ..faults import ERROR, SHOWN, Fault, once
 from ..given import what_is
+from ..model.chassis import DEFAULTS
 from ..model.former import renamed
 from .axes import SAE
 from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
@@ -25,6 +26,7 @@ from .noise import gather
 from .recorded import Recorded
 from .records import Campaign, Run
 from .rims import Rim, corrected, rims, unasked, unfounded
+from .strokes import with_strokes
 from .windows import between, covered
 
 
@@ -178,8 +180,9 @@ def _campaign(assembly: Assembly, known: Known | None, warnings: tuple[Fault, ..
 
 def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, float]) -> Run:
     entry = run.entry
-    inputs, unsure = corrected(run, of)
+    corrected_inputs, unsure = corrected(run, of)
     assert run.time is not None  # a file without time is an error, so no campaign is made
+    inputs = with_strokes(run.time, corrected_inputs, stated.get("wheel.R", DEFAULTS["wheel.R"]))
     whole = Run(
         name=name,
         file=run.doc.folder / run.drafts[0].file,

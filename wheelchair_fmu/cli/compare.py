@@ -14,7 +14,6 @@ from rich.table import Table
 from ..api import campaigns, comparisons
 from ..api.comparing import PIECE, Compared, compared
 from ..campaign import Campaign, pieces
-from ..inference.estimation.calibration import doubts
 from ..inference.estimation.statistics import finite
 from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
@@ -77,7 +76,7 @@ def _content(measured: Campaign, found: Compared, names: Sequence[str]) -> dict[
         "values": dict(found.values),
         "calibrated": list(names),
         "calibration": {v.record.name: v.as_json() for v in found.calibration},
-        "notes": doubts(found.calibration),
+        "notes": found.notes,
     }
 
 
@@ -85,7 +84,7 @@ def _show(measured: Campaign, found: Compared, names: Sequence[str]) -> None:
     out, c = console(), found.errors
     for name in names:
         out.print(f"calibrated: {name} = {found.values[name]:.6g}")
-    for note in doubts(found.calibration):
+    for note in found.notes:
         out.print(f"note: {note}")
     channels = list(dict.fromkeys(ch for r in c.runs for ch in r.channels))
     table = Table(box=box.SIMPLE, title=f"{measured.name}: whitened RMS error, 1.0 is the noise floor", title_justify="left")

@@ -43,7 +43,7 @@ KINDS: Mapping[str, tuple[float, float, float]] = {  # spread of u, v, ψ' in ea
     "spinning on the spot": (0.0, 0.2, 3.0),
     "sliding": (0.5, 1.0, 1.0),
 }
-WORK = ("push.", "rider.", "external.")  # inputs by which a person does work
+WORK = ("push.", "stroke.", "rider.", "external.")  # inputs by which a person does work
 RESISTANCES = ("resistance.f_r", "resistance.f_f")
 HIDING = (*RESISTANCES, "tyre.C_lambda", "caster.C_lambda")  # what takes power, where a chair has it
 OF_NO_CHAIR = ("start.", "speed.", "effect.")  # parameters that say how a chair moves, or that are asked of by themselves

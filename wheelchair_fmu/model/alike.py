@@ -24,6 +24,11 @@ TURNED_PATCHES = Alike(
     told_by="a spin on the spot and a turn about one wheel, beside turns of several radii at several speeds",
     one_cause=True,
 )
+MOVING_BODY = Alike(
+    "the rider's body moves: trunk_motion as the pushes have it, stroke_motion the same way in each stroke",
+    told_by="strokes of several strengths and rhythms, or markers on the trunk, read as rider.s",
+    one_cause=True,
+)
 EFFECTIVE_MASS = Alike(
     "the mass that pushes have to set going",
     told_by="a chair that was weighed, and turns, in which spinning wheels and a high centre of mass do other things than mass",

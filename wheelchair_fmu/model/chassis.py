@@ -6,7 +6,7 @@ from typing import Any
 
 import casadi as cs
 
-from ..quantities import FRONT, KG, KG_M2, M_S, M_S2, N_M, N_S, ONE, PER_M, RAD, RAD_S, REAR, Input, M, N, Parameter, State
+from ..quantities import FRONT, HZ, KG, KG_M2, M_S, M_S2, N_M, N_S, ONE, PER_M, RAD, RAD_S, REAR, Input, M, N, Parameter, State
 from .frames import moment, to_chair, to_room, velocity_at
 from .stage import Row, define, stage
 
@@ -173,6 +173,7 @@ DEFAULTS = {p.name: p.default for p in PARAMETERS}  # for whoever needs a size b
 
 PUSH_LIMIT = 2000.0  # N per wheel: five times the strongest push on record; more is a slipped unit
 HARDEST_SWING = 500.0  # N s: the whole of a heavy person at 5 m/s against the frame
+UPRIGHT = 0.01  # square of the cosine of a slope: beyond what inputs and effects may have together, where a root has a slope
 STEEPEST = 0.5  # rad, 1 in 1.8: far beyond what a chair stands on; a ramp has 0.08, and ISO 7176-2 tests up to 0.17
 INPUTS = (
     Input(
@@ -262,6 +263,16 @@ INPUTS = (
         symbol="rider_force",
         seldom=True,
     ),
+    Input(
+        "stroke.phase",
+        ONE,
+        "strokes since the first, as a number that grows steadily from one to the next; for a body that moves with them",
+        lower=-1e5,
+        upper=1e5,
+        symbol="stroke_phase",
+        seldom=True,
+    ),
+    Input("stroke.rate", HZ, "rate of change of stroke.phase", lower=-20.0, upper=20.0, symbol="stroke_rate", seldom=True),
     Input(
         "brake.rl",
         ONE,
@@ -392,10 +403,10 @@ def floor(slope_x, slope_y):
     define("g_z", M_S2, "gravity into the floor"),
 )
 def gravity(fall_x, fall_y, psi, g):
-    """On a slope the floor carries the cosine of it."""
+    """The room's axes lie in the floor, so that what the floor carries is what is left of g."""
     sin_x, sin_y = cs.sin(fall_x), cs.sin(fall_y)
     along_x, along_y = to_chair(g * sin_x, g * sin_y, psi)
-    return along_x, along_y, g * cs.sqrt((1 - sin_x * sin_x) * (1 - sin_y * sin_y))
+    return along_x, along_y, g * cs.sqrt(cs.fmax(1 - sin_x * sin_x - sin_y * sin_y, UPRIGHT))
 
 
 @stage(

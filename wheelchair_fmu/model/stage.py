@@ -171,6 +171,11 @@ class Effect:
         """What it is a form of, or its own id."""
         return next((alike.what for alike in self.alike if alike.one_cause), self.id)
 
+    def asks(self, symbol: str) -> bool:
+        """Do its contributions or states read this quantity?"""
+        laws = (*(c.law for c in self.contributions), *(law for row in self.rows for law in row.laws))
+        return any(symbol in reads(law) for law in laws)
+
     @property
     def stateless(self) -> bool:
         return not self.rows and not self.needs and not self.delays_record

@@ -32,6 +32,7 @@ INSPECT = {
     "rolling_resistance_speed": "Spin the rear wheels off the floor and watch how they slow: grease and seals resist speed.",
     "scrub_torque": "Turn the chair on the spot and feel what it takes to keep it turning; then at a higher tyre pressure.",
     "scrub_torque_viscous": "Turn the chair on the spot slowly and quickly: does turning faster take more?",
+    "stroke_motion": "Film the rider over several strokes: does the trunk go to and fro with each, also before the push?",
     "toe_misalignment": "Measure between the rims at hub height, in front and behind: the two should agree.",
     "trunk_motion": "Film the rider from the side and see how far the trunk goes forward with a push.",
     "turn_slip": "Turn the chair on the spot on this floor and on a smoother one, and compare what it takes.",

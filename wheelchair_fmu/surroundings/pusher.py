@@ -23,7 +23,7 @@ import casadi as cs
 
 from ..model.chassis import PUSH_LIMIT
 from ..model.wheelchair import Model
-from ..quantities import M_S, N_S_M, ONE, RAD, RAD_S, Input, M, N, Output, Parameter, S, State, Unit
+from ..quantities import HZ, M_S, N_S_M, ONE, RAD, RAD_S, Input, M, N, Output, Parameter, S, State, Unit
 from . import kit
 
 PER_S = Unit("1/s", s=-1)
@@ -175,6 +175,7 @@ OUTPUTS = (
     Output("path.y", M, "y of the path beside the chair", "-"),
     Output("path.deviation", M, "how far the chair is to the right of the path", "-", nominal=0.1),
     Output("stroke.phase", ONE, "strokes since the first, as a number that grows steadily"),
+    Output("stroke.rate", HZ, "rate of change of stroke.phase"),
 )
 CLOCK = [s.name for s in STATES].index("clock")
 
@@ -195,6 +196,7 @@ def pusher(mode: str) -> Model:
         "path.y": path(known, known["chair.x"]),
         "path.deviation": known["chair.y"] - path(known, known["chair.x"]),
         "stroke.phase": known["phase"],
+        "stroke.rate": known["stroke.cadence"],
     }
     rates = {
         "clock": cs.SX(1),

@@ -16,6 +16,7 @@ from math import isfinite
 from types import FunctionType
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from ...configuration import MANOEUVRES as OWN
 from ...configuration import places
@@ -92,7 +93,10 @@ def start_stop(time: float = 14.0) -> Manoeuvre:
     pulls = sum(_stroke(t, 5.0 + k * BEAT) for k in range(4))
     force = PUSH * (pushes - pulls + 0.6 * _stroke(t, 10.0))
     brake = np.interp(t, (11.0, 11.5), (0.0, 1.0))
-    inputs = {"push.F_rl": force, "push.F_rr": force, "brake.rl": brake, "brake.rr": brake}
+    phase = PchipInterpolator(BEAT * np.arange(-1, 5), [0.0, 0.0, 1.0, 2.0, 3.0, 3.0], extrapolate=False)
+    inside = np.minimum(t, 4 * BEAT)
+    strokes = {"stroke.phase": phase(inside), "stroke.rate": phase(inside, 1)}
+    inputs = {"push.F_rl": force, "push.F_rr": force, "brake.rl": brake, "brake.rr": brake, **strokes}
     return Manoeuvre("start-stop", "start, coast, reverse and stop", free(0.0), t, inputs, "chair.u")
 
 

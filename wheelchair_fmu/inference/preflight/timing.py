@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...campaign import Campaign, Clock, Run, covered
-from ...campaign.channels import BY_FMU_NAME, PUSH_NAMES
+from ...campaign.channels import BY_FMU_NAME, BY_NAME, PHASE, PHASE_RATE, PUSH_NAMES
 from ...campaign.clocks import Signal, odd_ones_out
 from ...campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ...campaign.recorded import PUSHES_CLOCK
@@ -23,6 +23,7 @@ from ..estimation.statistics import correlation_time
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import BODY, Likelihood
 
+STROKES = tuple(BY_NAME[name].fmu for name in (PHASE, PHASE_RATE))  # inputs that the pushes tell
 SHIFTS = np.arange(0.2, 2.05, 0.2)  # s, each way
 FINER = 0.1  # s, either side of the best of these, and how far off it may be
 SUSPECT = 2.0  # RMS innovation below which nobody looks
@@ -30,7 +31,7 @@ EXPLAINED = 0.25  # share of the mean square innovation that may remain,
 HOPEFUL = 0.6  # or so near it
 APART = 0.3  # s from the best shift, from where another
 UNIQUE = 2.0  # must leave so many times as much, or nobody knows which of them it was
-MOST_OF = 0.5  # of what a model leaves above the noise
+MOST_OF = 0.5  # of what a model leaves above the noise, of all runs or of those that are moved
 LEAST_SD = 0.002  # s: no smoother tells a clock better
 LIKE_NOISE = 1.1  # RMS innovation of runs of which a model leaves next to nothing
 
@@ -71,23 +72,37 @@ def by_model(likelihood: Likelihood, evidence: Evidence, values: Mapping[str, fl
 
 def by_slopes(evidence: Evidence, prior_rows: np.ndarray, prior_slopes: np.ndarray) -> dict[str, Late]:
     """Runs whose pushes are a little early or late, where a model explains the rest: `evidence` has sensitivities by what was
-    calibrated, of which something was known with residuals (m,) and slopes (m, m), and last by a delay, by which all pushes
-    would be felt later.
+    calibrated, of which something was known with residuals (m,) and slopes (m, m), then by what else may come with every
+    stroke, and last by a delay, by which all pushes would be felt later.
 
     One run's shift bends what is calibrated, so calibration is free to go back. Either one run stands out among the shifts of
-    all runs, or the shift of one alone explains most of what is left, and of no other nearly as much.
+    all runs, or the shift of one alone explains most of what is left, and of no other nearly as much. It is nobody's shift
+    where such runs keep most of their errors with it, or where the motion of a body, the same in all strokes, explains more.
     """
     timed = ((e, part) for e, _, part in evidence.parts() if _one_clock(e.run) and _pushes(e.run))
     parts = [(e, part) for e, part in timed if evidence.S[part, -1].any()]
     if len(parts) < ENOUGH:
         return {}
-    m, n = len(prior_rows), len(evidence.r)
-    A = np.zeros((n + m, m + len(parts)))
-    A[:n, :m], A[n:, :m] = evidence.S[:, :m], prior_slopes
+    m, n, total = len(prior_rows), len(evidence.r), evidence.S.shape[1] - 1
+    A, body = np.zeros((n + m, m + len(parts))), np.zeros((n + m, total - m))
+    A[:n, :m], A[n:, :m], body[:n] = evidence.S[:, :m], prior_slopes, evidence.S[:, m:-1]
     for i, (_, part) in enumerate(parts, m):
         A[part, i] = evidence.S[part, -1]
     r = np.concatenate([evidence.r, prior_rows])
-    return _standing_out(A, r, parts) or _explaining(A, r, [e.run.name for e, _ in parts], float(r @ r) - n)
+    found = _standing_out(A, r, parts) or _explaining(A, r, [e.run.name for e, _ in parts], float(r @ r) - n)
+    shifts = {i: part for i, (e, part) in enumerate(parts, m) if e.run.name in found}
+    if not shifts:
+        return {}
+    shifted = _left_by(A[:, [*range(m), *shifts]], r)
+    before, after = (np.concatenate([left[part] for part in shifts.values()]) for left in (_left_by(A[:, :m], r), shifted))
+    explained = float(before @ before - after @ after) > MOST_OF * (float(before @ before) - len(before))
+    moved = _left_by(np.hstack([A[:, :m], body]), r)
+    return found if explained and not (body.any() and moved @ moved < shifted @ shifted) else {}
+
+
+def _left_by(A: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """What is left of r (n,) by the columns of A (n, k)."""
+    return np.asarray(r - A @ (np.linalg.pinv(A.T @ A, hermitian=True) @ (A.T @ r)))
 
 
 def _standing_out(A: np.ndarray, r: np.ndarray, parts: Sequence[tuple[RunEvidence, slice]]) -> dict[str, Late]:
@@ -128,7 +143,7 @@ def _explaining(A: np.ndarray, r: np.ndarray, names: Sequence[str], squares: flo
 def retimed(run: Run, late: Late) -> Run:
     """The run with its pushes when the chair felt them, where they are known; what is left unsure of that stays with it as a
     clock, and no sample is used whose push this may put outside the record."""
-    pushes = _pushes(run)
+    pushes = _pushes(run) | {name: run.inputs[name] for name in STROKES if name in run.inputs}
     inputs = {name: np.interp(run.time - late.seconds, run.time, push) for name, push in pushes.items()}
     clock = Clock(PUSHES_CLOCK, frozenset(), frozenset(pushes), late.sd, late.seconds)
     return covered(replace(run, inputs={**run.inputs, **inputs}, clocks=(*run.clocks, clock)), late.seconds, late.sd)

@@ -8,7 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...quantities import Output
 from ..evidence.evidence import RunEvidence
+from ..evidence.limits import beyond_limits, in_words
 from .physical import ChannelError, pooled, run_errors
 
 BINS = 4
@@ -17,7 +19,7 @@ BINS = 4
 @dataclass(frozen=True)
 class RunErrors:
     """Errors of one run, e (n, nz), measured less predicted in standard deviations; NaN in gaps. `physical` is what is left of
-    each channel in its own unit."""
+    each channel in its own unit, `beyond` the limits that the model is beyond, and for what share of the run."""
 
     name: str
     role: str
@@ -26,6 +28,7 @@ class RunErrors:
     predicted: np.ndarray
     regime: Mapping[str, np.ndarray]  # by name, (n,)
     physical: Mapping[str, ChannelError]
+    beyond: Mapping[Output, float]
 
     def summary(self) -> RunErrors:
         """The same without predictions, which only figures ask for."""
@@ -66,23 +69,31 @@ class Comparison:
             for i, (a, b) in enumerate(pairwise(edges))
         ]
 
+    @property
+    def limits(self) -> list[str]:
+        """A sentence for each run and each limit of the model's that it is beyond."""
+        return [told for r in self.runs for told in in_words(r.name, "as simulated", r.beyond)]
+
     def worst(self) -> tuple[str, str, float]:
         """(run, channel, whitened RMS) where the error is largest."""
         return max(((r.name, c, v) for r in self.runs for c, v in r.rms.items()), key=lambda row: row[2])
 
 
 def errors_of(
-    evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str], results: Sequence[str]
+    evidence: RunEvidence, predicted: Mapping[str, np.ndarray] | None, regimes: Mapping[str, str], outputs: Sequence[Output]
 ) -> RunErrors:
-    """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation."""
+    """Errors of a run against `predicted` readings by channel, or against the evidence's own simulation, whose results are
+    `outputs`."""
     there = evidence.predicted if predicted is None else evidence.on_rows(predicted)
-    where = {name: evidence.results[:, results.index(output)] for name, output in regimes.items()}
+    names = [o.name for o in outputs]
+    where = {name: evidence.results[:, names.index(output)] for name, output in regimes.items()}
     pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
     if pushes:
         where["push"] = np.sum(pushes, axis=0)
     e = evidence.errors(there)
     physical = run_errors(evidence.channels, evidence.measured, there)
-    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where, physical)
+    beyond = beyond_limits(evidence.results, outputs)
+    return RunErrors(evidence.run.name, evidence.run.role, evidence.channels, e, there, where, physical, beyond)
 
 
 def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
@@ -101,4 +112,12 @@ def together(name: str, pieces: Sequence[RunErrors]) -> RunErrors:
         predicted=joined(p.predicted for p in pieces),
         regime=regime,
         physical=pooled(p.physical for p in pieces),
+        beyond=_shares(pieces),
     )
+
+
+def _shares(pieces: Sequence[RunErrors]) -> dict[Output, float]:
+    """For what share of a whole run its pieces are beyond each limit."""
+    samples = sum(len(p.e) for p in pieces)
+    limits = dict.fromkeys(o for p in pieces for o in p.beyond)
+    return {o: sum(len(p.e) * p.beyond.get(o, 0.0) for p in pieces) / samples for o in limits}

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ...campaign.strokes import phase
 from ...engine.smoothing import smoothed
 from ..estimation.fit import Fit
 from ..evidence.disturbance import MOST, USUAL, Strength, disturbed
@@ -21,7 +22,6 @@ from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel, pushes_of
 from ..parallel import parallel_map
-from .strokes import phase
 
 STROKE = "stroke"
 BINS = 8  # of a variable, alike in how much was recorded in each

@@ -15,6 +15,7 @@ from ..preflight.timing import Late, by_model, by_signals, by_slopes
 from ..preflight.wiring import wiring
 from ..residual.staircase import Step
 
+STROKE_PHASE = "stroke_phase"  # symbol that what moves with strokes reads
 LED = 3  # times that forces, noise and calibration are found one from another, at most
 Clocks = Mapping[str, Mapping[str, Late]]  # by run and device, where they are uncertain
 
@@ -86,9 +87,12 @@ def late_by_slopes(models: Models, effects: Sequence[str], named: Container[str]
     if delay in effects:
         effects = [e for e in effects if e != delay]
         base = models.fitted(effects, base.values)
-    likelihood, theta = models.likelihood((*effects, delay)), np.array([base.values[n] for n in base.names])
+    with_strokes = [e.id for e in w.catalogue.values() if e.asks(STROKE_PHASE) and e.id not in effects]
+    likelihood = models.likelihood((*effects, *with_strokes, delay))
+    theta = np.array([base.values[n] for n in base.names])
     prior = Problem(likelihood, base.names).prior
-    evidence = likelihood.evidence(models.campaign.runs, base.values, (*base.names, name))
+    body = [n for e in with_strokes for n in w.parameters(e)]
+    evidence = likelihood.evidence(models.campaign.runs, base.values, (*base.names, *body, name))
     return by_slopes(evidence, prior.rows(theta), prior.slopes)
 
 

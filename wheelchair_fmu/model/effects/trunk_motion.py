@@ -18,6 +18,7 @@ acceleration it has
 import casadi as cs
 
 from ...quantities import HZ, M_S, ONE, M, N, Parameter, S, State
+from ..alike import MOVING_BODY
 from ..signs import Shows
 from ..sketch import Arrow, Length, Spot, from_the_side
 from ..stage import Effect, Row, adds
@@ -160,6 +161,7 @@ EFFECT = Effect(
         Row(State("sway", M_S, "how fast it swings", nominal=0.1), lambda: 1.0, sway_rate),
     ),
     absorbs=muscles,
+    alike=(MOVING_BODY,),
     signs=(
         Shows("start-stop", "sensor.wheel_speed_r", more=False, seconds=0.3),
         Shows("start-stop", "sensor.wheel_speed_r", more=False, seconds=0.3),
