@@ -186,7 +186,7 @@ def test_a_run_without_recorded_pushes_is_mended_where_it_stands(page: Any, tmp_
     (tmp_path / "coast.csv").write_text(text)
     take_in(page, tmp_path / "coast.csv")
     rows = page.locator("#forms .columns tbody tr")
-    assert rows.count() == 35 and sum(row.is_visible() for row in rows.all()) == 3
+    assert rows.count() == 33 and sum(row.is_visible() for row in rows.all()) == 3
     assert "The push on the left wheel is missing" in page.inner_text("#forms .runs .wrong")
     page.select_option('[aria-label="pushes in coast.csv"]', "none")
     page.wait_for_function("() => workbench.state.campaign.run[0].constant?.F_rr === 0")

@@ -42,7 +42,7 @@ FLAGS = (
 )
 
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
-KERNEL = {"step": "wc_page_step", "forward": NOTHING, "rate": NOTHING}
+KERNEL = {"step": "wc_page_step", "plain": NOTHING, "bare": NOTHING, "forward": NOTHING, "rate": NOTHING}
 TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_all", "begin"), NOTHING)
 
 _deriving = Lock()  # CasADi's objects are not for several threads

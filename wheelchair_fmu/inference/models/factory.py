@@ -30,6 +30,7 @@ CALIBRATED = ("tyre.C_lambda", "resistance.f_r", "resistance.f_f", "chair.I_z", 
 
 SCALE = "rider.scale"
 ONSET = "resistance.onset"
+STROKE_PHASE = "stroke_phase"  # symbol that what moves with strokes reads
 BEARING = "caster.M"
 TOGETHER = "+"  # between the names of effects in that of their group
 
@@ -108,8 +109,9 @@ class ModelFactory:
 
     @cached_property
     def heavy(self) -> list[str]:
-        """Effects of the usual laws that bring states of their own."""
-        return [e for e, effect in self.catalogue.items() if not effect.needs and adds_state(self.chair.choice, effect)]
+        """Effects of the usual laws that bring states of their own, or are driven by inputs that others do without."""
+        usual = ((e, effect) for e, effect in self.catalogue.items() if not effect.needs)
+        return [e for e, effect in usual if effect.asks(STROKE_PHASE) or adds_state(self.chair.choice, effect)]
 
     @cached_property
     def light(self) -> list[str]:

@@ -9,13 +9,13 @@ import numpy as np
 
 from ...campaign.recorded import PUSHES_CLOCK
 from ..estimation.fit import Fit, Problem
+from ..models.factory import STROKE_PHASE
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..preflight.timing import Late, by_model, by_signals, by_slopes
 from ..preflight.wiring import wiring
 from ..residual.staircase import Step
 
-STROKE_PHASE = "stroke_phase"  # symbol that what moves with strokes reads
 LED = 3  # times that forces, noise and calibration are found one from another, at most
 Clocks = Mapping[str, Mapping[str, Late]]  # by run and device, where they are uncertain
 
@@ -87,12 +87,18 @@ def late_by_slopes(models: Models, effects: Sequence[str], named: Container[str]
     if delay in effects:
         effects = [e for e in effects if e != delay]
         base = models.fitted(effects, base.values)
-    with_strokes = [e.id for e in w.catalogue.values() if e.asks(STROKE_PHASE) and e.id not in effects]
-    likelihood = models.likelihood((*effects, *with_strokes, delay))
-    theta = np.array([base.values[n] for n in base.names])
+    found = _late_beside(models, (*effects, delay), base, (), name)
+    bodies = [e.id for e in w.catalogue.values() if e.asks(STROKE_PHASE) and e.id not in effects]
+    if not found or not bodies:
+        return found
+    return _late_beside(models, (*effects, *bodies, delay), base, [n for e in bodies for n in w.parameters(e)], name)
+
+
+def _late_beside(models: Models, effects: Sequence[str], base: Fit, body: Sequence[str], delay: str) -> dict[str, Late]:
+    """The same by a model with these effects, of which the parameters of the `body`'s and the `delay` are not in the fit."""
+    likelihood, theta = models.likelihood(effects), np.array([base.values[n] for n in base.names])
     prior = Problem(likelihood, base.names).prior
-    body = [n for e in with_strokes for n in w.parameters(e)]
-    evidence = likelihood.evidence(models.campaign.runs, base.values, (*base.names, *body, name))
+    evidence = likelihood.evidence(models.campaign.runs, base.values, (*base.names, *body, delay))
     return by_slopes(evidence, prior.rows(theta), prior.slopes)
 
 
