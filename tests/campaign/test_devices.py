@@ -139,6 +139,26 @@ def test_markers_on_the_axle_say_nothing_of_the_centre_of_mass(lab):
         assert campaign.known["effect.marker_offset.from_axle"] == 1.0 and "marker_offset" in campaign.effects
 
 
+def test_each_channel_may_be_read_at_a_point_of_its_own(lab):
+    """What is said of a channel holds before what is said of its device; the rest of a group is where the first is."""
+    text = (lab / "campaign.toml").read_text(encoding="utf-8")
+    at = "[sensor]\nx = { at = [-0.2, 0.1] }\nu = { at = [0.3, 0.0] }\na_y = { at = [0.2, 0.04] }\n"
+    (lab / "campaign.toml").write_text(text.replace("[[recording]]", at + "\n[[recording]]", 1), encoding="utf-8")
+    known = {n: v for n, v in read(lab).known.items() if "_offset." in n and n != "effect.marker_offset.from_axle"}
+    assert known == pytest.approx(
+        {
+            "effect.marker_offset.x": -0.2,
+            "effect.marker_offset.y": 0.1,
+            "effect.marker_offset.u_ahead": 0.5,
+            "effect.marker_offset.u_right": -0.1,
+            "effect.accelerometer_offset.x": 0.11,
+            "effect.accelerometer_offset.y": 0.04,
+            "effect.accelerometer_offset.a_y_ahead": 0.09,
+            "effect.accelerometer_offset.a_y_right": 0.0,
+        }
+    )
+
+
 def test_units_signs_axes_and_radius_are_each_devices_own(lab):
     campaign = read(lab)
     (run,) = campaign.runs

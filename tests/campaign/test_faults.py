@@ -178,12 +178,6 @@ TOML_FAULTS = [
         "line 7: [sensor] x.at = [-1.0, 0.9] is more than 1.2 m from the centre of mass, off any chair; write it in m",
     ),
     (
-        "one marker in two places",
-        lambda h, r: (h + "[sensor]\nx = { at = [-0.2, 0.0] }\ny = { at = [-0.2, 0.1] }\n", r),
-        "line 8: [sensor] x is at [-0.2, 0.0] and y at [-0.2, 0.1]; give them one point, and leave out the columns of the "
-        "other",
-    ),
-    (
         "radius not positive",
         lambda h, r: (h + '[columns]\nF_rl = { column = "F_rl [N]", radius = 0 }\n', r),
         "line 7: [columns] F_rl: radius = 0; give a radius above 0, in m",

@@ -230,7 +230,10 @@ CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
 PUSHED = tuple(channel.name for channel in INPUTS if channel not in (*RIDER, *STROKE))  # what hands give
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
-MOUNTED = {"accelerometer_offset": ("a_x", "a_y"), "marker_offset": ("x", "y", "u", "v")}  # what has one point together
+MOUNTED = {
+    "accelerometer_offset": ("a_x", "a_y"),
+    "marker_offset": ("x", "y", "u", "v"),
+}  # what one instrument reads, if nothing else is said
 BODY_NAMES = POSITION, MOMENTUM, FORCE = tuple(channel.name for channel in RIDER)  # of the rider's body
 PHASE, PHASE_RATE = (channel.name for channel in STROKE)
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

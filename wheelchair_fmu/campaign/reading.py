@@ -203,13 +203,18 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, f
 
 
 def _mounted(doc: Document, runs: Iterable[Recorded]) -> dict[str, float]:
-    """Where the accelerometers and the markers sit, as the parameters that say so."""
+    """Where the accelerometers and the markers sit, as the parameters that say so: the first of each, and how far others are
+    from it."""
     points = {name: d.part.device.at for run in runs for d in run.drafts for name in d.channels}
     points |= {name: point for name, entry in doc.table("sensor").items() if (point := point_of(entry))}
     known: dict[str, float] = {}
     for effect, names in MOUNTED.items():
-        at = next((points[name] for name in names if points.get(name)), None)
-        known |= {} if at is None else {f"effect.{effect}.{axis}": value for axis, value in zip("xy", at, strict=True)}
+        given = {name: at for name in names if (at := points.get(name))}
+        first, *others = given or ("",)
+        known |= {f"effect.{effect}.{axis}": value for axis, value in zip("xy", given.get(first, ()), strict=False)}
+        for name in (o for o in others if given[o] != given[first]):
+            way = zip(("ahead", "right"), given[name], given[first], strict=True)
+            known |= {f"effect.{effect}.{name}_{side}": there - here for side, there, here in way}
     if any(d.part.device.markers and "x" in d.channels for run in runs for d in run.drafts):
         known["effect.marker_offset.from_axle"] = 1.0
     return known

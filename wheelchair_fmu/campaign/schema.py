@@ -279,7 +279,8 @@ OPEN = (
     TableRecord(
         "sensor",
         "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m. It matters for "
-        "a_x and a_y, which have one point together, and for x, y, u and v, which have another; the rest is the same anywhere.",
+        "a_x and a_y, and for x, y, u and v; those of each group of which nothing is said are where its first one is. The rest is "
+        "the same anywhere.",
         (),
         open=True,
     ),

@@ -91,6 +91,21 @@ def test_a_marker_beside_the_cm_draws_its_own_path():
 
 
 @pytest.mark.effect("marker_offset")
+def test_channels_that_other_instruments_read_are_read_where_those_are():
+    """Each of y, u and v as a marker there would have it, and a_y as an accelerometer there."""
+    at = {"x": (-0.2, 0.15), "y": (0.1, -0.2), "u": (0.3, 0.25), "v": (-0.1, 0.05), "a_x": (0.4, -0.3), "a_y": (0.1, 0.2)}
+    errors = {"marker_offset.x": -0.2, "marker_offset.y": 0.15, "accelerometer_offset.x": 0.4, "accelerometer_offset.y": -0.3}
+    for channel, first, effect in (*((c, "x", "marker_offset") for c in "yuv"), ("a_y", "a_x", "accelerometer_offset")):
+        ahead, right = np.subtract(at[channel], at[first])
+        errors |= {f"{effect}.{channel}_ahead": ahead, f"{effect}.{channel}_right": right}
+    result = lively(errors)
+    for channel, (x, y) in at.items():
+        names = [f"{'accelerometer' if 'a_' in channel else 'marker'}_offset.{axis}" for axis in "xy"]
+        alone = lively(dict(zip(names, (x, y), strict=True)))
+        np.testing.assert_allclose(result[f"sensor.{channel}"], alone[f"sensor.{channel}"], atol=1e-9, err_msg=channel)
+
+
+@pytest.mark.effect("marker_offset")
 @pytest.mark.parametrize("b", [0.05, 0.2])
 def test_markers_on_the_axle_are_read_there_wherever_the_cm_is(b):
     """Its middle hardly slips, and is b behind the CM."""

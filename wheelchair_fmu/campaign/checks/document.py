@@ -13,7 +13,7 @@ from ...model.former import clash, former, renamed
 from ...units import UnitError, quantity
 from .. import body
 from ..axes import ISO, SAE
-from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
+from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
 from ..derived import ENDS
 from ..devices import devices, parts, point, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
@@ -189,16 +189,6 @@ def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
         if hypot(*(point(table.get("at")) or ())) > FARTHEST:
             fact = f"{_device_title(place, table)}: at = {table['at']} {OFF}"
             yield doc.fault("recording.at", fact, "write it in m", place)
-
-
-def two_points(doc: Document, known: Known | None) -> Iterator[Fault]:
-    """Channels of one instrument that are said to sit in two places."""
-    points = {name: point_of(entry) for name, entry in doc.table("sensor").items()}
-    for names in MOUNTED.values():
-        first, *others = [name for name in names if points.get(name)] or [""]
-        for other in (o for o in others if points[o] != points[first]):
-            fact = f"[sensor] {first} is at {list(points[first] or ())} and {other} at {list(points[other] or ())}"
-            yield doc.fault(f"sensor.{other}", fact, "give them one point, and leave out the columns of the other")
 
 
 def no_runs(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -457,7 +447,6 @@ DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...]
     bad_markers,
     bad_files,
     bad_point,
-    two_points,
     no_file,
     missing_file,
     bad_role,

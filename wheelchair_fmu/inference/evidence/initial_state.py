@@ -15,6 +15,7 @@ from .local import locals_of
 START = ("start.x", "start.y", "start.psi", "start.u", "start.v", "start.psi_dot")
 CASTERS = ("start.caster_l", "start.caster_r")  # of a model whose casters swing: nobody films them as a rule
 POSE = START[:3]
+MARKER = "effect.marker_offset."
 START_SD = {"start.u": 0.02, "start.v": 0.05, "start.psi_dot": 0.1}  # about what a campaign file or first samples say
 POSE_SD = 0.05
 CASTER_SD = 0.3  # rad, of a chair at rest: as a rule it has rolled forward to where it stands
@@ -48,12 +49,20 @@ def prior_start(run: Run, known: Mapping[str, float], names: Sequence[str] = STA
 
 def _of_the_cm(run: Run, found: dict[str, float], known: Mapping[str, float]) -> dict[str, float]:
     """The start of the CM, where position and speed were read at another point of the frame."""
-    x, y = (known.get(f"effect.marker_offset.{axis}", 0.0) for axis in "xy")
-    x -= known.get("effect.marker_offset.from_axle", 0.0) * known.get("chair.b", DEFAULTS["chair.b"])
     psi, turn = found["start.psi"], found["start.psi_dot"]
-    lever = dict(zip(("start.x", "start.y"), to_room(x, y, psi), strict=True))
-    lever["start.u"], _ = velocity_at(x, y, 0.0, 0.0, turn)
+    lever = {
+        "start.x": to_room(*_point("x", known), psi)[0],
+        "start.y": to_room(*_point("y", known), psi)[1],
+        "start.u": velocity_at(*_point("u", known), 0.0, 0.0, turn)[0],
+    }
     return {name: value - lever.get(name, 0.0) * (TELLS[name].name in run.channels) for name, value in found.items()}
+
+
+def _point(channel: str, known: Mapping[str, float]) -> tuple[float, float]:
+    """Where a channel of motion capture is read: how far before the CM and to its right."""
+    marker = {n.removeprefix(MARKER): v for n, v in known.items() if n.startswith(MARKER)}
+    x, y = (marker.get(axis, 0.0) + marker.get(f"{channel}_{way}", 0.0) for axis, way in (("x", "ahead"), ("y", "right")))
+    return x - marker.get("from_axle", 0.0) * known.get("chair.b", DEFAULTS["chair.b"]), y
 
 
 def start_sd(run: Run, names: Sequence[str] = START) -> dict[str, float]:

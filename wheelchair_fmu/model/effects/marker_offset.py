@@ -2,13 +2,15 @@
 
 With the point x before and y to the right of the CM it is x cos ψ − y sin ψ and x sin ψ + y cos ψ away in the room, and moves
 along the chair with u − y ψ' and v + x ψ'. Markers at the ends of the rear axle tell where its middle is, and not where the CM
-is before it: x counts from there with `from_axle` = 1, and lies at x − b.
+is before it: x counts from there with `from_axle` = 1, and lies at x − b. Where y, or a speed, is read by an instrument of its
+own, constants say how far that is from the marker.
 """
 
 from typing import Any
 
 from ...quantities import ONE, M, Parameter
 from ..frames import to_room, velocity_at
+from ..mounting import apart
 from ..signs import Shows
 from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
@@ -27,29 +29,35 @@ FROM_AXLE = Parameter(
 )
 
 
+OWN = {channel: apart("marker", channel, "the marker") for channel in ("y", "u", "v")}
+
+
 def ahead(point_x, from_axle, b):
     return point_x - from_axle * b
 
 
-def place(point_x, point_y, from_axle, b, psi):
-    return to_room(ahead(point_x, from_axle, b), point_y, psi)
+def read_x(point_x, point_y, from_axle, b, psi):
+    return to_room(ahead(point_x, from_axle, b), point_y, psi)[0]
 
 
-def speed(point_x, point_y, from_axle, b, psi_dot):
-    return velocity_at(ahead(point_x, from_axle, b), point_y, 0, 0, psi_dot)
+def read_y(point_x, point_y, from_axle, b, psi, marker_y_ahead, marker_y_right):
+    return to_room(ahead(point_x, from_axle, b) + marker_y_ahead, point_y + marker_y_right, psi)[1]
+
+
+def read_u(point_y, psi_dot, marker_u_right):
+    return velocity_at(0, point_y + marker_u_right, 0, 0, psi_dot)[0]
+
+
+def read_v(point_x, from_axle, b, psi_dot, marker_v_ahead):
+    return velocity_at(ahead(point_x, from_axle, b) + marker_v_ahead, 0, 0, 0, psi_dot)[1]
 
 
 EFFECT = Effect(
     "marker_offset",
     "a marker tracked away from the CM",
     parameters=(X, Y),
-    constants=(FROM_AXLE,),
-    contributions=(
-        adds("read_x", lambda point_x, point_y, from_axle, b, psi: place(point_x, point_y, from_axle, b, psi)[0]),
-        adds("read_y", lambda point_x, point_y, from_axle, b, psi: place(point_x, point_y, from_axle, b, psi)[1]),
-        adds("read_u", lambda point_x, point_y, from_axle, b, psi_dot: speed(point_x, point_y, from_axle, b, psi_dot)[0]),
-        adds("read_v", lambda point_x, point_y, from_axle, b, psi_dot: speed(point_x, point_y, from_axle, b, psi_dot)[1]),
-    ),
+    constants=(FROM_AXLE, *(p for pair in OWN.values() for p in pair)),
+    contributions=(adds("read_x", read_x), adds("read_y", read_y), adds("read_u", read_u), adds("read_v", read_v)),
     signs=(Shows("coast-down", "sensor.x", more=True), Shows("coast-down", "sensor.y", more=True)),
     sketches=(from_above(Spot((0.19, 0.18)), Length((0, 0), (0, 0.18), "x"), Length((0, 0.18), (0.19, 0.18), "y")),),
 )
