@@ -279,7 +279,7 @@ OPEN = (
     TableRecord(
         "sensor",
         "Where sensors sit: sensor.<channel>.at = [x, y], forward and to the right of the centre of mass, in m. It matters for "
-        "a_x and a_y, and for x, y, u and v; those of each group of which nothing is said are where its first one is. The rest is "
+        "a_x and a_y, and for x, y, u and v; those of a group of which nothing is said are where its first one is. The rest is "
         "the same anywhere.",
         (),
         open=True,
