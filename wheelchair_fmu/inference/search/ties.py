@@ -33,7 +33,7 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 def tied(r: Round, effect: str) -> tuple[str, ...]:
     """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. What
     predicts held-out runs better is so much likelier, if it was found. In a search again, beside all that was found,
-    fitted runs alone tell."""
+    fitted runs alone tell; but what is more probable than the effect itself, by all runs, is never told from it."""
     leader = _of(r, effect)
     group = [leader.effect]
     for c in r.candidates:
@@ -43,7 +43,8 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
         behind = _behind(c, leader)
         near = behind <= r.policy.tied or (behind - ahead / leader.scale <= r.policy.tied and c.matters)
         same = not r.again and _unchecked(c, leader) and c.matters and c.drop >= NEARLY * leader.drop
-        if near or same:
+        likelier = c.matters and r.beliefs[c.effect].there > r.beliefs[effect].there
+        if near or same or likelier:
             group.append(c.effect)
     return tuple(group)
 
