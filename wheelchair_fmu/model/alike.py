@@ -25,7 +25,7 @@ TURNED_PATCHES = Alike(
     one_cause=True,
 )
 MOVING_BODY = Alike(
-    "the rider's body moves: trunk_motion as the pushes have it, stroke_motion the same way in each stroke",
+    "the motion of the rider's body: trunk_motion has it follow the push, stroke_motion go the same way in each stroke",
     told_by="strokes of several strengths and rhythms, or markers on the trunk, read as rider.s",
     one_cause=True,
 )

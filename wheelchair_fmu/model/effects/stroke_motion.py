@@ -4,7 +4,7 @@ With the phase θ of the strokes, 2π times their number since the first, the CM
 
     s = c (cos θ − 1) + d sin θ
 
-before where it is at a stroke's beginning and while nobody strokes. As with a body that was recorded, the frame recoils at
+ahead of where it is at a stroke's beginning and while nobody strokes. As with a body that was recorded, the frame recoils at
 s' = (ds/dθ) θ', and accelerometers feel s'' = (d²s/dθ²) θ'². It may be ahead of the push, as a body is that reaches back for
 the rim; no law that the push drives can be. θ/2π and its rate are inputs; a campaign has them from its pushes, and a simulated
 pusher gives them.
@@ -57,8 +57,8 @@ EFFECT = Effect(
         graph(
             "time",
             "",
-            Curve(lambda t: 0.3 + 0.5 * max(0.0, sin(4 * pi * t)), "push", before=True),
-            Curve(lambda t: 0.3 + 0.2 * cos(4 * pi * (t - 0.02)), "s"),
+            Curve(lambda t: 0.5 + 0.4 * max(0.0, sin(4 * pi * t)), "push", before=True),
+            Curve(lambda t: 0.25 + 0.15 * cos(4 * pi * (t - 0.02)), "s"),
         ),
     ),
 )
