@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from wheelchair_fmu.campaign import check
 from wheelchair_fmu.campaign.strokes import begun, steady, with_strokes
 
 TIME = np.arange(0, 20, 0.01)
@@ -51,3 +53,25 @@ def test_whoever_measured_the_body_or_the_phase_is_believed():
     given = with_strokes(TIME, {**torques, "stroke.phase": 1.1 * TIME}, 0.3)
     np.testing.assert_allclose(given["stroke.rate"], 1.1)
     np.testing.assert_allclose(given["stroke.phase"], 1.1 * TIME)
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        ({"stroke.phase": "gap"}, "stroke.phase is missing in 51 of 501 rows; fill its gaps, or leave it out"),
+        ({"stroke.phase": "wrapped"}, "stroke.phase falls by 99 a second at 0.99 s; count strokes on from 0"),
+        ({"stroke.phase": "radians"}, "stroke.phase grows by 6.28 a second at "),
+        ({"stroke.rate [Hz]": "turns"}, "stroke.rate is given, but not stroke.phase; add stroke.phase"),
+        ({"stroke.phase": "turns"}, ""),
+    ],
+)
+def test_a_phase_that_is_given_is_whole_in_strokes_and_of_a_person(tmp_path, columns, said):
+    time = np.arange(501) * 0.01
+    kinds = {"turns": time, "gap": np.where((time > 1.995) & (time < 2.505), np.nan, time), "wrapped": np.mod(time, 1.0)}
+    kinds["radians"] = 2 * np.pi * time
+    pushes = {"time [s]": time, "F_rl [N]": 10 + 0 * time, "F_rr [N]": 10 + np.sin(time), "yaw_rate [rad/s]": np.sin(time)}
+    pd.DataFrame(pushes | {n: kinds[kind] for n, kind in columns.items()}).to_csv(tmp_path / "a.csv", index=False)
+    run = '[[run]]\nfile = "a.csv"\nmanoeuvre = "strokes"\nrole = "fit"\nu0 = 1.0\n'
+    (tmp_path / "campaign.toml").write_text('[campaign]\nname = "c"\naxes = "SAE-J670"\n' + run)
+    wrong = [str(f) for f in check(tmp_path) if f.severity == "error"]
+    assert len(wrong) == bool(said) and all(said in f for f in wrong), wrong

@@ -5,11 +5,11 @@ from __future__ import annotations
 from ..quantities import M, Parameter
 
 
-def apart(instrument: str, channel: str, where: str) -> tuple[Parameter, Parameter]:
+def apart(instrument: str, channel: str, where: str) -> tuple[Parameter, ...]:
     """Constants of an effect, how far the point at which a channel is read lies before and to the right of `where` the rest of
     an instrument sits."""
     ways = (("ahead", "before", "+"), ("right", "to the right of", "-"))
-    return tuple(  # type: ignore[return-value]
+    return tuple(
         Parameter(
             f"{channel}_{way}",
             M,

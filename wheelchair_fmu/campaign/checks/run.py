@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from ...faults import ERROR, NOTE, WARNING, Fault, run_fault
-from ..channels import BY_NAME, MOMENTUM, POSITION, PUSHES
+from ..channels import BY_NAME, MOMENTUM, PHASE, PHASE_RATE, POSITION, PUSHES
 from ..document import number
 from ..recorded import Recorded
 from .file import FEWEST, absurd
 
 SHORTEST = 0.5  # s of a run in which the rider's body is seen, at least
+QUICKEST = 4.0  # strokes in a second: sprinters make 2 to 3
+LEAVE_OUT = "leave it out: the pushes tell it"
 FASTEST = 50.0  # m/s that a run may start at
 
 
@@ -47,6 +51,29 @@ def body_partly_seen(run: Recorded) -> Iterator[Fault]:
         whole = f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
         fact = f"the rider's body is seen from {first:.4g} to {last:.4g} s; the rest of {whole} is left out"
         yield run_fault(run.file, fact, "nothing is to be done", severity=NOTE)
+
+
+def strokes_that_do_not_grow(run: Recorded) -> Iterator[Fault]:
+    """A phase that somebody gives is used as it is, so it has to be whole, in strokes, and of a person."""
+    if PHASE not in run.values:
+        if PHASE_RATE in run.values:
+            cure = f"add {PHASE}, from which the rate follows, or leave both out: the pushes tell them"
+            yield run_fault(run.file, f"{PHASE_RATE} is given, but not {PHASE}", cure)
+        return
+    phase, time = run.values[PHASE], run.time
+    if time is None or len(time) < 2:
+        return  # a check says so
+    missing = int((~np.isfinite(phase)).sum())
+    if missing:
+        yield run_fault(run.file, f"{PHASE} is missing in {missing} of {len(phase)} rows", f"fill its gaps, or {LEAVE_OUT}")
+        return
+    rate = np.diff(phase) / np.diff(time)
+    wrong = np.flatnonzero((rate < 0) | (rate > QUICKEST))
+    if wrong.size:
+        first, way = rate[wrong[0]], "falls" if rate[wrong[0]] < 0 else "grows"
+        fact = f"{PHASE} {way} by {abs(first):.3g} a second at {time[wrong[0]]:.4g} s"
+        cure = f"count strokes on from 0, without going back to it, and not in radians or degrees; or {LEAVE_OUT}"
+        yield run_fault(run.file, fact, cure)
 
 
 def silent(run: Recorded) -> Iterator[Fault]:
@@ -129,6 +156,7 @@ RUN_CHECKS: tuple[Callable[[Recorded], Iterator[Fault]], ...] = (
     nothing_measured,
     body_without_mass,
     body_partly_seen,
+    strokes_that_do_not_grow,
     silent,
     constant_replaces,
     implausible_constant,

@@ -29,7 +29,7 @@ FROM_AXLE = Parameter(
 )
 
 
-OWN = {channel: apart("marker", channel, "the marker") for channel in ("y", "u", "v")}
+OWN = tuple(p for channel in ("y", "u", "v") for p in apart("marker", channel, "the marker"))
 
 
 def ahead(point_x, from_axle, b):
@@ -56,7 +56,7 @@ EFFECT = Effect(
     "marker_offset",
     "a marker tracked away from the CM",
     parameters=(X, Y),
-    constants=(FROM_AXLE, *(p for pair in OWN.values() for p in pair)),
+    constants=(FROM_AXLE, *OWN),
     contributions=(adds("read_x", read_x), adds("read_y", read_y), adds("read_u", read_u), adds("read_v", read_v)),
     signs=(Shows("coast-down", "sensor.x", more=True), Shows("coast-down", "sensor.y", more=True)),
     sketches=(from_above(Spot((0.19, 0.18)), Length((0, 0), (0, 0.18), "x"), Length((0, 0.18), (0.19, 0.18), "y")),),
