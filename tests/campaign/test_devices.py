@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -121,7 +123,7 @@ def test_every_sample_stands_at_its_own_time(lab):
         assert np.std(run.channels[channel][there] - expected) < 1.5 * sd
     assert run.time[0] >= 0 and run.time[-1] < 5, "pushes are known from the first row to the last"
     assert np.isfinite(run.inputs["push.F_rl"]).all()
-    assert run.input_steps["push.F_rl"] == pytest.approx(1 / 240, rel=1e-3)
+    assert run.steps["push.F_rl"] == pytest.approx(1 / 240, rel=1e-3)
     assert [(c.device, c.sd, set(c.channels)) for c in run.clocks] == [("imu", 0.002, {"yaw_rate", "a_x"})]
 
 
@@ -200,7 +202,7 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
         ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
         ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
         ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
-        ('"LHUB"', '"LHIP"', "no column 'LHIP.z' for the marker axle_l"),
+        ('"LHUB"', '"LHIP"', "no column 'LHIP.z' (nor 'LHIP_z') for the marker axle_l"),
         (
             "offset = 0.3",
             "offset = 30",
@@ -233,6 +235,15 @@ def test_markers_without_a_unit_are_not_taken_as_metres(lab):
         "run one_markers.csv line 1 column 'LHUB.z': the marker axle_l is read from it, but it gives no unit; "
         "write the header as 'LHUB.z [mm]', or with the unit it has"
     ]
+
+
+def test_markers_may_have_their_axes_behind_an_underline(lab):
+    before = read(lab).runs[0].channels
+    file = lab / "one_markers.csv"
+    head, rest = file.read_text(encoding="utf-8").split("\n", 1)
+    file.write_text(re.sub(r"\.([xyz])", lambda axis: f"_{axis[1].upper()}", head) + "\n" + rest, encoding="utf-8")
+    for name, series in read(lab).runs[0].channels.items():
+        np.testing.assert_array_equal(series, before[name])
 
 
 def test_two_devices_that_see_the_same_are_told_apart(lab):

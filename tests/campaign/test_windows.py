@@ -15,7 +15,7 @@ from wheelchair_fmu.campaign.windows import HEADING, WINDOW
 
 def turning(name, role="fit", seconds=600.0, rate=0.2, **channels) -> Run:
     """A run at 1 m/s that turns at a constant rate but for a second's pause in every two."""
-    time = np.arange(round(seconds * 100) + 1) / 100
+    time = np.arange(round(seconds * 50) + 1) / 50
     yaw_rate = np.where(np.mod(time, 2) < 1, 0.0, rate)
     push = np.sin(time)
     return Run(
@@ -40,7 +40,7 @@ def test_pieces_are_the_whole_run_once():
     parts = pieces(run, 60)
     assert np.array_equal(np.concatenate([p.time for p in parts]), run.time)
     assert np.array_equal(np.concatenate([p.inputs["push.F_rl"] for p in parts]), run.inputs["push.F_rl"])
-    assert [len(p.time) for p in parts] == pytest.approx([6500, 6501], abs=1) and len({p.name for p in parts}) == 2
+    assert [len(p.time) for p in parts] == pytest.approx([3250, 3251], abs=1) and len({p.name for p in parts}) == 2
     assert parts[0].u0 == 0.7 and parts[1].u0 == pytest.approx(1.1)  # stated; then from both wheels
 
 
@@ -52,7 +52,7 @@ def test_a_short_run_is_its_own_piece():
 def test_a_piece_has_the_heading_that_the_yaw_rate_says_or_a_channel_tells():
     run = turning("a", seconds=120)
     assert pieces(run, 60)[1].set == {"chair.m": 90.0, HEADING: pytest.approx(0.2 * 30, abs=0.01)}
-    tracked = turning("a", seconds=120, yaw=np.zeros(12001))
+    tracked = turning("a", seconds=120, yaw=np.zeros(6001))
     assert pieces(tracked, 60)[1].set == {"chair.m": 90.0}
 
 
@@ -73,28 +73,28 @@ def test_a_small_campaign_is_left_alone():
 
 def test_a_large_one_is_thinned_evenly_and_says_so():
     large = campaign(*(turning(f"run{n}") for n in range(6)), *(turning(f"held{n}", "holdout") for n in range(2)))
-    chosen = windows(large, most=48_000)  # a tenth
-    assert 0.6 * 48_000 < sum(len(r.time) for r in chosen.runs) <= 48_000
+    chosen = windows(large, most=24_000)  # a tenth
+    assert 0.6 * 24_000 < sum(len(r.time) for r in chosen.runs) <= 24_000
     for role, count in (("fit", 6), ("holdout", 2)):
         names = [r.name.partition("@")[0] for r in chosen.runs if r.role == role]
         assert len(set(names)) == count and max(map(names.count, names)) - min(map(names.count, names)) == 0
     starts = np.sort([r.time[0] for r in chosen.runs if r.name.startswith("run0@")])
     assert np.diff(starts).max() < 2 * 600 / len(starts) and starts[0] < 2 * 600 / len(starts)
     assert all(WINDOW - 2.1 < r.time[-1] - r.time[0] < WINDOW + 0.5 and r.set["chair.m"] == 90 for r in chosen.runs)
-    assert f"{len(chosen.runs)} windows" in chosen.thinned and "480008 samples" in chosen.thinned
+    assert f"{len(chosen.runs)} windows" in chosen.thinned and "240008 samples" in chosen.thinned
     assert windows(chosen, most=100) is chosen
 
 
 def test_windows_share_no_sample_and_begin_where_the_chair_goes_straight():
-    chosen = windows(campaign(turning("a")), most=30_000)
+    chosen = windows(campaign(turning("a")), most=15_000)
     ends = sorted((r.time[0], r.time[-1]) for r in chosen.runs)
     assert len(ends) > 20 and all(stop < start for (_, stop), (start, _) in pairwise(ends))
-    assert all(r.channels["yaw_rate"][:50].max() == 0 for r in chosen.runs)
+    assert all(r.channels["yaw_rate"][:25].max() == 0 for r in chosen.runs)
 
 
 def test_more_runs_than_windows():
-    chosen = windows(campaign(*(turning(f"r{n}", seconds=12) for n in range(100))), most=12_000)
-    assert 8 <= len(chosen.runs) <= 10 and sum(len(r.time) for r in chosen.runs) <= 12_100
+    chosen = windows(campaign(*(turning(f"r{n}", seconds=12) for n in range(100))), most=6_000)
+    assert 8 <= len(chosen.runs) <= 10 and sum(len(r.time) for r in chosen.runs) <= 6_050
 
 
 def test_a_gap_in_the_record_gives_no_empty_piece():

@@ -285,7 +285,7 @@ def test_what_a_later_effect_makes_needless_is_left_out(sample, sampled, chair, 
     assert [r.effects for r in found.rounds] == [(), doubles, ("rolling_resistance_asymmetry",)]
     assert found.effects == sampled.effects == ("rolling_resistance_asymmetry",) and found.verdict == "missing"
     for step, other in zip(found.ladder, sampled.ladder, strict=True):
-        assert step.name == other.name and step.heldout == pytest.approx(other.heldout, rel=0.002)
+        assert step.name == other.name and step.heldout == pytest.approx(other.heldout, rel=0.005)
 
 
 @among("rolling_resistance_asymmetry", "wheel_radius_error", "gyro_bias", "aerodynamic_drag")

@@ -17,7 +17,7 @@ from wheelchair_fmu.model.wheelchair import REGIMES
 
 def test_a_diagnosis_by_windows_finds_the_same_and_says_so(sample):
     """Runs of 11 to 15 s are windows of their own; of these, most."""
-    chosen = windows(sample, most=9000)
+    chosen = windows(sample, most=4500)
     assert len(chosen.runs) < len(sample.runs)
     found = diagnose(chosen)
     assert found.effects[0] == "rolling_resistance_asymmetry" and found.ladder[-1].heldout < 1.05 < found.ladder[1].heldout

@@ -30,7 +30,9 @@ def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 40
     for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)
     smooth = times * sigma * np.sin(2 * np.pi * hertz * np.arange(n) * 0.01)
-    run = SimpleNamespace(time=0.01 * np.arange(n), channels={"yaw_rate": noise + smooth}, inputs={})
+    run = SimpleNamespace(
+        time=0.01 * np.arange(n), channels={"yaw_rate": noise + smooth}, inputs={}, noise_shares={}, colours={}
+    )
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), followed=predicted, r=r, e=r)])
@@ -82,7 +84,7 @@ def test_pushes_noise_is_coloured_where_its_size_says_so(phi, stated, expected):
     """Strokes of 40 N with kinks, and noise of 0.4 N; white noise that was stated half as large again is none."""
     t = np.arange(4000) * 0.01
     strokes = 40 * np.maximum(0, np.sin(2 * np.pi * t))
-    run = SimpleNamespace(channels={}, inputs={"push.F_rl": strokes + ar1(0.4, phi, 1, len(t)), "push.F_rr": 0 * t})
+    run = SimpleNamespace(channels={}, colours={}, inputs={"push.F_rl": strokes + ar1(0.4, phi, 1, len(t)), "push.F_rr": 0 * t})
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=())])
     noise_model, notes = noise_model_of(evidence, {"F_rl": stated, "F_rr": 0.0}, NoiseModel({"F_rl": stated, "F_rr": 0.0}))
     assert not notes and set(noise_model.ar) == ({"F_rl"} if expected else set())
@@ -99,7 +101,7 @@ def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
     readings[places] = noise[places]
     r = readings[:, None] / stated
     time = 0.01 * np.arange(len(noise))
-    run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={})
+    run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={}, noise_shares={}, colours={})
     one = SimpleNamespace(run=run, channels=("yaw_rate",), followed=np.zeros(r.shape), r=r, e=r)
     noise_model, notes = noise_model_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
     assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)

@@ -9,7 +9,7 @@ from itertools import chain, islice
 from os import cpu_count
 from typing import TypeVar
 
-from ..campaign import Campaign, pieces, windows
+from ..campaign import Campaign, condensed, pieces, windows
 from ..errors import UsageError, unknown
 from ..inference.estimation.calibration import Calibrated, calibration, doubts
 from ..inference.estimation.fit import fit, start_value
@@ -29,9 +29,11 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Compared:
-    """Errors, the chair's values by FMI name (SI), and what became of those that were fitted."""
+    """Errors, the campaign as it was compared, the chair's values by FMI name (SI), and what became of those that were
+    fitted."""
 
     errors: Comparison
+    campaign: Campaign
     values: Mapping[str, float]
     calibration: tuple[Calibrated, ...] = ()
 
@@ -44,15 +46,16 @@ class Compared:
 def compared(
     measured: Campaign, chair: Variant, calibrate: Sequence[str], say: Callable[[str], None], *, brief: bool = False
 ) -> Compared:
-    """Errors of the chair with the values of `calibrate` fitted; `brief` without what was simulated.
+    """Errors of the chair, as a search has them, with the values of `calibrate` fitted; `brief` without what was simulated.
 
     Raises UsageError for a name that cannot be calibrated.
     """
+    measured = condensed(measured)
     chair = chair.with_effects(measured.effects)  # for the FMU to have
     fitted, told = _calibrated(measured, chair, calibrate)
     values = {**chair.values, **fitted}
     runs = tuple(r.summary() if brief else r for r in _through_fmu(measured, chair, values, say))
-    return Compared(Comparison(runs), values, tuple(told))
+    return Compared(Comparison(runs), measured, values, tuple(told))
 
 
 def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> tuple[Mapping[str, float], Sequence[Calibrated]]:

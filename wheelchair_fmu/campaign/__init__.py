@@ -10,6 +10,7 @@
 from ..faults import Fault
 from .axes import to_sae
 from .channels import BY_NAME, CHANNELS, INPUTS, Channel
+from .condensed import DENSE, SPAN, condensed
 from .formats import read_smartwheel
 from .moving import moving, pace, sets_off
 from .reading import Judged, check, fingerprint, judged, read
@@ -20,7 +21,9 @@ from .windows import covered, pieces, windows
 __all__ = [
     "BY_NAME",
     "CHANNELS",
+    "DENSE",
     "INPUTS",
+    "SPAN",
     "Baseline",
     "Campaign",
     "Channel",
@@ -30,6 +33,7 @@ __all__ = [
     "Recorded",
     "Run",
     "check",
+    "condensed",
     "covered",
     "fingerprint",
     "judged",

@@ -1,49 +1,47 @@
 """Fast recordings as means over short spans of time, for a search that looks at them hundreds of times.
 
-Loggers of 240 and 400 Hz, each with its own clock, make a thousand rows a second of a chair that hardly changes within twenty
-milliseconds. A mean over these says of the chair all that its samples say, with less of the noise, and a search takes a tenth
-of the time. No reading moves to another time: a mean stands in the middle of its span.
+Loggers of 100 to 400 Hz, each with its own clock, make hundreds of rows a second of a chair that hardly changes within twenty
+milliseconds. A mean over these says of the chair all that its samples say, with less of the noise, and a search takes half of
+the time, or a tenth. No reading moves to another time: a mean stands in the middle of its span.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from .records import Baseline, Campaign, Run
-from .series import integral
+from .series import bends, colour, estimate, integral, share_in_mean
 
 SPAN = 0.02  # s. Over it a frequency f is damped by (2π f SPAN)²/24: 1 % at 4 Hz, where hands and trunks hardly move
-DENSE = 150.0  # rows a second, above which a run is condensed
-SLOW = 1.5  # samples in a span, below which a series stays as it is
+SLOW = 1.5  # samples in a span, up to which a series stays as it is
+DENSE = SLOW / SPAN  # samples a second, above which a series is condensed
 FEWEST = 10  # spans; a shorter run stays as it is
 MOSTLY = 0.75  # of the usual number of samples in a span, from which on there is a mean of them
 
 
 def condensed(campaign: Campaign) -> Campaign:
-    """The campaign with every run of more than DENSE rows a second condensed, and its channels' noise as the means have it.
+    """The campaign with every run condensed of which something was recorded more than DENSE times a second.
 
-    It says so in `thinned`. Pushes stay straight lines between rows and keep their momentum; the noise of their records is by
-    their own samples (see `Run.input_steps`), and stays what it was.
+    Pushes stay straight lines between rows and keep their momentum; the noise of their records is by their own samples (see
+    `Run.steps`). What a campaign says of a channel's noise is of its readings; `Run.noise_shares` say how much of it is
+    in a mean.
     """
-    fast = sum(map(_is_fast, campaign.runs))
-    if not fast or campaign.thinned:
+    if not any(map(_is_fast, campaign.runs)):
         return campaign
-    runs = tuple(_condensed(run) if _is_fast(run) else run for run in campaign.runs)
-    noise = {name: sd / float(np.sqrt(_samples_in_a_mean(campaign, name))) for name, sd in campaign.noise.items()}
-    said = (
-        f"the search looks at means over {1000 * SPAN:g} ms of {fast} runs with more than {DENSE:g} rows a second; "
-        "`wheelchair compare` looks at every sample"
-    )
-    return replace(campaign, runs=runs, noise=noise, thinned=said)
+    colours = _colours(campaign)
+    return replace(campaign, runs=tuple(_condensed(run, colours) if _is_fast(run) else run for run in campaign.runs))
 
 
 def _is_fast(run: Run) -> bool:
-    """Has it more rows a second than a search needs, and enough spans to be a run of their means?"""
-    seconds = float(run.time[-1] - run.time[0])
-    return len(run.time) - 1 > DENSE * seconds and seconds > FEWEST * SPAN
+    """Has anything more samples a second than a search needs, and the run enough spans to be one of their means?"""
+    if run.noise_shares or run.time[-1] - run.time[0] <= FEWEST * SPAN:
+        return False
+    usual = float(np.median(np.diff(run.time)))
+    each = [run.steps.get(name, usual) for name in run.inputs] + [_step(run, series) for series in run.channels.values()]
+    return SPAN / min(each) > SLOW
 
 
 def _step(run: Run, series: np.ndarray) -> float:
@@ -52,21 +50,29 @@ def _step(run: Run, series: np.ndarray) -> float:
     return float(np.median(np.diff(own))) if len(own) > 1 else np.inf
 
 
-def _samples_in_a_mean(campaign: Campaign, channel: str) -> float:
-    """Of a channel, by the run that has fewest; 1 for what stays as it is."""
-    counts = [
-        SPAN / _step(run, run.channels[channel]) if _is_fast(run) else 1.0 for run in campaign.runs if channel in run.channels
-    ]
-    fewest = min(counts, default=1.0)
-    return fewest if fewest > SLOW else 1.0
+def _colours(campaign: Campaign) -> dict[str, float]:
+    """AR(1) coefficient of the noise in each channel and each recorded push, from one of its own samples to the next, by how
+    much of it third differences show."""
+    found = {}
+    for name, sd in campaign.noise.items():
+        shown = estimate([own for run in campaign.runs if (own := _samples(run, name)) is not None])
+        found[name] = colour(shown, sd) if shown else 0.0
+    return found
 
 
-def _condensed(run: Run) -> Run:
-    """The run on the middles of spans, and the times of its slow channels."""
-    count = int((run.time[-1] - run.time[0]) / SPAN)
-    edges = run.time[0] + SPAN * np.arange(count + 1)
+def _samples(run: Run, name: str) -> np.ndarray | None:
+    """What a device recorded of a channel or a push, one after the other; None where it is not in this run."""
+    pushed = run.inputs.get(f"push.{name}")
+    return run.channels.get(name) if pushed is None else bends(run.time, pushed)
+
+
+def _condensed(run: Run, colours: Mapping[str, float]) -> Run:
+    """The run on the middles of spans, and the times of its slow channels. No sample stands on the edge of a span."""
+    usual = float(np.median(np.diff(run.time)))
+    edges = run.time[0] - usual / 2 + SPAN * np.arange(int((run.time[-1] - run.time[0] + usual) / SPAN) + 1)
     middles = edges[:-1] + SPAN / 2
-    slow = [c for c, series in run.channels.items() if SPAN / _step(run, series) <= SLOW]
+    count = {c: SPAN / _step(run, series) for c, series in run.channels.items()}
+    slow = [c for c, n in count.items() if n <= SLOW]
     own = [run.time[np.isfinite(run.channels[c])] for c in slow]
     time = np.unique(np.concatenate([middles, *(t[(t > middles[0]) & (t < middles[-1])] for t in own)]))
     at = np.searchsorted(time, middles)
@@ -81,14 +87,15 @@ def _condensed(run: Run) -> Run:
     def driven(series: np.ndarray) -> np.ndarray:
         return np.interp(time, middles, np.diff(integral(run.time, series, edges)) / SPAN)
 
-    usual = float(np.median(np.diff(run.time)))
     return replace(
         run,
         time=time,
         inputs={name: driven(series) for name, series in run.inputs.items()},
         channels=channels,
         baselines=tuple(_baseline(b, driven) for b in run.baselines),
-        input_steps={name: run.input_steps.get(name, usual) for name in run.inputs},
+        steps={name: run.steps.get(name, usual) for name in run.inputs} | {c: SPAN / n for c, n in count.items() if n > 0},
+        colours={name: colours.get(name.removeprefix("push."), 0.0) for name in run.inputs},
+        noise_shares={c: 1.0 if c in slow else share_in_mean(n, colours.get(c, 0.0)) for c, n in count.items()},
     )
 
 

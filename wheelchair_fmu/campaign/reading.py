@@ -195,7 +195,7 @@ def _run(run: Recorded, name: str, of: Mapping[str, Rim], stated: Mapping[str, f
         channels=run.measured,
         clocks=run.clocks,
         baselines=unsure,
-        input_steps=run.input_steps,
+        steps=run.steps,
         devices=len(run.drafts),
     )
     whole = covered(whole, run.late)

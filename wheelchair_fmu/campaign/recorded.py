@@ -152,7 +152,7 @@ class Recorded(Readings):
         return next((d.seen for d in self.drafts if d.seen is not None), None)
 
     @property
-    def input_steps(self) -> dict[str, float]:
+    def steps(self) -> dict[str, float]:
         """Time between the samples of each recorded push, in s, where several devices recorded the run."""
         if len(self.drafts) == 1:
             return {}

@@ -53,8 +53,10 @@ class Run:
 
     Where several devices recorded the run, `time` has the times of all their samples, and a channel is NaN at those of the
     others; inputs are straight lines between their own samples. `clocks` and `baselines` are what is uncertain of it;
-    `input_steps` are the times between an input's own samples, in s, where they are not those of `time`. `devices` is how many
-    recorded it. `way` is how far, in m, the chair has rolled by its first sample since it last stood; None where nobody knows.
+    `steps` are the times between the own samples of an input or a channel, in s, where they are not those of `time`, and
+    `colours` the AR(1) coefficients of an input's noise, where means of its samples stand here. `noise_shares` say what such a
+    mean has of a channel's standard deviation. `devices` is how many recorded it. `way` is how far, in m, the chair has rolled
+    by its first sample since it last stood; None where nobody knows.
     """
 
     name: str
@@ -68,8 +70,10 @@ class Run:
     channels: dict[str, np.ndarray]
     clocks: tuple[Clock, ...] = ()
     baselines: tuple[Baseline, ...] = ()
-    input_steps: Mapping[str, float] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
+    colours: Mapping[str, float] = field(default_factory=dict)
     devices: int = 1
+    noise_shares: Mapping[str, float] = field(default_factory=dict)
     way: float | None = None
 
     @cached_property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from scipy.optimize import brentq
 
 _MAD = 1.4826  # sd of a normal variable in units of its median absolute deviation
 _ENOUGH = 8  # differences
@@ -17,6 +18,7 @@ FEW = 3  # of a run; what is more frequent is how this sensor reads
 FIRST, LINE = 0.2, 8  # s from which a series' first value is taken, by a line if that is so many samples; of fewer
 GLANCED = 10_000  # readings, which a converter that is finer than the noise shows itself in
 MULTIPLES, WHOLE = 50, 0.1  # of a converter's step, that are looked at; and how near to whole numbers they are read
+STRAIGHT = 1e-9  # of the steepest slope, by which a line may bend for rounding
 MEDIAN = 10  # samples the median says it better
 
 
@@ -34,6 +36,28 @@ def estimate(series: Iterable[np.ndarray]) -> float | None:
     values = np.concatenate(series)
     few = values[:: max(1, len(values) // GLANCED)]  # steps between some of the values are no smaller than between all
     return sd if 0 < _quantum(few) / np.sqrt(12.0) <= sd else max(sd, _quantum(values) / np.sqrt(12.0)) or None
+
+
+def share_in_mean(n: float, phi: float) -> float:
+    """What a mean of `n` neighbouring readings has of their noise's standard deviation, with the AR(1) coefficient `phi`:
+    1 / √n where it is white."""
+    lags = np.arange(1, int(np.ceil(n)))
+    return float(np.sqrt(n + 2 * np.sum((n - lags) * phi**lags)) / n)
+
+
+def colour(found: float, sd: float) -> float:
+    """AR(1) coefficient of noise with the standard deviation `sd`, of which `estimate` has `found` so much: the variance of its
+    third differences is σ² (20 − 30 φ + 12 φ² − 2 φ³). 0 where that is no less than white noise shows."""
+    if not 0 < found < sd:
+        return 0.0
+    return float(brentq(lambda phi: 20 - 30 * phi + 12 * phi**2 - 2 * phi**3 - 20 * (found / sd) ** 2, 0.0, 1.0))
+
+
+def bends(time: np.ndarray, series: np.ndarray) -> np.ndarray:
+    """Of a series (n,) that is straight lines between samples of its own, these samples."""
+    slope = np.diff(series) / np.diff(time)
+    far = np.abs(np.diff(slope)) > STRAIGHT * np.max(np.abs(slope), initial=0.0)
+    return series[np.concatenate(([True], far, [True]))]
 
 
 def third_differences(series: np.ndarray) -> np.ndarray:

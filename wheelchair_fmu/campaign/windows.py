@@ -29,8 +29,8 @@ Cell = tuple[Run, int, int]  # samples from … to (not included) of a run
 
 
 def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
-    """The campaign as a search looks at it, which says so in `thinned`: `condensed`, and where it still has more than so many
-    samples, a choice of windows from it.
+    """The campaign as a search looks at it: `condensed`, and where it still has more than so many samples, a choice of windows
+    from it, which says so in `thinned`.
 
     Runs are cut into cells of WINDOW seconds. Of each run's cells (of each role's, where there are more runs than windows) the
     same share is drawn: one at random from each of equally many neighbours, the same draw each time. A window keeps its run's
@@ -54,7 +54,7 @@ def windows(campaign: Campaign, most: int = LARGE) -> Campaign:
         f"{samples} samples are too many to search at once: {len(runs)} windows of about {WINDOW:g} s, spread over all "
         f"runs, were used, {100 * share:.2g} % of the samples; `wheelchair compare` looks at all"
     )
-    return replace(campaign, runs=runs, thinned="; ".join(filter(None, (campaign.thinned, said))))
+    return replace(campaign, runs=runs, thinned=said)
 
 
 def pieces(run: Run, seconds: float) -> list[Run]:

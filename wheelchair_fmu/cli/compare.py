@@ -11,9 +11,9 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..api import campaigns, comparisons
+from ..api import comparisons
 from ..api.comparing import PIECE, Compared, compared
-from ..campaign import Campaign, pieces
+from ..campaign import DENSE, SPAN, Campaign, pieces
 from ..inference.estimation.statistics import finite
 from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
@@ -46,20 +46,22 @@ def compare(
     names = [n.strip() for n in calibrate.split(",") if n.strip()]
     with working("calibrating" if names else "simulating", lines=progress) as say:
         found = compared(measured, chair, names, say, brief=not output)
-    for note in _notes(measured):
+    for note in _notes(found.campaign):
         console(stderr=True).print(note)
     if as_json:
         print_json(_content(measured, found, names))
     else:
         _show(measured, found, names)
     if output:
-        for file in _files(comparisons.Comparison(campaigns.Campaign(measured), found), output, table):
+        for file in _files(comparisons.Comparison(found), output, table):
             announce(file)
 
 
 def _notes(measured: Campaign) -> list[str]:
     estimated = sorted(c for c in measured.noise_estimated if measured.noise.get(c))
     said = [f"noise of {', '.join(estimated)} is not stated and was estimated from the data"] if estimated else []
+    if any(run.noise_shares for run in measured.runs):
+        said.append(f"what was recorded more than {DENSE:g} times a second is compared as means over {1000 * SPAN:g} ms")
     if any(len(pieces(run, PIECE)) > 1 for run in measured.runs):
         said.append(f"runs of {2 * PIECE:g} s and more are compared in pieces of {PIECE:g} s, each from a start of its own")
     return [*said, "each run's start is estimated about what the file says (speed ± 0.02 m/s)"]

@@ -12,7 +12,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from ..campaign import read
+from ..campaign import condensed, read
 from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
 from ..inference.evidence.initial_state import TUNING
@@ -96,7 +96,7 @@ def _job(plan: Plan, engine: str) -> Job:
     if plan.campaign is None:
         return Job(plan, engine)
     first = plan.chairs[0].variant()
-    measured = read(plan.campaign, known_parameters(first.catalogue, first.choice))
+    measured = condensed(read(plan.campaign, known_parameters(first.catalogue, first.choice)))
     plan = replace(plan, chairs=tuple(chair.with_effects(measured.effects) for chair in plan.chairs))
     yardsticks = {}
     with console(stderr=True).status("reading the campaign"):

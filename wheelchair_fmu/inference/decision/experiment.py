@@ -90,7 +90,7 @@ def _shows(there: Likelihood, run: Run, other: Fit, towards: np.ndarray, effects
         "channel": channel,
         "time": run.time[some].tolist(),
         "readings": {e: series[some].tolist() for e, series in zip(effects, readings, strict=True)},
-        "noise": float(there.noise_model.sd[channel]),
+        "noise": there.noise_model.of(channel, run),
     }
 
 

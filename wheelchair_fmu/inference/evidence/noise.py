@@ -10,10 +10,10 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import least_squares
 
 from ...campaign import BY_NAME
-from ...campaign.series import estimate
+from ...campaign.series import colour, estimate
 from .evidence import Evidence
 from .noise_model import FORCES, NoiseModel
 
@@ -78,7 +78,8 @@ def by_run(evidence: Evidence, taken: NoiseModel) -> dict[str, dict[str, float]]
         for i, channel in enumerate(e.channels):
             r = _there(e.r[:, i])
             if len(r) > ENOUGH:
-                times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run) / taken.sd[channel]
+                usual = taken.sd[channel] * e.run.noise_shares.get(channel, 1.0)
+                times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run) / usual
                 found[e.run.name][channel] = times
     return found
 
@@ -89,7 +90,12 @@ def shown(evidence: Evidence, found: Mapping[str, Mapping[str, float]], taken: N
     told = {}
     for channel in dict.fromkeys(c for times in found.values() for c in times):
         known = [(times[channel], e) for e in evidence.runs if channel in (times := found[e.run.name])]
-        pairs = [(size * taken.sd[channel], by) for size, e in known if (by := estimate([e.run.channels[channel]]))]
+        usual = taken.sd[channel]
+        pairs = [
+            (size * usual * e.run.noise_shares.get(channel, 1.0), by)
+            for size, e in known
+            if (by := estimate([e.run.channels[channel]]))
+        ]
         size, by = np.log(np.reshape(pairs, (-1, 2))).T
         if len(pairs) >= SEVERAL and np.std(size - by) < np.std(size):
             told[channel] = float(np.exp(np.mean(size - by)))
@@ -97,12 +103,15 @@ def shown(evidence: Evidence, found: Mapping[str, Mapping[str, float]], taken: N
 
 
 def _push_colour(evidence: Evidence, side: str, sd: float) -> float:
-    """AR(1) coefficient of the noise in a record of pushes, by its stated size and its third differences, which no hand's
-    push moves: for AR(1) noise these have a variance of σ² (20 − 30 φ + 12 φ² − 2 φ³)."""
-    found = estimate([e.run.inputs[f"push.{side}"] for e in evidence.runs if f"push.{side}" in e.run.inputs])
-    if found is None or not 0 < found < sd:
-        return 0.0
-    return float(brentq(lambda phi: 20 - 30 * phi + 12 * phi**2 - 2 * phi**3 - 20 * (found / sd) ** 2, 0.0, 1.0))
+    """AR(1) coefficient of the noise in a record of pushes from sample to sample, by its stated size and its third differences,
+    which no hand's push moves."""
+    name = f"push.{side}"
+    runs = [e.run for e in evidence.runs if name in e.run.inputs]
+    told = [run.colours[name] for run in runs if name in run.colours]
+    if told:
+        return told[0]
+    found = estimate([run.inputs[name] for run in runs])
+    return 0.0 if found is None else colour(found, sd)
 
 
 def _white(evidence: Evidence, channel: str, lowest: float) -> bool:
@@ -119,12 +128,13 @@ def _there(values: np.ndarray) -> np.ndarray:
 
 
 def _residuals(evidence: Evidence, channel: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Times and residuals (m,) of the channel's own readings in each run: a slow sensor has none in most rows."""
+    """Times and residuals (m,) of the channel's own readings in each run, as large as those of one reading: a slow sensor has
+    none in most rows."""
     found = []
     for e in (e for e in evidence.runs if channel in e.channels):
         d = e.run.channels[channel] - e.followed[:, e.channels.index(channel)]
         there = np.isfinite(d)
-        found.append((e.run.time[there], d[there]))
+        found.append((e.run.time[there], d[there] / e.run.noise_shares.get(channel, 1.0)))
     return found
 
 

@@ -53,15 +53,15 @@ class NoiseModel:
     shown: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, channel: str, run: Run) -> float:
-        """Standard deviation of a channel's noise in a run; in one that is new, what its readings show where that tells runs
-        apart, or else as in the others together."""
+        """Standard deviation of the noise in what a run has of a channel; in one that is new, what its readings show where that
+        tells runs apart, or else as in the others together."""
         times = self.by_run.get(run.name, {}).get(channel)
         if times is None and channel in self.shown and (shows := estimate([run.channels[channel]])):
             return self.shown[channel] * shows
         others = [known[channel] ** 2 for known in self.by_run.values() if channel in known]
         if times is None:
             times = float(np.sqrt(np.mean(others))) if others else 1.0
-        return self.sd.get(channel, 0.0) * times
+        return self.sd.get(channel, 0.0) * times * run.noise_shares.get(channel, 1.0)
 
     def swinging(self, run: Run) -> np.ndarray:
         """Times the usual (n,) that a rider's body swings at each moment of a run: who pushes moves, who rolls sits still."""
@@ -104,8 +104,8 @@ def noise_of(
 ) -> Noise:
     """The noise of a run's recorded pushes and of its readings, and the covariance of its start."""
     usual = float(np.median(np.diff(run.time)))
-    step = np.array([run.input_steps.get(n, usual) for n in pushes])
-    swing = run.input_steps.get(BY_NAME[MOMENTUM].fmu, usual)
+    step = np.array([run.steps.get(n, usual) for n in pushes])
+    swing = run.steps.get(BY_NAME[MOMENTUM].fmu, usual)
     sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
     known = [BY_FMU_NAME[n].name if n in BY_FMU_NAME else n for n in pushes]  # what acts from outside is nobody's record
     push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in known]).T

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...campaign import BY_NAME, Run
+from ...campaign import BY_NAME, DENSE, SPAN, Run
 from ...campaign.channels import CHANNEL_NAMES, PUSH_NAMES
 from ...quantities import Parameter
 from ..words import listed
@@ -75,6 +75,8 @@ def runs(case: Case) -> str:
     fitted, held = case.campaign.fit, case.campaign.holdout
     thinned, thing = case.campaign.thinned, "window" if case.campaign.thinned else "run"
     said = [f"{plain(capital(thinned.partition('; `')[0]))}."] if thinned else []
+    if any(run.noise_shares for run in case.campaign.runs):
+        said.append(f"What was recorded more than {DENSE:g} times a second was taken as means over {1000 * SPAN:g} ms.")
     said.append(f"{_several(fitted, thing)} fitted{_named(fitted)}.")
     if held:
         said.append(f"{_several(held, thing)} held out{_named(held)}.")
@@ -143,9 +145,12 @@ def _rate(case: Case, name: str) -> float:
 def _steps(run: Run, name: str) -> list[float]:
     """The usual time [s] between a run's readings of a channel, or its samples of an input."""
     fmu = BY_NAME[name].fmu
-    if fmu in run.inputs:
-        return [run.input_steps.get(fmu, float(np.median(np.diff(run.time))))]
-    times = run.time[np.isfinite(run.channels[name])] if name in run.channels else run.time[:0]
+    known = run.steps.get(fmu if fmu in run.inputs else name)
+    if known is not None:
+        return [known]
+    times = (
+        run.time[np.isfinite(run.channels[name])] if name in run.channels else run.time[: len(run.time) * (fmu in run.inputs)]
+    )
     return [float(np.median(np.diff(times)))] if len(times) > 1 else []
 
 

@@ -49,7 +49,7 @@ def replay(case: Case) -> Replay:
         raise Failure(f"the last model cannot be simulated again ({error}); diagnose the campaign again") from error
     _same(case, after)
     at = max(range(len(runs)), key=lambda i: float(np.nanmean(after.runs[i].e ** 2)))
-    sd = {c: likelihood.noise_model.sd[c] for c in after.runs[at].channels}
+    sd = {c: likelihood.noise_model.of(c, runs[at]) for c in after.runs[at].channels}
     one, other = (_residuals(e, at) for e in (before, after))
     return Replay(runs[at].name, runs[at].role, runs[at].time, one, other, sd)
 
