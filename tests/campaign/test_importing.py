@@ -9,7 +9,9 @@ import pandas as pd
 import pytest
 
 from wheelchair_fmu.campaign.importing import Wanted, find, held_out, text
+from wheelchair_fmu.campaign.importing.gathering import opened, sources
 from wheelchair_fmu.campaign.importing.guesses import guess
+from wheelchair_fmu.campaign.importing.markers import is_markers
 from wheelchair_fmu.campaign.importing.markers import place_on_body as on_the_body_of
 from wheelchair_fmu.campaign.importing.naming import placed
 from wheelchair_fmu.errors import Failure, UsageError
@@ -51,6 +53,55 @@ def test_runs_and_devices_are_told_by_names(files, expected):
     found = named(files, lambda file: file.rpartition(".")[2])
     assert {file: found[file] for file in expected} == expected
     assert len(set(found.values())) == len(files), "no file is lost"
+
+
+def test_columns_of_one_length_for_each_axis_are_markers(tmp_path):
+    """And those of an inertial sensor are none."""
+    for name, unit, taken in (("LHUB", "mm", True), ("Mag", "uT", False), ("Vel", "m/s", False)):
+        heads = [f"{name}{i}_{axis} [{unit}]" for i in (1, 2) for axis in "XYZ"]
+        pd.DataFrame(np.ones((20, 6)), columns=heads).assign(**{"time [s]": np.arange(20) / 100}).to_csv(
+            tmp_path / "m1.csv", index=False
+        )
+        (source,), _ = sources(opened([(tmp_path / "m1.csv", "m1.csv")])[0])
+        assert is_markers(source) is taken
+
+
+WHAT = ("coast", "straight", "slalom", "left", "right")
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "S03_{what}_{n:02d}_{device}.csv",
+        "S03_{n:02d}_{what}_{device}.csv",
+        "S03_{what}_{device}.csv",
+        "2024-05-24_{what}_{device}.csv",
+        "20240524_S3_{what}_{device}.csv",
+        "{what}_S3_{device}.csv",
+        "{device}_S3_{what}.csv",
+        "SUB1/{what}/{device}.csv",
+    ],
+)
+def test_a_number_of_the_subject_or_the_day_makes_no_run_of_all_files(form):
+    files = {
+        form.format(what=what, n=n, device=device): (what, device)
+        for n, what in enumerate(WHAT, 1)
+        for device in ("rad_links", "rad_rechts", "imu")
+    }
+    found = named(list(files), lambda file: "imu" if "imu" in file else "wheel")
+    assert {device for _, device in found.values()} == {"rad_links", "rad_rechts", "imu"}
+    runs = {what: {found[file][0] for file, (of, _) in files.items() if of == what} for what in WHAT}
+    assert all(len(of) == 1 for of in runs.values()) and len(set.union(*runs.values())) == len(WHAT)
+
+
+def test_repeated_trials_of_a_subject_are_runs_of_their_own():
+    found = named([f"S03_{what}_{n}_{device}.csv" for what in WHAT for n in (1, 2) for device in ("imu", "wheels")])
+    assert found["S03_coast_2_imu.csv"] == ("S03_coast_2", "imu") and len(set(found.values())) == 20
+
+
+def test_two_wheels_of_one_run_are_no_runs():
+    files = [f"run1_{side}_{what}.csv" for side in ("left", "right") for what in ("wheel", "imu")]
+    assert {run for run, _ in named(files, lambda file: file.rpartition("_")[2]).values()} == {"run1"}
 
 
 def test_recordings_without_a_pattern_are_runs_of_one_device():
@@ -98,6 +149,13 @@ def test_a_pattern_of_one_device_stands_where_headings_are_only_spelt_otherwise(
     [
         ("Zeit [s]", "time", "", ""),
         ("temps", "time", "", ""),
+        ("Beschl. X [g]", "acc", "x", ""),
+        ("Acc. Y [m/s^2]", "acc", "y", ""),
+        ("Ang. Vel. Z [deg/s]", "gyro", "z", ""),
+        ("Geschw. links [m/s]", "speed", "", "l"),
+        ("Moment Mz [Nm]", "torque", "z", ""),
+        ("Drehmoment Mz links [Nm]", "torque", "z", "l"),
+        ("Kraft Ft [N]", "force", "", ""),
         ("Gyroscope Z (deg/s)", "gyro", "z", ""),
         ("gyr_z", "gyro", "z", ""),
         ("GyroZ", "gyro", "z", ""),

@@ -23,6 +23,7 @@ DIRECTIONS = {
     **dict.fromkeys(["quer", "lateral", "seitlich", "lateral", "side", "transversal", "sway"], "y"),
     **dict.fromkeys(["vertical", "vertikal", "hoch", "up", "heave"], "z"),
 }  # by the chair, not by the sensor
+UNITS = ("s", "m", "m/s", "m/s2", "rad", "rad/s", "N", "N.m")  # of what loggers measure
 LONG = 3  # letters of a word in which a side may be the last letter
 
 
@@ -73,7 +74,7 @@ QUANTITIES = (
     Quantity(
         "torque",
         ("N.m",),
-        r"""(m|t|moment|torque|couple|dreh ?moment)( z)?|
+        r"""(m|t|moment|torque|couple|dreh ?moment)( z)?|(moment|torque|couple|dreh ?moment) ?(m|t)|
         (antriebs|rad|greifreifen|propulsion|wheel|axle|pushrim|rim) ?(dreh ?)?(moment|torque)|
         couple( de)? propulsion|moment (propulsif|moteur)|(push )?torque|hand ?rim ?(moment|torque)""",
     ),
@@ -81,7 +82,7 @@ QUANTITIES = (
         "force",
         ("N",),
         r"""(push|tangential|propulsive|propulsion|drive|pushrim|hand) ?force|
-        f ?(tan|tang|t|push)?|force|push|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
+        ((force|kraft) )?f ?(tan|tang|t|push)?|force|push|kraft|(antriebs|schub|tangential|umfangs) ?kraft|
         force( de)?( poussee| tangentielle| propulsion)?""",
     ),
     Quantity(
@@ -94,7 +95,7 @@ QUANTITIES = (
         "speed",
         ("m/s", "rad/s"),
         r"""(wheel |rear wheel |rad ?|rim |ground |encoder )?
-        (speed|velocity|vel|v|geschwindigkeit|vitesse|tempo|dreh ?zahl|rpm|omega|w|n)|wheel( rate)?|roue|
+        (speed|velocity|vel|v|geschw(indigkeit)?|vitesse|tempo|dreh ?zahl|rpm|omega|w|n)|wheel( rate)?|roue|
         rad ?(geschwindigkeit|drehzahl)|vitesse( de)?( la)? roue|fahr ?geschwindigkeit""",
     ),
     Quantity("x", ("m",), r"(pos(ition)? ?)?x( pos(ition)?)?"),
@@ -142,13 +143,21 @@ def sides(devices: list[str]) -> dict[str, str]:
 def guess(header: str, unit: str | None) -> Guess | None:
     """What a column is by its header; None where nothing is known by such a name."""
     whole = split(header)[0]
-    path, _, bare = whole.rpartition(".")  # of a structure's fields, or a group's columns, the last
-    if (own := OWN.get(whole.lower()) or OWN.get("_".join(words(bare)))) and own != "time":
+    spelt = re.sub(r"\.(?=\s|$)", "", whole)  # Acc. X is no field X of a structure Acc
+    path, _, bare = spelt.rpartition(".")  # of a structure's fields, or a group's columns, the last
+    own = OWN.get(whole.lower()) or OWN.get("_".join(words(bare)), "")
+    if own and own != "time" and (not path or _is_of(own, unit)):
         return Guess(own, own=True)
     for text in dict.fromkeys((bare, suffixed(bare)[0])):
         if found := _read(words(text), unit):
             return replace(found, side=found.side or side_of(path))
     return None
+
+
+def _is_of(own: str, unit: str | None) -> bool:
+    """May a channel be in this unit, where it is one that is known?"""
+    known = [u for u in UNITS if unit and same_dimension(unit, u)]
+    return not known or own not in BY_NAME or same_dimension(BY_NAME[own].unit.name, known[0])
 
 
 def _read(parts: list[str], unit: str | None) -> Guess | None:
@@ -189,5 +198,5 @@ def _fits(quantity: Quantity, unit: str | None, axis: str, text: str) -> bool:
         return False  # of three forces on a rim none is tangential all the way round
     if quantity.name == "speed" and not unit and text in ("wheel", "roue"):
         return False
-    known = [u for u in ("s", "m", "m/s", "m/s2", "rad", "rad/s", "N", "N.m") if unit and same_dimension(unit, u)]
+    known = [u for u in UNITS if unit and same_dimension(unit, u)]
     return not known or any(u in quantity.units for u in known) or quantity.units == ("1",)

@@ -10,8 +10,9 @@ from itertools import combinations
 
 import numpy as np
 
-from ...units import split
+from ...units import same_dimension, split
 from .. import body
+from ..derived import coordinate
 from .gathering import Column, Source, scale_of
 from .guesses import side_of
 
@@ -47,12 +48,15 @@ class Axle:
 
 
 def triples(source: Source) -> dict[str, dict[str, Column]]:
-    """Markers with columns NAME.x, NAME.y and NAME.z."""
+    """Markers with columns NAME.x, NAME.y and NAME.z; or NAME_X and so on, where their unit is one of length, as sensors on a
+    frame have axes, too."""
     found: dict[str, dict[str, Column]] = {}
     for column in source.columns:
-        name, dot, axis = split(column.header)[0].rpartition(".")
-        if dot and axis.lower() in AXES and len(axis) == 1 and name:
-            found.setdefault(name, {})[axis.lower()] = column
+        bare = split(column.header)[0].strip()
+        if (of := coordinate(column.header)) and (
+            bare[:-1].endswith(".") or (column.unit and same_dimension(column.unit, "m"))
+        ):
+            found.setdefault(bare[: len(of[0])], {})[of[1]] = column
     return {name: by for name, by in found.items() if len(by) == len(AXES)}
 
 

@@ -93,16 +93,34 @@ def placed(files: Sequence[str], kind: Mapping[str, Hashable], respelt: Alike | 
     one file takes no lab apart. Most are more than half, and the others have to be `respelt`, the same columns but for how
     headings are spelt; or half of the devices, at least, have to agree in all their files, which they do not where loggers are
     taken for runs: there each device has files of every logger.
+
+    A number that all files have, as of the subject or the date, makes one run of them; one that parts them into several runs of
+    several devices each is taken before it.
     """
     names = [parted(file) for file in files]
     ways = [*_by_number(names), *_by_word(names)]
     alike = respelt or (lambda one, other: False)
     for judge in (_as_they_are, partial(_spelt_alike, alike=alike), _outvoted):
-        for way in ways:
-            found = _tried(names, way, kind, judge)
-            if found:
-                return found
+        found = [placed for way in ways if (placed := _tried(names, way, kind, judge))]
+        if found:
+            crossed = [one for one in found if _crossed(one)]
+            return min(crossed, key=_lacking, default=found[0]) if len({one.run for one in found[0]}) == 1 else found[0]
     return _apart(names, _joined(kind, alike))
+
+
+def _lacking(of: Sequence[Placed]) -> tuple[int, int]:
+    """How many files are not there, if each device recorded each run; and how many devices there are."""
+    runs, devices = {one.run for one in of}, {one.device for one in of}
+    return len(runs) * len(devices) - len(of), len(devices)
+
+
+def _crossed(of: Sequence[Placed]) -> bool:
+    """Are these several runs of several devices, and the runs no devices under one run's name: run1_left, run1_right?"""
+    runs = {one.run: one.run.split("_") for one in of}
+    shared = set.intersection(*map(set, runs.values()))
+    merely = all(_of_devices([word for word in words if word not in shared]) for words in runs.values())
+    devices = {one.device for one in of}
+    return len(runs) > 1 and len(devices) > 1 and len(of) > max(len(runs), len(devices)) and not merely
 
 
 def slug(text: str) -> str:
