@@ -84,6 +84,8 @@ def _parsed(file: str, text: str, options: Mapping[str, Any], notes: list[str]) 
         return _without_numbers(file, text, separator, notes)
     width = max(numeric, default=0) + 1
     layout = find(above, layout_first, width)
+    if layout.header is None and (changed := _parted_otherwise(file, text, separator, layout_first)):
+        return None, [changed]
     if layout.header is None:
         fact = f"line {layout_first + 1} already holds numbers: there is no header above it"
         cure = "write a first line that names the columns, such as time [s]; or name the format"
@@ -159,6 +161,17 @@ def _without_numbers(file: str, text: str, separator: str, notes: list[str]) -> 
     units = tuple(_own(h) for h in headers)
     decimal = "," if separator != "," and "," in body else "."
     return Text(headers, units, body, separator, decimal, blank + 1, blank + 2, (), (), tuple(notes)), []
+
+
+def _parted_otherwise(file: str, text: str, separator: str, first: int) -> Fault | None:
+    """The fault of a file whose rows are parted in another way above line `first`, counted from 0, as where two exports were
+    put into one; None where they are not."""
+    above = text.split("\n", first)[:first][:_MOST_PREAMBLE]
+    other = separator_of(above)
+    if other is None or other == separator or not columns_of_numbers([cells(line, other) for line in above]):
+        return None
+    fact = f"columns are parted by {named(other)} up to line {first}, and by {named(separator)} from line {first + 1} on"
+    return run_fault(file, fact, "write all of the file in one way", first + 1)
 
 
 def _header(line: str, separator: str, row: list[str], width: int) -> tuple[str, ...]:

@@ -36,6 +36,16 @@ def zipped(name: str = "a.csv") -> bytes:
     return target.getvalue()
 
 
+def test_a_file_whose_columns_are_parted_in_two_ways_is_said(tmp_path):
+    first, rest = CSV.split("0.2,", 1)
+    later = ("0.2," + rest).replace(",", ";").replace(".", ",") * 5
+    (tmp_path / "a.csv").write_text(first + later, encoding="utf-8")
+    assert said(tmp_path / "a.csv") == [
+        "run a.csv line 22: columns are parted by ',' up to line 21, and by ';' from line 22 on; "
+        "write all of the file in one way"
+    ]
+
+
 BINARIES = [
     ("a.csv", zipped(), "the file is a ZIP archive, not a recording; unpack it and name the file that it holds"),
     (

@@ -57,7 +57,7 @@ def test_no_campaign_toml(tmp_path):
 
 
 def test_syntax_error(campaign):
-    assert lines(campaign("[campaign]\nname = small\n")) == [
+    assert lines(campaign("[campaign]\nname = ]\n")) == [
         "campaign.toml line 2: not valid TOML at character 8: invalid value; correct this line"
     ]
 
@@ -601,3 +601,28 @@ def test_rows_that_a_logger_sent_twice_are_left_out_and_said(campaign):
     assert sorted(set(data_fault(campaign, twice)) - set(once)) == [
         "note: run a.csv line 31: 2 rows are copies of the one before, with its time, and left out; nothing is to be done"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("m = 80.0", "m = 80,0", "line 5: 80,0 has a decimal comma; write 80.0"),
+        ("m = 80.0", "m = 80,0  # kg", "line 5: 80,0 has a decimal comma; write 80.0"),
+        ("m = 80.0", "m = 80.0\nm = 81.0", "line 6: m of [chair] is there twice, first in line 5; remove one of them"),
+        (
+            "m = 80.0",
+            "m = 80.0\n[chair]\na = 0.2",
+            "line 6: the table [chair] is there twice, first in line 4; put both into one",
+        ),
+        ('name = "small"', "name = small", 'line 2: the text small has no quotes; write "small"'),
+        ("m = 80.0", "m = 80.0\n[nuisance]\na_y = True", "line 7: True is no value of TOML; write true"),
+    ],
+)
+def test_slips_of_syntax_are_said_in_plain_words(campaign, old, new, said):
+    assert lines(campaign((HEAD + NOISE + RUNS).replace(old, new, 1))) == [f"campaign.toml {said}"]
+
+
+def test_a_key_of_another_run_is_not_there_twice(campaign):
+    text = (HEAD + NOISE + RUNS).replace('role = "holdout"', 'role = "holdout"\nrole = "fit"')
+    (said,) = lines(campaign(text))
+    assert "role of [run] is there twice, first in line 2" in said and said.endswith("remove one of them")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -17,6 +18,15 @@ ENDS = ("axle_l", "axle_r")  # markers on the rear axle
 ROOM = ("x", "y")
 
 
+_COORDINATE = re.compile(r"(.+?)\s*[._ -]\s*([xyz])", re.IGNORECASE)
+
+
+def coordinate(header: str) -> tuple[str, str] | None:
+    """The marker and the axis, in small letters, that a header is of: LHUB.x, LHUB_X [mm] or LHUB X; None if of none."""
+    found = _COORDINATE.fullmatch(split(header)[0].strip())
+    return (found[1].lower(), found[2].lower()) if found else None
+
+
 def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float]], list[Fault]]:
     """Places and factors to m of the columns that the device's markers need, by "axle_l.x" and so on; and what is missing."""
     found: dict[str, tuple[int, float]] = {}
@@ -24,10 +34,12 @@ def marker_columns(part: Part, table: Table) -> tuple[dict[str, tuple[int, float
     wanted = [*ENDS, *(name for name in body.MARKERS if name in part.device.markers)]
     for end in wanted if part.device.markers else ():
         for room, (axis, sign) in _room(part).items():
-            name = f"{part.device.markers.get(end, end)}.{axis}"
-            at = next((i for i, h in enumerate(table.headers) if split(h)[0].lower() == name.lower()), None)
+            marker = part.device.markers.get(end, end)
+            name = f"{marker}.{axis}"
+            sought = marker.lower(), axis
+            at = next((i for i, h in enumerate(table.headers) if coordinate(h) == sought), None)
             if at is None:
-                fact = f"no column {name!r} for the marker {end}"
+                fact = f"no column {name!r} (nor '{marker}_{axis}') for the marker {end}"
                 faults.append(run_fault(part.file, fact, suggestion(name, table.headers), 1))
                 continue
             try:

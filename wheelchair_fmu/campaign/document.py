@@ -14,6 +14,7 @@ from ..faults import ERROR, Fault, not_utf8
 from ..given import toml, what_is
 from ..model.former import renamed
 from .channels import BY_NAME
+from .syntax import HEADER, KEY, fault_of_syntax
 
 FILE = "campaign.toml"
 REPEATED = ("run", "recording")  # written [[run]], each a list
@@ -154,7 +155,7 @@ def load(path: str | Path) -> tuple[Document | None, list[Fault]]:
     except UnicodeDecodeError as error:
         return None, [not_utf8(path.name, raw, error)]
     except tomllib.TOMLDecodeError as error:
-        return None, [_syntax(path.name, text, str(error))]
+        return None, [fault_of_syntax(path.name, text, str(error))]
     return Document(path, raw, _named(data), _lines(text)), []
 
 
@@ -183,29 +184,17 @@ def _whole(table: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _syntax(file: str, text: str, message: str) -> Fault:
-    place = re.search(r"\(at line (\d+), column (\d+)\)", message)
-    line = int(place[1]) if place else text.count("\n") + 1
-    what = re.sub(r" \(at .*\)$", "", message)
-    column = f" at character {place[2]}" if place else " at the end of the file"
-    return Fault(file, line, None, f"not valid TOML{column}: {what[:1].lower()}{what[1:]}", "correct this line")
-
-
-_HEADER = re.compile(r"\s*\[(\[)?\s*([^\[\]]+?)\s*\]")
-_KEY = re.compile(r"""\s*((?:"[^"]*"|'[^']*'|[\w-]+)(?:\s*\.\s*(?:"[^"]*"|'[^']*'|[\w-]+))*)\s*=""")
-
-
 def _lines(text: str) -> Lines:
     """Line of every table and key: (dotted name, place in its list or None) → line, counted from 1."""
     lines: Lines = {}
     table, last = "", dict.fromkeys(REPEATED, -1)
     for i, row in enumerate(text.split("\n"), start=1):
-        if header := _HEADER.match(row):
+        if header := HEADER.match(row):
             table = re.sub(r"[\"'\s]", "", header[2])
             if table in last and header[1]:
                 last[table] += 1
             lines.setdefault((table, _place(table, last)), i)
-        elif key := _KEY.match(row):
+        elif key := KEY.match(row):
             name = re.sub(r"[\"']", "", re.sub(r"\s*\.\s*", ".", key[1]))
             name = f"{table}.{name}" if table else name
             lines.setdefault((name, _place(table, last)), i)

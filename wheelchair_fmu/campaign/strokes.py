@@ -25,6 +25,8 @@ def begun(time: np.ndarray, push: np.ndarray) -> np.ndarray:
     step = float(np.median(np.diff(time)))
     grid = np.arange(time[0], time[-1], max(step, 1e-3))
     width = max(1, round(SMOOTHED / max(step, 1e-3)))
+    if width > len(grid):
+        return np.empty(0)  # a recording that is over before a stroke is
     level = np.convolve(np.interp(grid, time, push), np.ones(width) / width, "same")
     strongest = float(np.quantile(level, 0.98))
     starts: list[float] = []

@@ -305,4 +305,10 @@ def _conclude(output: Path, found: Found, wanted: Wanted, faults: Sequence[Fault
     unknown = any(not choice.settled and not choice.beside for plan in found.plans for choice in plan.choices)
     left = "fill in what is open in" if errors or unknown or None in (wanted.mass, wanted.radius) else "read"
     out.print(f"next: {left} {output / FILE} and look at {output / 'preview.html'}, then")
-    out.print(f"    wheelchair check {output}\n    wheelchair diagnose {output}")
+    sync = f"    wheelchair sync {output}\n" if _clocks_unsure(found, wanted) else ""
+    out.print(f"{sync}    wheelchair check {output}\n    wheelchair diagnose {output}")
+
+
+def _clocks_unsure(found: Found, wanted: Wanted) -> bool:
+    known = wanted.clocks or {}
+    return any(device not in known.get(run, {}) for run in found.runs for device in list(found.files[run])[1:])

@@ -27,7 +27,7 @@ def estimates_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
     ax = figure.subplots()
     delta = np.array([row["smallest_interesting"] for row in rows], float)
     estimate, lower, upper = (np.array([row[key] for row in rows], float) / delta for key in ("estimate", "lower", "upper"))
-    place, found = -np.arange(len(rows)), np.array([bool(row["found"]) for row in rows])
+    place, found = -np.arange(len(rows)), np.array([row["found"] for row in rows], bool)
     ax.axvspan(-1, 1, color=BAND, lw=0, label="of no interest")
     ax.axvline(0, color=GREY, lw=0.8)
     for which, colour, marker, words in (

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...faults import ERROR, NOTE, WARNING, Fault
+from ...faults import ERROR, NOTE, WARNING, Fault, some
 from ..angles import TURN
 from ..binding import absent_fault
 from ..channels import BY_NAME
-from ..document import FILE, Document
+from ..document import FILE, Document, number
+from ..draft import Draft
 from ..noise import Noise
 from ..recorded import Recorded
 from ..rims import Rim
@@ -52,6 +53,32 @@ def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
             fact = f"no channel changes in any run with the role {role!r}, so {lack}"
             cure = f"give role = {role!r} to a run in which the chair moves"
             yield all_.doc.fault("run", fact, cure, severity=severity)
+
+
+def clocks_unknown(all_: Assembly) -> Iterator[Fault]:
+    """Devices that nothing started together read the same moment at different times, which looks like whatever is missing."""
+    without = [(run, [d for d in run.drafts[1:] if not _clock_given(run, d)]) for run in all_.runs]
+    devices = dict.fromkeys(d.part.device.name for _, drafts in without for d in drafts)
+    if devices:
+        runs = [run.name for run, drafts in without if drafts]
+        where = f"run {runs[0]}" if len(runs) == 1 else f"{len(runs)} runs, the first {runs[0]}"
+        first = next(run.drafts[0].part.device.name for run, drafts in without if drafts)
+        fact = f"nothing says how far the clocks of {some(devices)} are off that of {first} in {where}"
+        zero = ", ".join(f"{name} = 0" for name in devices)
+        cure = f"run `wheelchair sync`, or write clocks = {{ {zero} }} in a run whose devices one trigger started"
+        yield Fault(FILE, None, None, fact, cure, WARNING)
+
+
+def _clock_given(run: Recorded, draft: Draft) -> bool:
+    return draft.part.device.name in run.entry.table("clocks")
+
+
+def rider_too_heavy(all_: Assembly) -> Iterator[Fault]:
+    """What moves on a chair is part of its mass."""
+    moving, whole = number(all_.doc.table("rider").get("m")), number(all_.doc.table("chair").get("m"))
+    if moving and whole and moving >= whole:
+        fact = f"[rider] m = {moving:g} kg moves on a chair of {whole:g} kg, which has the rider in it"
+        yield all_.doc.fault("rider.m", fact, "correct one of them; [chair] m is of chair and rider together")
 
 
 def bad_noise(all_: Assembly) -> Iterator[Fault]:
@@ -118,6 +145,8 @@ CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
     column_in_no_run,
     nobody_speaks,
     glitches,
+    clocks_unknown,
+    rider_too_heavy,
     bad_noise,
     noise_unknown,
     noise_estimated,

@@ -7,12 +7,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import ERROR, NOTE, WARNING, Fault, run_fault
-from ..channels import BY_NAME, MOMENTUM, PHASE, PHASE_RATE, POSITION, PUSHES
+from ..channels import BY_NAME, MOMENTUM, PHASE, PHASE_RATE, POSITION, PUSHES, SIDES
 from ..document import number
+from ..draft import Draft
 from ..recorded import Recorded
 from .file import FEWEST, absurd
 
-SHORTEST = 0.5  # s of a run in which the rider's body is seen, at least
+SHORTEST = 0.5  # s of a run, or of it in which the rider's body is seen, at least
+GAINED = 0.5  # m/s that no floor in a laboratory gives a chair which nobody pushes
 QUICKEST = 4.0  # strokes in a second: sprinters make 2 to 3
 LEAVE_OUT = "leave it out: the pushes tell it"
 FASTEST = 50.0  # m/s that a run may start at
@@ -78,9 +80,29 @@ def strokes_that_do_not_grow(run: Recorded) -> Iterator[Fault]:
 
 def silent(run: Recorded) -> Iterator[Fault]:
     """Its own sentence, in place of one for each channel and for the speed."""
-    if run.silent:
+    if run.silent and (run.time is None or len(run.time) >= FEWEST):
         fact = "no channel changes in this run (the chair stood still, or the logger held), so it says nothing and is left out"
         yield run_fault(run.file, fact, "remove the run, or record it again", severity=WARNING)
+
+
+def over_at_once(run: Recorded) -> Iterator[Fault]:
+    if run.time is not None and len(run.time) >= FEWEST and 0 < (lasts := float(run.time[-1] - run.time[0])) < SHORTEST:
+        fact = f"the run lasts {lasts:.2g} s, in which a chair hardly moves"
+        yield run_fault(run.file, fact, "check the unit of its time, or leave it out", severity=WARNING)
+
+
+def nobody_pushes(run: Recorded) -> Iterator[Fault]:
+    """A push that is 0 for want of a sensor is no push of 0: the chair would gain speed by nothing."""
+    pushes = [run.values[name] for pair in PUSHES.items() for name in pair if name in run.values]
+    wheels = [run.values[name] for name in SIDES if name in run.values]
+    if not pushes or any(np.any(push) for push in pushes) or not wheels:
+        return
+    speeds = [np.abs(wheel[np.isfinite(wheel)]) for wheel in wheels]
+    gained = min((float(np.quantile(v, 0.95) - np.mean(v[:FEWEST])) for v in speeds if v.size >= FEWEST), default=0.0)
+    if gained > GAINED:
+        fact = f"all pushes are 0, and yet the wheels gain {gained:.2g} m/s"
+        cure = "give what was pushed, or begin the run (from = ...) when the chair rolls by itself; on a ramp this may be right"
+        yield run_fault(run.file, fact, cure, severity=WARNING)
 
 
 def constant_replaces(run: Recorded) -> Iterator[Fault]:
@@ -116,6 +138,7 @@ def no_common_time(run: Recorded) -> Iterator[Fault]:
     """Pushes are needed from the first row to the last; whoever has no sample there says nothing of the run."""
     drafts = [d for d in run.drafts if d.time is not None and d.time.size]
     if len(run.drafts) < 2 or len(drafts) < len(run.drafts):
+        yield from _pushes_elsewhere(run)
         return
     spans = {d.part.device.name: f"{d.time[0]:.4g} to {d.time[-1]:.4g} s" for d in drafts if d.time is not None}
     cure = "correct the run's clocks, or leave one of the devices out"
@@ -128,6 +151,24 @@ def no_common_time(run: Recorded) -> Iterator[Fault]:
             name, whole = draft.part.device.name, f"{run.time[0]:.4g} to {run.time[-1]:.4g} s"
             fact = f"{name} recorded from {spans[name]}, the pushes from {whole}: they have no time in common"
             yield run_fault(draft.file, fact, cure)
+        elif not any(_overlap(draft, other) for other in drafts if other is not draft):
+            name = draft.part.device.name
+            others = ", ".join(f"{other} {span}" for other, span in spans.items() if other != name)
+            fact = f"{name} recorded from {spans[name]}, and no other device did then: {others}"
+            yield run_fault(draft.file, fact, cure)
+
+
+def _overlap(one: Draft, other: Draft) -> bool:
+    assert one.time is not None and other.time is not None
+    return bool(one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1])
+
+
+def _pushes_elsewhere(run: Recorded) -> Iterator[Fault]:
+    """Of a run of one file, whose pushes have a clock of their own."""
+    lasts = 0.0 if run.time is None or not run.time.size else float(run.time[-1] - run.time[0])
+    if 0 < lasts <= abs(run.late):
+        fact = f"clocks.pushes moves the pushes by {run.late:g} s, out of a run of {lasts:.4g} s"
+        yield run_fault(run.file, fact, "give it in s")
 
 
 def no_start_speed(run: Recorded) -> Iterator[Fault]:
@@ -158,6 +199,8 @@ RUN_CHECKS: tuple[Callable[[Recorded], Iterator[Fault]], ...] = (
     body_partly_seen,
     strokes_that_do_not_grow,
     silent,
+    over_at_once,
+    nobody_pushes,
     constant_replaces,
     implausible_constant,
     measured_twice,

@@ -17,7 +17,9 @@ from ..document import FILE
 from ..draft import Draft
 from ..recorded import Recorded
 
-PLAIN = 0.5  # correlation from which a sign is told
+PLAIN = 0.5  # correlation from which a sign is told,
+CLOSE = 0.9  # and from which a factor is,
+FACTOR = 3.0  # where it is beyond what chairs have by so much
 LONGEST = 300.0  # s of a run that are looked at
 STEP = 0.02  # s
 FEWEST = 50  # steps
@@ -34,6 +36,14 @@ class Law:
     between: tuple[float, float]
     odd: str
     cure: str
+
+
+@dataclass(frozen=True)
+class Told:
+    """A correlation of wheels and a channel, and how many times too small the channel is; 1.0 where it may be right."""
+
+    correlation: float
+    factor: float
 
 
 def _difference(left: Smooth, right: Smooth, at: np.ndarray) -> np.ndarray:
@@ -55,20 +65,30 @@ def _slope(s: Smooth, at: np.ndarray) -> np.ndarray:
 TRACK = (0.3, 1.0)  # m between the rear wheels of chairs
 TURNED = "the wheels' speeds differ against the chair's turning"
 EXCHANGED = "exchange left and right, or correct axes or the sign of {}"
+HERE = "exchange the {} of left and right in this run, or correct the sign of {} in it"
 LAWS = (
     Law("yaw_rate", _difference, _value, TRACK, TURNED, EXCHANGED),
     Law("yaw", _difference, _slope, TRACK, TURNED, EXCHANGED),
     Law("a_x", _gain, _value, (0.5, 2.0), "the wheels gain speed where a_x has the chair lose it", "correct the sign of {}"),
 )
+FACTORS = {
+    180 / np.pi: "as if rad were called deg",
+    np.pi / 180: "as if deg were called rad",
+    9.80665: "as if g were called m/s2",
+}
+FACTORS |= {1 / 9.80665: "as if m/s2 were called g"}
 
 
 def exchanged(runs: Sequence[Recorded]) -> list[Fault]:
-    """A warning for each run in which left and right wheel seem to be exchanged; one for all together, where all are."""
+    """A warning for each run in which left and right wheel seem to be exchanged, or a channel is in another unit than it says;
+    one for all together, where all are so."""
     faults: list[Fault] = []
     for law in LAWS:
-        told = [(run, found) for run in runs if (found := _correlation(run, law)) is not None and abs(found) > PLAIN]
-        wrong = [(run, found) for run, found in told if found < 0]
-        if wrong and len(wrong) == len(told):
+        told = [(run, found) for run in runs if (found := _told(run, law)) is not None]
+        faults += _of_another_size([(run, found.factor) for run, found in told], law)
+        signed = [(run, found.correlation) for run, found in told if found.factor == 1.0 and abs(found.correlation) > PLAIN]
+        wrong = [(run, found) for run, found in signed if found < 0]
+        if wrong and len(wrong) == len(signed):
             fact = f"{law.odd}, in every run that tells (correlation {min(found for _, found in wrong):.2f})"
             faults.append(Fault(FILE, None, None, fact, law.cure.format(law.channel), WARNING))
         else:
@@ -80,15 +100,31 @@ def _in_some(wrong: Sequence[tuple[Recorded, float]], law: Law, said: set[str]) 
     """A sentence for each run that nothing was said of."""
     for run, found in wrong:
         if run.file not in said:
-            what = "columns" if len(run.drafts) == 1 else "files"
-            fact = f"{law.odd} (correlation {found:.2f}), unlike in other runs: its wheels seem to be exchanged"
-            yield run_fault(run.file, fact, f"exchange the {what} of left and right in this run", severity=WARNING)
+            cure = HERE.format("columns" if len(run.drafts) == 1 else "files", law.channel)
+            yield run_fault(run.file, f"{law.odd} (correlation {found:.2f}), unlike in other runs", cure, severity=WARNING)
 
 
-def _correlation(run: Recorded, law: Law) -> float | None:
-    """Of what the wheels say with the channel; None where nothing tells it, or the two do not fit one another."""
+def _of_another_size(told: Sequence[tuple[Recorded, float]], law: Law) -> Iterator[Fault]:
+    wrong = [(run, factor) for run, factor in told if factor != 1.0]
+    cure = f"correct the unit of {law.channel}, or of the wheels"
+    if len(wrong) > 1 and len(wrong) == len(told):
+        factor = float(np.median([factor for _, factor in wrong]))
+        yield Fault(FILE, None, None, f"{_size(law, factor)}, in every run that tells", cure, WARNING)
+        return
+    for run, factor in wrong:
+        yield run_fault(run.file, _size(law, factor), cure, severity=WARNING)
+
+
+def _size(law: Law, factor: float) -> str:
+    known = next((f" ({words})" for at, words in FACTORS.items() if 1 / FACTOR < factor / at < FACTOR), "")
+    much = f"{factor:.2g} times too small" if factor > 1 else f"{1 / factor:.2g} times too large"
+    return f"{law.channel} goes with the wheels, but is about {much}{known}"
+
+
+def _told(run: Recorded, law: Law) -> Told | None:
+    """What the wheels say of the channel; None where nothing tells it, or the two do not fit one another."""
     needed = (*SIDES, law.channel)
-    if run.time is None or not set(needed) <= run.channels.keys() or not _on_one_clock(run, needed):
+    if run.time is None or len(run.time) < FEWEST or not set(needed) <= run.channels.keys() or not _on_one_clock(run, needed):
         return None
     if (np.diff(run.time) <= 0).any():
         return None  # which has its own sentence
@@ -101,8 +137,13 @@ def _correlation(run: Recorded, law: Law) -> float | None:
         return None
     x, y = x[there] - np.median(x[there]), y[there] - np.median(y[there])
     xy, xx, yy = float(x @ y), float(x @ x), float(y @ y)
-    least, most = law.between
-    return xy / np.sqrt(xx * yy) if xx > 0 and yy > 0 and least < abs(xy) / yy < most else None
+    if xx <= 0 or yy <= 0:
+        return None
+    correlation, slope, (least, most) = xy / np.sqrt(xx * yy), abs(xy) / yy, law.between
+    if least < slope < most:
+        return Told(correlation, 1.0)
+    off = slope > FACTOR * most or slope < least / FACTOR
+    return Told(correlation, slope / np.sqrt(least * most)) if off and abs(correlation) > CLOSE else None
 
 
 def _on_one_clock(run: Recorded, names: Sequence[str]) -> bool:

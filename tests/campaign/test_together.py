@@ -1,0 +1,140 @@
+"""What a check says of signals, clocks, pushes and masses that do not go together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wheelchair_fmu.campaign import check
+
+from .small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
+
+LONG = 600
+
+
+def told(campaign, words, **parts):
+    """Sentences on a campaign that have these words in them."""
+    return [line for line in map(str, check(campaign(**parts))) if words in line]
+
+
+def files(change, both=True):
+    made = {name: change(motion(LONG, seed)) for name, seed in (("a.csv", 0), ("b.csv", 1))}
+    whole = {name: motion(LONG, seed) for name, seed in (("a.csv", 0), ("b.csv", 1))}
+    return {name: csv_text(SI, rows(made[name] if both or name == "a.csv" else whole[name])) for name in made}
+
+
+def times(factor, column=5):
+    def change(data):
+        data[:, column] *= factor
+        return data
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (np.pi / 180, "times too small (as if rad were called deg)"),
+        (180 / np.pi, "times too large (as if deg were called rad)"),
+    ],
+)
+def test_a_unit_that_does_not_fit_the_wheels_is_said(campaign, factor, words):
+    (said,) = told(campaign, "goes with the wheels", files=files(times(factor)))
+    assert said.startswith("warning: campaign.toml: yaw_rate goes with the wheels, but is ") and "in every run" in said
+    assert words in said
+
+
+def test_of_one_run_it_is_said_of_that_run(campaign):
+    (said,) = told(campaign, "goes with the wheels", files=files(times(np.pi / 180), both=False))
+    assert said.startswith("warning: run a.csv: yaw_rate goes with the wheels")
+
+
+def test_a_chair_of_any_track_and_a_sign_are_no_unit(campaign):
+    for factor in (1.0, 0.6, 1.6, -1.0):
+        assert not told(campaign, "goes with the wheels", files=files(times(factor)))
+
+
+def test_of_one_run_the_sign_of_either_may_be_wrong(campaign):
+    (said,) = told(campaign, "unlike in other runs", files=files(times(-1.0), both=False))
+    assert "exchange the columns of left and right in this run, or correct the sign of yaw_rate in it" in said
+
+
+def unpushed(data):
+    data[:, 1:3] = 0.0
+    data[:, 3:5] += np.clip(data[:, :1] - 1, 0, 1.5)
+    return data
+
+
+def test_a_chair_that_gains_speed_by_no_push_is_said(campaign):
+    (said, _) = told(campaign, "all pushes are 0", files=files(unpushed))
+    assert "the wheels gain 1." in said and "on a ramp this may be right" in said
+
+
+def test_a_chair_that_coasts_is_not(campaign):
+    def coasting(data):
+        data[:, 1:3] = 0.0
+        data[:, 3:5] -= 0.1 * data[:, :1]
+        return data
+
+    assert not told(campaign, "all pushes are 0", files=files(coasting))
+
+
+def test_a_run_that_is_over_at_once_is_said_and_nothing_stops_at_it(campaign):
+    (said, _) = told(campaign, "the run lasts", files=files(times(1e-3, column=0)))
+    assert "the run lasts 0.006 s, in which a chair hardly moves; check the unit of its time" in said
+
+
+def test_a_cut_that_leaves_nothing_is_one_sentence(campaign):
+    runs = RUNS.replace('role = "fit"', 'role = "fit"\nfrom = 100')
+    said = told(campaign, "a.csv", runs=runs)
+    assert len(said) == 1 and "the cut from 100 s leaves 0 samples" in said[0]
+
+
+def test_pushes_that_a_clock_moves_out_of_the_run_are_said(campaign):
+    runs = RUNS.replace('role = "fit"', 'role = "fit"\nclocks = { pushes = 60 }')
+    (said,) = told(campaign, "clocks.pushes", runs=runs)
+    assert said == "run a.csv: clocks.pushes moves the pushes by 60 s, out of a run of 1.99 s; give it in s"
+
+
+def test_more_rider_than_chair_and_rider_is_said(campaign):
+    (said,) = told(campaign, "[rider]", head=HEAD + "[rider]\nm = 80.0\n")
+    assert said.endswith(
+        "[rider] m = 80 kg moves on a chair of 80 kg, which has the rider in it; "
+        "correct one of them; [chair] m is of chair and rider together"
+    )
+
+
+DEVICES = """
+[[recording]]
+device = "rims"
+[[recording]]
+device = "frame"
+[[recording]]
+device = "wheels"
+[[run]]
+files = { rims = "rims.csv", frame = "frame.csv", wheels = "wheels.csv" }
+manoeuvre = "slalom"
+role = "fit"
+u0 = 1.0
+"""
+COLUMNS = {"rims": (0, 1, 2), "frame": (0, 5, 6), "wheels": (0, 3, 4)}
+
+
+def devices(campaign, clocks):
+    data = motion(LONG)
+    made = {f"{name}.csv": csv_text([SI[i] for i in of], rows(data[:, list(of)])) for name, of in COLUMNS.items()}
+    said = check(campaign(HEAD + NOISE + DEVICES.replace("u0 = 1.0", f"u0 = 1.0\n{clocks}"), files=made))
+    return [str(fault) for fault in said if "clocks" in str(fault)]
+
+
+def test_clocks_that_nobody_gave_are_said_once(campaign):
+    assert devices(campaign, "") == [
+        "warning: campaign.toml: nothing says how far the clocks of frame, wheels are off that of rims in run run-1; "
+        "run `wheelchair sync`, or write clocks = { frame = 0, wheels = 0 } in a run whose devices one trigger started"
+    ]
+    assert not devices(campaign, "clocks = { frame = 0, wheels = 0.2 }")
+
+
+def test_a_device_that_recorded_at_another_time_is_said(campaign):
+    (said,) = devices(campaign, "clocks = { frame = 1000, wheels = 0 }")
+    assert "frame recorded from 1000 to 1006 s, the pushes from 0 to 5.99 s: they have no time in common" in said
