@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
-from threading import Lock
 
 import casadi as cs
 
 from ..children import side_by_side
 from ..configuration import OF_MODELS, digest
 from ..errors import BuildError
+from ..model.deriving import deriving
 from ..model.expression import ExpressionLaw
 from ..model.stage import Effect, Law
 from ..model.wheelchair import Choice, assemble
@@ -31,7 +31,6 @@ from .store import kept
 from .tangent import Tangent, noisy, tangent
 
 log = logging.getLogger(__name__)
-_deriving = Lock()  # one model after another, as CasADi's expressions are shared; what compiles them runs side by side
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of what CasADi writes, straight lines of arithmetic, -O2 takes compilers up to twice as long, for a few
 # percent of speed in derivatives and for none in a step.
@@ -140,7 +139,7 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
     pushes, by_hand = noisy(wanted.moved or ()), ["tangent", "rodas", "innovations", "evaluation"]
-    with _deriving:
+    with deriving:  # what compiles models runs side by side
         texts, by = _derived(wanted, pushes, wide)
     if by is None:
         _link(texts, ["advance"], pushes, target, wide, cross)
@@ -149,7 +148,7 @@ def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | N
         _link(texts, by_hand, pushes, target, wide, cross)
     except BuildError as error:
         log.info("stages are evaluated one by one: %s", error)
-        with _deriving:
+        with deriving:  # what compiles models runs side by side
             plainly = tangent_source(by, "tangent")
         _link({"model": texts["model"], "tangent_model": plainly}, by_hand, pushes, target, wide, cross)
 

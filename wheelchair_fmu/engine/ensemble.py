@@ -17,7 +17,7 @@ from .kernel import seldom
 from .simulate import Simulator, stopped
 
 log = logging.getLogger(__name__)
-deriving = RLock()  # CasADi's objects are not for several threads
+making = RLock()  # so that threads which ask for the same wait for one of them
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Ensemble:
 
     What a chair gives does not depend on which chairs are beside it, nor on how many numbers a vector holds, and is
     `Simulator.run`'s but for rounding: sines and arctangents are not the C library's. Instances are made one at a time
-    (`deriving`), and may run in parallel threads.
+    (`making`), and may run in parallel threads.
     """
 
     def __init__(self, simulator: Simulator, results: Sequence[str]):
@@ -74,7 +74,7 @@ class Ensemble:
         return runs
 
     def _library(self, step: str) -> ctypes.CDLL | None:
-        with deriving:
+        with making:
             if step not in self._libraries:
                 self._libraries[step] = self._compiled(step)
             return self._libraries[step]

@@ -9,10 +9,10 @@ from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from threading import Lock
 
 from ..children import side_by_side
 from ..errors import BuildError
+from ..model.deriving import deriving
 from ..model.stage import Effect
 from ..model.wheelchair import Choice, assemble
 from . import cache, compiler
@@ -44,8 +44,6 @@ FLAGS = (
 # What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
 KERNEL = {"step": "wc_page_step", "plain": NOTHING, "bare": NOTHING, "forward": NOTHING, "rate": NOTHING}
 TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_all", "begin"), NOTHING)
-
-_deriving = Lock()  # CasADi's objects are not for several threads
 
 
 def modules(
@@ -115,7 +113,7 @@ def _written(
     choice: Choice, effects: list[Effect], columns: Sequence[str], moving: list[str], pushes: int, place: Path
 ) -> list[Path]:
     """The model's C files, and what they need beside them."""
-    with _deriving:
+    with deriving:
         model = at_rest(assemble(choice, effects), moving)
         sources = {
             "model.c": c_source(kernel(model), "model", KERNEL),

@@ -18,6 +18,7 @@ from ..quantities import M_S, M_S2, ONE, PER_M, RAD, RAD_S, Input, M, N, Output,
 from . import chassis, resistance, sensors
 from .choice import Choice, law, laws, serves
 from .coupling import SPEEDS, uncoupled
+from .deriving import deriving
 from .readings import READINGS
 from .stage import Alternative, Effect, Law, Row, Stage, reads
 from .tyre import common
@@ -148,7 +149,8 @@ def assemble(choice: Choice = Choice(), effects: Iterable[Effect] = ()) -> Model
 
     Raises UsageError for an unknown law and ModelError for an effect that does not fit.
     """
-    return _Assembly(choice, tuple(sorted(effects, key=lambda e: e.id))).model()
+    with deriving:
+        return _Assembly(choice, tuple(sorted(effects, key=lambda e: e.id))).model()
 
 
 def adds_state(choice: Choice, effect: Effect) -> bool:

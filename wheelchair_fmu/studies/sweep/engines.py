@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
-from ...engine.ensemble import Ensemble, Runs, deriving
+from ...engine.ensemble import Ensemble, Runs, making
 from ...engine.simulate import Simulator
 from ...errors import WheelchairError
 from ...model.choice import names
@@ -60,7 +60,7 @@ class KernelEngine:
     def _of_law(
         self, law: int, time: np.ndarray, inputs: Mapping[str, np.ndarray], p: np.ndarray, wanted: tuple[str, ...]
     ) -> Runs:
-        with deriving:
+        with making:
             if (law, wanted) not in self._ensembles:
                 self._ensembles[law, wanted] = Ensemble(self._simulators[law], wanted)
             ensemble = self._ensembles[law, wanted]

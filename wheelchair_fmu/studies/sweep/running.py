@@ -15,7 +15,7 @@ from ... import __version__
 from ...chunks import ERROR
 from ...configuration import MANOEUVRES, digest
 from ...engine.cache import sources
-from ...engine.ensemble import deriving
+from ...engine.ensemble import making
 from ...handling.manoeuvres import Manoeuvre
 from .columns import column, woven
 from .engines import ENGINES, Engine, encoded
@@ -176,7 +176,7 @@ _benches: dict[tuple[str, str], _Bench] = {}
 def _bench(job: Job, chair: Chair) -> _Bench:
     """The same for all threads."""
     key = (job.fingerprint, chair.label)
-    with deriving:
+    with making:
         if key not in _benches:
             if any(other != job.fingerprint for other, _ in _benches):
                 _benches.clear()  # a worker that lives on serves one sweep at a time
