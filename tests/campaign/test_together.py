@@ -138,3 +138,22 @@ def test_clocks_that_nobody_gave_are_said_once(campaign):
 def test_a_device_that_recorded_at_another_time_is_said(campaign):
     (said,) = devices(campaign, "clocks = { frame = 1000, wheels = 0 }")
     assert "frame recorded from 1000 to 1006 s, the pushes from 0 to 5.99 s: they have no time in common" in said
+
+
+def test_one_column_as_two_channels_is_said(campaign):
+    head = HEAD + '[columns]\na_y = "yaw_rate [rad/s]"\n'
+    (said, *_) = told(campaign, "are read from the same column", head=head)
+    assert said.startswith("warning: run a.csv column 'yaw_rate [rad/s]': yaw_rate and a_y are read from the same column")
+
+
+def test_a_column_that_no_run_has_is_said_where_another_stands_for_it(campaign):
+    (said,) = told(campaign, "Gyro Z", head=HEAD + '[columns]\nyaw_rate = "Gyro Z"\n')
+    assert said.startswith("warning: campaign.toml line 7: no run has the column 'Gyro Z' that [columns] gives for yaw_rate")
+    assert "so that it is read from 'yaw_rate [rad/s]'; correct [columns]" in said
+
+
+def test_a_recording_that_is_fitted_twice_is_said(campaign):
+    (said,) = told(campaign, "both are fitted", runs=RUNS.replace("b.csv", "a.csv").replace("holdout", "fit"))
+    assert said.startswith("warning: campaign.toml") and "has the samples of run 1 again" in said
+    parted = RUNS.replace("b.csv", "a.csv").replace('role = "fit"', 'role = "fit"\nto = 0.9').replace("holdout", "fit")
+    assert not told(campaign, "both are fitted", runs=parted.replace("u0 = 1.0\n", "u0 = 1.0\n", 1) + "from = 1.0\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,6 +39,18 @@ def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
             if all(name in d.bindings.absent and name not in d.bindings.found for d in own):
                 headers = dict.fromkeys(header for draft in own for header in draft.table.headers)
                 yield absent_fault(all_.doc, own[0].part.device, name, list(headers))
+
+
+def read_by_its_own_name(all_: Assembly) -> Iterator[Fault]:
+    """A column that [columns] names and no recording has, where another one has the channel's own name."""
+    drafts = [draft for run in all_.runs for draft in run.drafts]
+    for device in dict.fromkeys(draft.part.device.name for draft in drafts):
+        own = [draft for draft in drafts if draft.part.device.name == device]
+        for name in sorted({name for draft in own for name in draft.bindings.absent}):
+            if all(name in d.bindings.absent for d in own) and (there := [d for d in own if name in d.bindings.found]):
+                missing = absent_fault(all_.doc, own[0].part.device, name, there[0].table.headers)
+                instead = f"{missing.fact}, so that it is read from {there[0].header(name)!r}"
+                yield replace(missing, fact=instead, cure="correct [columns], or leave it out there", severity=WARNING)
 
 
 def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
@@ -143,6 +155,7 @@ def _turns(angle: np.ndarray) -> float:
 
 CAMPAIGN_CHECKS: tuple[Callable[[Assembly], Iterator[Fault]], ...] = (
     column_in_no_run,
+    read_by_its_own_name,
     nobody_speaks,
     glitches,
     clocks_unknown,

@@ -286,6 +286,16 @@ def shared_samples(doc: Document, known: Known | None) -> Iterator[Fault]:
                 yield doc.fault("run", fact, "separate them by from and to", holdout.place, WARNING)
 
 
+def fitted_twice(doc: Document, known: Known | None) -> Iterator[Fault]:
+    """Samples that count twice make estimates look surer than they are."""
+    fitted = [(entry, {part.file for part in parts(doc, entry)}) for entry in doc.entries if entry.text("role") == "fit"]
+    for i, (entry, files) in enumerate(fitted):
+        for other, those in fitted[:i]:
+            if files and files == those and _start(entry) < _stop(other) and _start(other) < _stop(entry):
+                fact = f"{entry.title} has the samples of run {other.place + 1} again, and both are fitted"
+                yield doc.fault("run", fact, "remove one of them, or separate them by from and to", entry.place, WARNING)
+
+
 def _start(entry: Entry) -> float:
     value = entry.number("from")
     return float("-inf") if value is None else value
@@ -457,6 +467,7 @@ DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...]
     own_formats,
     empty_cut,
     shared_samples,
+    fitted_twice,
     bad_axes,
     bad_parameter,
     bad_set,

@@ -69,6 +69,17 @@ def stuck(draft: Draft) -> Iterator[Fault]:
             yield run_fault(draft.file, fact, cure, column=draft.header(name), severity=WARNING)
 
 
+def one_for_two(draft: Draft) -> Iterator[Fault]:
+    """One column as several channels, as a copied line of [columns] makes it."""
+    of: dict[int, list[str]] = {}
+    for name, binding in draft.bindings.found.items():
+        of.setdefault(binding.index, []).append(name)
+    for names in (names for names in of.values() if len(names) > 1):
+        cure = "correct [columns], unless one sensor stands for both"
+        fact = f"{' and '.join(names)} are read from the same column"
+        yield run_fault(draft.file, fact, cure, column=draft.header(names[0]), severity=WARNING)
+
+
 def implausible(draft: Draft) -> Iterator[Fault]:
     for name, series in draft.values.items():
         channel = BY_NAME[name]
@@ -118,6 +129,7 @@ def spike(draft: Draft) -> Iterator[Fault]:
 
 FILE_CHECKS: tuple[Callable[[Draft], Iterator[Fault]], ...] = (
     too_short,
+    one_for_two,
     input_gap,
     empty_column,
     stuck,
