@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.kit import SAMPLE_DIAGNOSIS as TOLD
-from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.campaign import Campaign, read, windows
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.report.paper.case import Case, checked
 
@@ -19,7 +19,7 @@ SIZE = f"effect.{DRAG}.D"
 
 @cache
 def sample() -> Campaign:
-    return read(SAMPLE)
+    return windows(read(SAMPLE))
 
 
 def told(**more: Any) -> dict[str, Any]:

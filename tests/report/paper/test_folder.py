@@ -55,7 +55,8 @@ def test_estimates_and_covariance_are_those_of_the_last_fit(folder):
         *("standard errors", "calibrated value"),
     )
     assert (mass.lower_95 + mass.upper_95) / 2 == pytest.approx(mass.estimate) and (mass.prior, mass.prior_sd) == (80, 2)
-    assert mass.upper_95 - mass.lower_95 == pytest.approx(2 * 1.95996 * np.hypot(mass.se, mass.unnamed), rel=1e-5)
+    normal = 2 * 1.95996 * np.hypot(mass.se, mass.unnamed)  # and a little more, as runs that differ are few
+    assert 1 - 1e-5 < (mass.upper_95 - mass.lower_95) / normal < 1.05
     assert mass.unnamed > 0 and not found["at_bound"].any()
 
 
@@ -76,7 +77,7 @@ def test_latex_is_well_formed(folder):
         well_formed(re.sub(r"(?<!\\)&", "", text))
     rows = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert {len(re.findall(r"(?<!\\)&", row)) for row in rows} == {3}
-    assert rows[1].startswith(r"\texttt{effect.rolling\_resistance\_asymmetry.D} & $1.606 \pm 0.008$ & $[1.484, 1.728]$")
+    assert rows[1].startswith(r"\texttt{effect.rolling\_resistance\_asymmetry.D} & $1.605 \pm 0.008$ & $[1.486, 1.726]$")
 
 
 def test_fingerprints_are_those_of_the_files(folder):
@@ -139,9 +140,9 @@ def test_what_was_left_out_is_told_with_its_reason():
     table = left_out(case_of(found, replace(sample(), warnings=(spike,))))
     assert table.iloc[0].tolist() == ["runs/x.csv line 30", "a_x [g]", spike.fact, "check", True]
     assert (table[table["what"] == "a_y"]["why"] == note).sum() == 10
-    assert "a_x: 4 of 1101 readings" in table["what"].tolist()
+    assert "a_x: 4 of 550 readings" in table["what"].tolist()
     (lost,) = (row for row in table.itertuples() if row.place == "steady-left" and row.what != "a_y")
-    assert lost.what == "0.000 to 0.250 s (0.250 s)"
+    assert lost.what == "0.005 to 0.255 s (0.250 s)"
     assert table[~table["left_out"]]["why"].tolist() == ["m is odd"]
 
 
@@ -168,7 +169,7 @@ def test_another_diagnosis_is_refused_in_a_sentence(change, words):
 def test_another_chair_is_noticed():
     found = told()
     found["models"][-1]["values"][SIZE] = 0.0
-    with pytest.raises(Failure, match=r"leaves 1\.01 times the noise, and [\d.]+ times simulated again; give the --variant"):
+    with pytest.raises(Failure, match=r"leaves 1\.00 times the noise, and [\d.]+ times simulated again; give the --variant"):
         replay(case_of(found))
 
 
