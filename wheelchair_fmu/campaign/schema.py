@@ -190,9 +190,10 @@ RECORDING = TableRecord(
             "markers",
             "table",
             "Markers of motion capture at the ends of the rear axle, axle_l and axle_r, from which yaw, and x and y of its "
-            f"middle follow; and on the body ({', '.join(body.MARKERS)}), from which rider.s and rider.momentum follow.",
+            f"middle follow; and on the body ({', '.join(body.MARKERS)}), from which rider.s and rider.momentum follow. "
+            "The columns of a marker are NAME.x, NAME.y and NAME.z, or NAME_X and so on, in a unit of length.",
             example='markers = { axle_l = "LHUB", axle_r = "RHUB", sternum = "STERNUM" }',
-            fault="no column 'LHUB.x' for the marker axle_l",
+            fault="no column 'LHUB.x' (nor 'LHUB_x') for the marker axle_l",
         ),
         Key(
             "axes",
