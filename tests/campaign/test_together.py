@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,6 +13,7 @@ from wheelchair_fmu.campaign import check
 from .small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
 
 LONG = 600
+SAMPLE = Path(__file__).resolve().parents[2] / "examples" / "sample-campaign"
 
 
 def told(campaign, words, **parts):
@@ -157,3 +161,38 @@ def test_a_recording_that_is_fitted_twice_is_said(campaign):
     assert said.startswith("warning: campaign.toml") and "has the samples of run 1 again" in said
     parted = RUNS.replace("b.csv", "a.csv").replace('role = "fit"', 'role = "fit"\nto = 0.9').replace("holdout", "fit")
     assert not told(campaign, "both are fitted", runs=parted.replace("u0 = 1.0\n", "u0 = 1.0\n", 1) + "from = 1.0\n")
+
+
+def swapped(folder, change, of=("runs/random-steps.csv", "runs/holdout-random.csv")):
+    """Warnings on pushes of the sample campaign, with the first lines of these files as `change` has them."""
+    shutil.copytree(SAMPLE, folder)
+    for name in of:
+        head, rest = (folder / name).read_text(encoding="utf-8").split("\n", 1)
+        (folder / name).write_text("\n".join(change(head, rest)), encoding="utf-8")
+    return [str(fault) for fault in check(folder) if "push" in fault.fact]
+
+
+def exchange(head, rest):
+    return head.replace("F_rl", "F_x").replace("F_rr", "F_rl").replace("F_x", "F_rr"), rest
+
+
+def test_pushes_that_were_exchanged_turn_the_chair_the_other_way(tmp_path):
+    (said,) = swapped(tmp_path / "all", exchange)
+    assert (
+        said.startswith("warning: campaign.toml: the pushes turn the chair the other way") and "in every run that tells" in said
+    )
+    (said,) = swapped(tmp_path / "one", exchange, of=["runs/random-steps.csv"])
+    assert said.startswith("warning: run runs/random-steps.csv: the pushes turn") and said.endswith("in this run")
+    assert not swapped(tmp_path / "none", lambda *lines: lines)
+
+
+def test_a_push_with_the_other_sign_slows_the_chair(tmp_path):
+    def negated(head, rest):
+        cells = [row.split(",") for row in rest.splitlines()]
+        at = [name.partition(" ")[0] for name in head.split(",")].index("F_rl")
+        for row in cells:
+            row[at] = str(-float(row[at]))
+        return head, "\n".join(map(",".join, cells)) + "\n"
+
+    (said,) = (line for line in swapped(tmp_path / "all", negated) if "loses speed" in line)
+    assert "the chair loses speed where F_rl pushes it, in every run that tells; correct the sign of F_rl" in said

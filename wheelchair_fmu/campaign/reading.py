@@ -19,6 +19,7 @@ from .channels import BY_NAME, CHANNEL_NAMES, MOUNTED, PUSH_NAMES
 from .checks import CAMPAIGN_CHECKS, CLOCK_CHECKS, DOCUMENT_CHECKS, FILE_CHECKS, HEADING_CHECKS, RUN_CHECKS, Assembly
 from .checks.document import Known, crowded, parameter_tables
 from .checks.sides import exchanged
+from .checks.turned import pushes_turned
 from .devices import Part, parts, point_of
 from .document import FILE, Document, Entry, flatten, load, numbers
 from .draft import Draft, prepare
@@ -60,7 +61,7 @@ def judged(path: str | Path, known_parameters: Known | None = None) -> Judged:
         return Judged(None, (), faults)
     wrong = any(fault.severity == ERROR for fault in faults)
     campaign = None if wrong else _campaign(assembly, known_parameters, tuple(faults))
-    every = [*exchanged(assembly.runs), *faults, *unasked(assembly.runs, _asked(assembly.doc))]
+    every = [*exchanged(assembly.runs), *pushes_turned(assembly.runs), *faults, *unasked(assembly.runs, _asked(assembly.doc))]
     return Judged(campaign, assembly.runs, every)
 
 

@@ -124,7 +124,7 @@ def _size(law: Law, factor: float) -> str:
 def _told(run: Recorded, law: Law) -> Told | None:
     """What the wheels say of the channel; None where nothing tells it, or the two do not fit one another."""
     needed = (*SIDES, law.channel)
-    if run.time is None or len(run.time) < FEWEST or not set(needed) <= run.channels.keys() or not _on_one_clock(run, needed):
+    if run.time is None or len(run.time) < FEWEST or not set(needed) <= run.channels.keys() or not on_one_clock(run, needed):
         return None
     if (np.diff(run.time) <= 0).any():
         return None  # which has its own sentence
@@ -146,7 +146,7 @@ def _told(run: Recorded, law: Law) -> Told | None:
     return Told(correlation, slope / np.sqrt(least * most)) if off and abs(correlation) > CLOSE else None
 
 
-def _on_one_clock(run: Recorded, names: Sequence[str]) -> bool:
+def on_one_clock(run: Recorded, names: Sequence[str]) -> bool:
     """Are the clocks known of all devices that tell these? Turns to and fro look turned round where one is half a turn late."""
     telling = {draft.file: draft for draft in (run.draft_of(name) for name in names) if draft is not None}
     return len(telling) == 1 or all(_clock_known(run, draft) for draft in telling.values())
