@@ -196,3 +196,9 @@ def test_a_push_with_the_other_sign_slows_the_chair(tmp_path):
 
     (said,) = (line for line in swapped(tmp_path / "all", negated) if "loses speed" in line)
     assert "the chair loses speed where F_rl pushes it, in every run that tells; correct the sign of F_rl" in said
+
+
+def test_a_push_that_is_missing_may_be_a_column_that_nothing_is_taken_from(campaign):
+    named = {name: csv_text([h.replace("F_rl [N]", "Schub [N]") for h in SI], rows(motion())) for name in ("a.csv", "b.csv")}
+    (said, _) = told(campaign, "no push force F_rl", files=named)
+    assert said == "run a.csv line 1: no push force F_rl; name it in [columns], if it is 'Schub [N]'"

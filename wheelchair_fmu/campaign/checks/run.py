@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...faults import ERROR, NOTE, WARNING, Fault, run_fault
+from ...faults import ERROR, NOTE, SHOWN, WARNING, Fault, run_fault
+from ...units import same_dimension
 from ..channels import BY_NAME, MOMENTUM, PHASE, PHASE_RATE, POSITION, PUSHES, SIDES
 from ..document import number
 from ..draft import Draft
@@ -24,7 +25,19 @@ def no_push(run: Recorded) -> Iterator[Fault]:
     for force, torque in PUSHES.items():
         if force not in run.values and torque not in run.values:
             cure = f"add a column '{force} [N]', name it in [columns], or write constant = {{ {force} = 0.0 }} in the run"
+            if idle := _pushes_unread(run):
+                cure = f"name it in [columns], if it is {' or '.join(map(repr, idle[:SHOWN]))}"
             yield run_fault(run.file, f"no push force {force}", cure, 1)
+
+
+def _pushes_unread(run: Recorded) -> list[str]:
+    """Headers of forces and torques that nothing is taken from."""
+    found: list[str] = []
+    for draft in run.drafts:
+        used = {binding.index for binding in draft.bindings.found.values()}
+        units = enumerate(zip(draft.table.headers, draft.table.units, strict=True))
+        found += [h for i, (h, u) in units if i not in used and u and any(same_dimension(u, of) for of in ("N", "N.m"))]
+    return found
 
 
 def nothing_measured(run: Recorded) -> Iterator[Fault]:
