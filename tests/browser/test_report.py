@@ -17,7 +17,7 @@ from PIL import Image
 from tests.browser.conftest import CHROMIUM, DIAGNOSIS, LOOKS, SAMPLE, Reader, handed_out, launched, report_of
 from tests.flips import flipping
 from tests.kit import tracked, with_settings
-from wheelchair_fmu.campaign import Campaign, moving, read
+from wheelchair_fmu.campaign import Campaign, moving, read, windows
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.inference.decision.verdict import FORCES as UNRECORDED
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
@@ -35,7 +35,7 @@ MODELS = {m["step"]: m["values"] for m in TOLD["models"]}
 
 @pytest.fixture(scope="module")
 def campaign() -> Campaign:
-    return read(SAMPLE)
+    return windows(read(SAMPLE))
 
 
 def variant_of(reader: Reader, model: int) -> Variant:
@@ -108,7 +108,10 @@ def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
     folder, colours = tracked(with_settings(SAMPLE, tmp_path / "campaign")), {"F_rl": 0.7, "a_y": 0.5}
     told = {**TOLD, "noise": {**TOLD["noise"], "ar": colours}}
     (tmp_path / "told.json").write_text(json.dumps(told))
-    reader, measured = Reader(browser, report_of(folder, tmp_path / "report.html", tmp_path / "told.json")), read(folder)
+    reader, measured = (
+        Reader(browser, report_of(folder, tmp_path / "report.html", tmp_path / "told.json")),
+        windows(read(folder)),
+    )
     colour = NoiseModel(measured.noise, colours)
     for step in MODELS:
         reader.set(MODELS[step])
@@ -160,7 +163,7 @@ def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browse
 def test_where_casters_flip_a_run_goes_where_errors_of_its_pushes_lead(browser, tmp_path):
     """As in `Likelihood`, also where values are moved a little from there."""
     inertia = {"effect.caster_inertia.I": 0.01}
-    measured = flipping(tmp_path / "campaign", Variant().with_effects(["caster_inertia"]), inertia)
+    measured = windows(flipping(tmp_path / "campaign", Variant().with_effects(["caster_inertia"]), inertia))
     told = {**TOLD, "campaign": measured.name, "noise": {**TOLD["noise"], "sd": dict(measured.noise), "ar": {}}}
     (tmp_path / "told.json").write_text(json.dumps(told))
     reader = Reader(browser, report_of(tmp_path / "campaign", tmp_path / "report.html", tmp_path / "told.json"))
