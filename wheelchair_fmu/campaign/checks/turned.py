@@ -15,28 +15,33 @@ from ..document import FILE
 from ..recorded import Recorded
 from .sides import FEWEST, LONGEST, STEP, on_one_clock
 
-PLAIN = 0.6  # partial correlation, with all else that a push goes with held, from which its sign is told
+SURE = 4.0  # standard errors of Fisher's z from which the sign of a partial correlation is told, and
+PLAIN = 0.5  # how large it has to be
 WIDTH = 0.1  # s, of the smoothing: how quickly a speed changes is noisier than a speed
+APART = 2 * np.pi**0.5 * WIDTH  # s between values of what is smoothed so that tell as much as independent ones
+HELD = 3  # series beside a push: the other one, a speed and a constant
 
 
 @dataclass(frozen=True)
 class Turned:
-    """What a run shows of its pushes: by name, the partial correlations with how the chair gains speed and turns more."""
+    """What a run shows of its pushes: by name, the partial correlations with how the chair gains speed and turns more, and from
+    which size they are sure."""
 
     run: Recorded
     gain: Mapping[str, float]
     turn: Mapping[str, float]
+    plain: float
 
     @property
     def way(self) -> int:
         """1 where each turns the chair as it should, -1 where the other way, 0 where that does not show."""
         left, right = self.turn.values()
-        return int(np.sign(left)) if min(abs(left), abs(right)) > PLAIN and left * right < 0 else 0
+        return int(np.sign(left)) if min(abs(left), abs(right)) > self.plain and left * right < 0 else 0
 
     def sign(self, name: str) -> int:
         """1 where a push quickens the chair, -1 where it slows it, 0 where that does not show."""
         found = self.gain.get(name, 0.0)
-        return int(np.sign(found)) if abs(found) > PLAIN else 0
+        return int(np.sign(found)) if abs(found) > self.plain else 0
 
 
 def pushes_turned(runs: Sequence[Recorded]) -> list[Fault]:
@@ -82,7 +87,8 @@ def _told(run: Recorded) -> Turned | None:
         dict(zip(pushes, _partial(hands[there], beside[there], of[there]), strict=True))
         for beside, of in ((speed, gain), (turn, more))
     )
-    return Turned(run, gains, turns)
+    told = there.sum() * STEP / APART - HELD - 3  # Fisher's z scatters by one over the root of this
+    return Turned(run, gains, turns, max(PLAIN, float(np.tanh(SURE / np.sqrt(told))))) if told > 0 else None
 
 
 def _partial(pushes: np.ndarray, beside: np.ndarray, of: np.ndarray) -> list[float]:
