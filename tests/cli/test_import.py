@@ -189,6 +189,7 @@ def test_devices_that_share_nothing_are_said(tmp_path):
     lab.rim(tmp_path / "run1_SWL.csv", one, 0.1, "l", rng)
     lab.frame(tmp_path / "run1_imu.csv", other | {"a_x": 0 * other["t"], "yaw_rate": 0 * other["t"]}, 0.2, rng)
     done = imported(tmp_path, "-o", tmp_path / "c", "--radius", lab.RADIUS)
+    assert f"then\n    wheelchair sync {tmp_path / 'c'}\n" in done.output
     told = "run1: imu measured nothing that sets its clock beside that of any other device; give its offset by hand"
     assert told in " ".join(done.output.split())
     assert "is not sure: give it in clocks" in (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")

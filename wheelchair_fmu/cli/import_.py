@@ -99,6 +99,7 @@ def import_(
     if as_json:
         print_json(_told_as_data(found, wanted, seen.faults))
         return
+    wanted = replace(wanted, clocks={one.run.name: one.sure for one in clocks})
     said = [*show(clocks), *_needing_radius(output, found, wanted)]
     _show(found)
     for line in said:
