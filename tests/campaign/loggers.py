@@ -165,6 +165,21 @@ def trc(path: Path, rate: float, markers: dict[str, np.ndarray]) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
+def vicon(path: Path, rate: float, markers: dict[str, np.ndarray]) -> None:
+    """The same as Vicon Nexus writes it, with empty lines and another section behind."""
+    lines = [
+        "Trajectories",
+        f"{rate:g}",
+        ",,P1:" + ",,,P1:".join(markers) + ",,",
+        "Frame,Sub Frame," + ",".join("XYZ" * len(markers)),
+        ",," + ",".join(["mm"] * 3 * len(markers)),
+    ]
+    for i in range(len(next(iter(markers.values())))):
+        values = np.concatenate([marker[i] for marker in markers.values()])
+        lines.append(",".join([str(i + 1), "0", *("" if np.isnan(v) else f"{v:.3f}" for v in values)]))
+    path.write_text("\n".join([*lines, "", "Devices", "1000", ",,Plate", "Frame,Sub Frame,Fx", ",,N", "1,0,3.5"]) + "\n")
+
+
 def c3d(path: Path, rate: float, markers: dict[str, np.ndarray]) -> None:
     import ezc3d
 

@@ -95,6 +95,37 @@ def test_notes_say_what_was_found(frame, tmp_path):
 MARKERS = {"RHUB": np.arange(90.0).reshape(30, 3), "LHUB": np.arange(90.0).reshape(30, 3) * 2}
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda text: text.replace("mm", ""), "line 5: the header names no units"),
+        (lambda text: text.replace("\n150\n", "\n0\n", 1), "line 2: the header names no rate"),
+        (lambda text: text.replace("P1:RHUB", "P1:LHUB"), "line 3: the marker P1:LHUB stands there 2 times"),
+        (lambda text: text.replace("\n7,0,", "\n7,0,-", 1).replace("\n7,0,-", "\n7,0,-,", 1), "line 12: '-' is not a number"),
+        (lambda text: text[: text.index("\n1,0,")] + "\n", "the file has a header but no frames"),
+    ],
+)
+def test_what_is_odd_about_a_vicon_file_is_one_sentence(change, words, tmp_path):
+    loggers.vicon(tmp_path / "m.csv", 150.0, MARKERS)
+    text = (tmp_path / "m.csv").read_text()
+    assert change(text) != text
+    (tmp_path / "m.csv").write_text(change(text))
+    table, (fault,) = open_recording(tmp_path / "m.csv", "m.csv", {})
+    assert table is None and words in str(fault)
+
+
+def test_vicons_frames_are_times_by_its_rate(tmp_path):
+    markers = {name: series.copy() for name, series in MARKERS.items()}
+    markers["LHUB"][5:8] = np.nan
+    loggers.vicon(tmp_path / "m.csv", 150.0, markers)
+    table, faults = open_recording(tmp_path / "m.csv", "m.csv", {})
+    assert faults == [] and table.headers[:2] == ("time [s]", "P1:RHUB.x [mm]")
+    values = whole(table)
+    np.testing.assert_allclose(values[0], np.arange(30) / 150, atol=1e-12)
+    np.testing.assert_allclose(values[6], markers["LHUB"][:, 2], atol=1e-3)
+    assert "2 markers at 150 Hz" in table.notes and "hidden at times: P1:LHUB" in table.notes
+
+
 @pytest.mark.parametrize("kind", ["trc", "c3d"])
 def test_markers_and_hidden_ones(kind, tmp_path):
     if kind == "c3d":
