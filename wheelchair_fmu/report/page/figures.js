@@ -196,7 +196,7 @@ export class Figures {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";
         const last = measured ? measured.x.findLastIndex((v, i) => Number.isFinite(v + measured.y[i])) : -1;
-        return `Solid: where the sensors say the chair went; dashed: the model. Below, the chair ${significant(app.timeline.at, 3)} s into the run.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
+        return `Solid: where the sensors say the chair went; dashed: the model. Below, the chair ${app.timeline.at.toFixed(2)} s into the run.${last < 0 ? "" : ` ${last > model.x.length - LATE ? "At the end" : "Where that is last known"} they are ${significant(Math.hypot(model.x[last] - measured.x[last], model.y[last] - measured.y[last]), 2)} m apart.`}`;
       },
     };
   }
