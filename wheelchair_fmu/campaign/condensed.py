@@ -29,10 +29,12 @@ def condensed(campaign: Campaign) -> Campaign:
     `Run.steps`). What a campaign says of a channel's noise is of its readings; `Run.noise_shares` say how much of it is
     in a mean.
     """
-    if not any(map(_is_fast, campaign.runs)):
+    fast = [_is_fast(run) for run in campaign.runs]
+    if not any(fast):
         return campaign
     colours = _colours(campaign)
-    return replace(campaign, runs=tuple(_condensed(run, colours) if _is_fast(run) else run for run in campaign.runs))
+    runs = (_condensed(run, colours) if is_fast else run for run, is_fast in zip(campaign.runs, fast, strict=True))
+    return replace(campaign, runs=tuple(runs))
 
 
 def _is_fast(run: Run) -> bool:

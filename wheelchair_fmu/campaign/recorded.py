@@ -128,6 +128,10 @@ class Recorded(Readings):
         """The file that a channel or an input is from; None for a constant."""
         return next((d for d in self.drafts if name in d.values), None) if name not in self.constants else None
 
+    def knows_clock_of(self, draft: Draft) -> bool:
+        """Is it said how far a device's clock is off, or is it the first one's, which the others are held against?"""
+        return draft is self.drafts[0] or draft.part.device.name in self.entry.table("clocks")
+
     @property
     def clocks(self) -> tuple[Clock, ...]:
         """What is left uncertain of the devices' clocks."""

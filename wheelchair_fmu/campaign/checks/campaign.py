@@ -31,26 +31,28 @@ class Assembly:
 
 
 def column_in_no_run(all_: Assembly) -> Iterator[Fault]:
-    drafts = [draft for run in all_.runs for draft in run.drafts]
     known = {name for run in all_.runs for name in run.constants}
-    for device in dict.fromkeys(draft.part.device.name for draft in drafts):
-        own = [draft for draft in drafts if draft.part.device.name == device]
-        for name in sorted({name for draft in own for name in draft.bindings.absent} - known):
-            if all(name in d.bindings.absent and name not in d.bindings.found for d in own):
-                headers = dict.fromkeys(header for draft in own for header in draft.table.headers)
-                yield absent_fault(all_.doc, own[0].part.device, name, list(headers))
+    for own, name in _absent(all_):
+        if name not in known and all(name not in d.bindings.found for d in own):
+            headers = dict.fromkeys(header for draft in own for header in draft.table.headers)
+            yield absent_fault(all_.doc, own[0].part.device, name, list(headers))
 
 
 def read_by_its_own_name(all_: Assembly) -> Iterator[Fault]:
     """A column that [columns] names and no recording has, where another one has the channel's own name."""
+    for own, name in _absent(all_):
+        if there := [d for d in own if name in d.bindings.found]:
+            missing = absent_fault(all_.doc, own[0].part.device, name, there[0].table.headers)
+            instead = f"{missing.fact}, so that it is read from {there[0].header(name)!r}"
+            yield replace(missing, fact=instead, cure="correct [columns], or leave it out there", severity=WARNING)
+
+
+def _absent(all_: Assembly) -> Iterator[tuple[list[Draft], str]]:
+    """Each device's recordings with a channel for which [columns] names a column that none of them has."""
     drafts = [draft for run in all_.runs for draft in run.drafts]
     for device in dict.fromkeys(draft.part.device.name for draft in drafts):
         own = [draft for draft in drafts if draft.part.device.name == device]
-        for name in sorted({name for draft in own for name in draft.bindings.absent}):
-            if all(name in d.bindings.absent for d in own) and (there := [d for d in own if name in d.bindings.found]):
-                missing = absent_fault(all_.doc, own[0].part.device, name, there[0].table.headers)
-                instead = f"{missing.fact}, so that it is read from {there[0].header(name)!r}"
-                yield replace(missing, fact=instead, cure="correct [columns], or leave it out there", severity=WARNING)
+        yield from ((own, name) for name in sorted(set.intersection(*(set(d.bindings.absent) for d in own))))
 
 
 def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
@@ -69,7 +71,7 @@ def nobody_speaks(all_: Assembly) -> Iterator[Fault]:
 
 def clocks_unknown(all_: Assembly) -> Iterator[Fault]:
     """Devices that nothing started together read the same moment at different times, which looks like whatever is missing."""
-    without = [(run, [d for d in run.drafts[1:] if not _clock_given(run, d)]) for run in all_.runs]
+    without = [(run, [d for d in run.drafts if not run.knows_clock_of(d)]) for run in all_.runs]
     devices = dict.fromkeys(d.part.device.name for _, drafts in without for d in drafts)
     if devices:
         runs = [run.name for run, drafts in without if drafts]
@@ -79,10 +81,6 @@ def clocks_unknown(all_: Assembly) -> Iterator[Fault]:
         zero = ", ".join(f"{name} = 0" for name in devices)
         cure = f"run `wheelchair sync`, or write clocks = {{ {zero} }} in a run whose devices one trigger started"
         yield Fault(FILE, None, None, fact, cure, WARNING)
-
-
-def _clock_given(run: Recorded, draft: Draft) -> bool:
-    return draft.part.device.name in run.entry.table("clocks")
 
 
 def rider_too_heavy(all_: Assembly) -> Iterator[Fault]:

@@ -281,7 +281,7 @@ def shared_samples(doc: Document, known: Known | None) -> Iterator[Fault]:
     files = {entry.place: {part.file for part in parts(doc, entry)} for entry in doc.entries}
     for holdout in (e for e in doc.entries if e.text("role") == "holdout"):
         for fit in (e for e in doc.entries if e.text("role") == "fit" and files[e.place] & files[holdout.place]):
-            if _start(fit) < _stop(holdout) and _start(holdout) < _stop(fit):
+            if _overlap(fit, holdout):
                 fact = f"{holdout.title} is held out but shares samples with run {fit.place + 1}, which is fitted"
                 yield doc.fault("run", fact, "separate them by from and to", holdout.place, WARNING)
 
@@ -291,9 +291,13 @@ def fitted_twice(doc: Document, known: Known | None) -> Iterator[Fault]:
     fitted = [(entry, {part.file for part in parts(doc, entry)}) for entry in doc.entries if entry.text("role") == "fit"]
     for i, (entry, files) in enumerate(fitted):
         for other, those in fitted[:i]:
-            if files and files == those and _start(entry) < _stop(other) and _start(other) < _stop(entry):
+            if files and files == those and _overlap(entry, other):
                 fact = f"{entry.title} has the samples of run {other.place + 1} again, and both are fitted"
                 yield doc.fault("run", fact, "remove one of them, or separate them by from and to", entry.place, WARNING)
+
+
+def _overlap(one: Entry, other: Entry) -> bool:
+    return _start(one) < _stop(other) and _start(other) < _stop(one)
 
 
 def _start(entry: Entry) -> float:

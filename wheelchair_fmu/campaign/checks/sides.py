@@ -12,9 +12,8 @@ import numpy as np
 
 from ...faults import WARNING, Fault, run_fault
 from ..channels import SIDES
-from ..clocks.smoothing import Smooth, smooth
+from ..clocks.smoothing import WIDTH, Smooth, smooth
 from ..document import FILE
-from ..draft import Draft
 from ..recorded import Recorded
 
 PLAIN = 0.5  # correlation from which a sign is told,
@@ -124,13 +123,9 @@ def _size(law: Law, factor: float) -> str:
 def _told(run: Recorded, law: Law) -> Told | None:
     """What the wheels say of the channel; None where nothing tells it, or the two do not fit one another."""
     needed = (*SIDES, law.channel)
-    if run.time is None or len(run.time) < FEWEST or not set(needed) <= run.channels.keys() or not on_one_clock(run, needed):
+    if not set(needed) <= run.channels.keys() or (grid := looked_at(run, needed)) is None:
         return None
-    if (np.diff(run.time) <= 0).any():
-        return None  # which has its own sentence
-    first = run.time <= run.time[0] + LONGEST
-    left, right, other = (smooth(run.time[first], run.channels[name][first]) for name in needed)
-    grid = np.arange(run.time[0], run.time[first][-1], STEP)
+    left, right, other = (smoothed(run, name) for name in needed)
     x, y = law.of_wheels(left, right, grid), law.of_channel(other, grid)
     there = np.isfinite(x) & np.isfinite(y)
     if there.sum() < FEWEST:
@@ -146,11 +141,27 @@ def _told(run: Recorded, law: Law) -> Told | None:
     return Told(correlation, slope / np.sqrt(least * most)) if off and abs(correlation) > CLOSE else None
 
 
-def on_one_clock(run: Recorded, names: Sequence[str]) -> bool:
+def looked_at(run: Recorded, names: Sequence[str]) -> np.ndarray | None:
+    """Times (n,) of a run's beginning at which these may be compared; None where its time or their clocks are not sure."""
+    if run.time is None or len(run.time) < FEWEST or not _on_one_clock(run, names):
+        return None
+    if (np.diff(run.time) <= 0).any():
+        return None  # which has its own sentence
+    return np.arange(run.time[0], run.time[_beginning(run.time)][-1], STEP)
+
+
+def smoothed(run: Recorded, name: str, width: float = WIDTH) -> Smooth:
+    """A channel or a push in a run's beginning."""
+    assert run.time is not None
+    first = _beginning(run.time)
+    return smooth(run.time[first], run.values[name][first], width)
+
+
+def _beginning(time: np.ndarray) -> np.ndarray:
+    return np.asarray(time <= time[0] + LONGEST)
+
+
+def _on_one_clock(run: Recorded, names: Sequence[str]) -> bool:
     """Are the clocks known of all devices that tell these? Turns to and fro look turned round where one is half a turn late."""
     telling = {draft.file: draft for draft in (run.draft_of(name) for name in names) if draft is not None}
-    return len(telling) == 1 or all(_clock_known(run, draft) for draft in telling.values())
-
-
-def _clock_known(run: Recorded, draft: Draft) -> bool:
-    return draft is run.drafts[0] or draft.part.device.name in run.entry.table("clocks")
+    return len(telling) == 1 or all(map(run.knows_clock_of, telling.values()))

@@ -10,10 +10,9 @@ import numpy as np
 
 from ...faults import WARNING, Fault, run_fault
 from ..channels import PUSHES, SIDES
-from ..clocks.smoothing import smooth
 from ..document import FILE
 from ..recorded import Recorded
-from .sides import FEWEST, LONGEST, STEP, on_one_clock
+from .sides import FEWEST, STEP, looked_at, smoothed
 
 SURE = 4.0  # standard errors of Fisher's z from which the sign of a partial correlation is told, and
 PLAIN = 0.5  # how large it has to be
@@ -70,14 +69,10 @@ def _told(run: Recorded) -> Turned | None:
     """None where pushes or speeds are not there, or not by one clock."""
     pushes = [next((n for n in pair if n in run.values), "") for pair in PUSHES.items()]
     needed = (*pushes, *SIDES)
-    if run.time is None or len(run.time) < FEWEST or not all(n in run.values for n in needed):
+    if not set(needed) <= run.values.keys() or (grid := looked_at(run, needed)) is None:
         return None
-    if not on_one_clock(run, needed) or (np.diff(run.time) <= 0).any():
-        return None
-    first = run.time <= run.time[0] + LONGEST
-    grid = np.arange(run.time[0], run.time[first][-1], STEP)
-    hands = np.stack([smooth(run.time[first], run.values[n][first], WIDTH).at(grid)[0] for n in pushes], axis=1)
-    left, right = (smooth(run.time[first], run.values[n][first], WIDTH).at(grid) for n in SIDES)
+    hands = np.stack([smoothed(run, n, WIDTH).at(grid)[0] for n in pushes], axis=1)
+    left, right = (smoothed(run, n, WIDTH).at(grid) for n in SIDES)
     speed, gain = 0.5 * (left[0] + right[0]), 0.5 * (left[1] + right[1])
     turn, more = left[0] - right[0], left[1] - right[1]  # to the right
     there = np.isfinite(hands).all(axis=1) & np.isfinite(gain)

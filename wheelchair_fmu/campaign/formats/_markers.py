@@ -1,12 +1,14 @@
-"""What can be odd about the markers of motion capture: names that stand there twice, and one that changed half-way."""
+"""Markers of motion capture as a table, and what is odd about them: names that stand there twice, one that changed half-way."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+import pandas as pd
 
 from ...faults import WARNING, Fault, run_fault
+from ...tables import FrameTable
 from ...units import UnitError, factor
 
 SOON = 0.5  # s after which a renamed marker is seen again, and how far it may be from where it was:
@@ -17,6 +19,19 @@ def doubled(file: str, names: Sequence[str], line: int | None = None) -> Iterato
     """A fault where two markers have one name."""
     for name in sorted({name for name in names if names.count(name) > 1})[:1]:
         yield run_fault(file, f"the marker {name} stands there {names.count(name)} times", "rename one of them", line)
+
+
+def table_of(
+    file: str, names: Sequence[str], unit: str, rate: str, time: np.ndarray, places: np.ndarray
+) -> tuple[FrameTable, list[Fault]]:
+    """A table of markers at these times (n,) from their coordinates (n, 3 markers), NaN while hidden, and what is odd."""
+    headers = ("time [s]", *(f"{name}.{axis} [{unit}]" for name in names for axis in "xyz"))
+    hidden = [name for i, name in enumerate(names) if np.isnan(places[:, 3 * i]).any()]
+    notes = [f"{len(names)} markers at {rate} Hz" if rate else f"{len(names)} markers"]
+    notes += [f"hidden at times: {', '.join(hidden)}"] if hidden else []
+    frame = pd.DataFrame(np.column_stack([time, places]), columns=list(headers))
+    table = FrameTable(file, headers, ("s", *[unit] * (3 * len(names))), tuple(notes), time=0, frame=frame)
+    return table, list(renamed(file, names, time, places.reshape(len(places), -1, 3), unit))
 
 
 def renamed(file: str, names: Sequence[str], time: np.ndarray, places: np.ndarray, unit: str) -> Iterator[Fault]:

@@ -7,17 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from ...dialect import decode, is_number
 from ...faults import run_fault
-from ...tables import FrameTable, read_bytes, unreadable
-from ._markers import doubled, renamed
+from ...tables import read_bytes, unreadable
+from ._markers import doubled, table_of
 from ._record import Format, Read
 from ._support import EMPTY, one
 
 _BEGINS = "PathFileType"
-_AXES = "xyz"
 
 
 def _recognises(path: Path, head: bytes) -> bool:
@@ -71,17 +69,11 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, about: Mapp
     if not rows:
         return one(file, "the file has a header but no rows", EMPTY)
     values = np.array(rows)
-    headers = ["time [s]", *(f"{name}.{axis} [{unit}]" for name in names for axis in _AXES)]
-    frame = pd.DataFrame(values[:, 1:], columns=headers)
-    units = ("s", *[unit] * (3 * len(names)))
-    hidden = [name for i, name in enumerate(names) if np.isnan(values[:, 2 + 3 * i]).any()]
-    notes = [f"{len(names)} markers at {about['DataRate']} Hz" if about.get("DataRate") else f"{len(names)} markers"]
-    notes += [f"hidden at times: {', '.join(hidden)}"] if hidden else []
-    faults = list(renamed(file, names, values[:, 1], values[:, 2:].reshape(len(values), -1, 3), unit))
+    table, faults = table_of(file, names, unit, about.get("DataRate", ""), values[:, 1], values[:, 2:])
     if np.isnan(values[:, 1]).any():
         first = places[int(np.flatnonzero(np.isnan(values[:, 1]))[0])]
         faults.append(run_fault(file, "the time is empty", "export it again", first))
-    return FrameTable(file, tuple(headers), units, tuple(notes), time=0, frame=frame), faults
+    return table, faults
 
 
 FORMAT = Format(

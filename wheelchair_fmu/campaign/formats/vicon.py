@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from ...dialect import decode, is_number
 from ...faults import run_fault
-from ...tables import FrameTable, read_bytes, unreadable
+from ...tables import read_bytes, unreadable
 from ._defined import first_lines
-from ._markers import doubled, renamed
+from ._markers import doubled, table_of
 from ._record import Format, Read
 from ._support import EMPTY, one
 
@@ -66,13 +65,7 @@ def _table(file: str, lines: list[str], names: list[str], unit: str, rate: float
     if not rows:
         return one(file, "the file has a header but no frames", EMPTY)
     values = np.array(rows)
-    time, places = (values[:, 0] - 1) / rate, values[:, _FRAME:]
-    headers = ("time [s]", *(f"{name}.{axis} [{unit}]" for name in names for axis in "xyz"))
-    hidden = [name for i, name in enumerate(names) if np.isnan(places[:, 3 * i]).any()]
-    notes = [f"{len(names)} markers at {rate:g} Hz", *([f"hidden at times: {', '.join(hidden)}"] if hidden else [])]
-    faults = list(renamed(file, names, time, places.reshape(len(places), -1, 3), unit))
-    frame = pd.DataFrame(np.column_stack([time, places]), columns=list(headers))
-    return FrameTable(file, headers, ("s", *[unit] * (3 * len(names))), tuple(notes), time=0, frame=frame), faults
+    return table_of(file, names, unit, f"{rate:g}", (values[:, 0] - 1) / rate, values[:, _FRAME:])
 
 
 FORMAT = Format(
