@@ -28,7 +28,6 @@ static const double CREEP = 0.002;      /* m/s, within which rolling resistance 
 static const double SWIVEL_CREEP = 0.05; /* rad/s, the same for the swivel bearing */
 static const double SCRUB_CREEP = 0.01; /* rad/s, the same for the yaw of the patches */
 static const double TURN_STILL = 0.02;  /* m/s, below which a wheel counts as standing where its patch is turned */
-static const double TURN_LENGTH = 0.6, CASTER_TURN_LENGTH = 0.1; /* m, radius of a path round which a patch half slides */
 static const double PIVOT_LENGTH = 0.04; /* m, the same of a patch that slides easily */
 static const double STILL = 1e-3;       /* m/s, rounds |v_x| */
 static const double DAMPING = 0.01;     /* s, of the carcass of a standing tyre */
@@ -158,7 +157,7 @@ static void rates(const double *p, const double *s, const double *F, const doubl
             double trail = p[P_C_m_lambda] / p[P_C_lambda] / sqrt(1 + p[P_inv_slip] * p[P_inv_slip] * slip * slip)
                 / (p[P_pressure] * sqrt(p[P_pressure]));
             double moment = forward(vx) * (-trail * (t.force - p[P_C_phi] * camber[i]) + p[P_C_m_phi] * camber[i])
-                + turned(p[P_turn], TURN_LENGTH, r, sqrt(vx * vx + vy * vy))
+                + turned(p[P_turn], p[P_turn_length], r, sqrt(vx * vx + vy * vy))
                 + pivoted(p[P_pivot], PIVOT_LENGTH, r, sqrt(vx * vx + vy * vy));
             double rolling = tanh(rolled / CREEP);
             double soft = 1 - SOFTENED + SOFTENED / p[P_pressure];
@@ -193,7 +192,7 @@ static void rates(const double *p, const double *s, const double *F, const doubl
             MZ += a * fy - y_f[i] * fx - bearing;
             d[E_FR + i] = t.deflection_rate;
             d[SWIVEL_R + 2 * i] = rate;
-            d[SWIVEL_RATE_R + 2 * i] = (bearing - p[P_trail] * t.force + turned(p[P_turn_f], CASTER_TURN_LENGTH, r + rate, vx))
+            d[SWIVEL_RATE_R + 2 * i] = (bearing - p[P_trail] * t.force + turned(p[P_turn_f], p[P_turn_length_f], r + rate, vx))
                 / p[P_I_swivel];
         }
         { /* the spin of both rear wheels counts along their headings only */

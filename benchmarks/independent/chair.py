@@ -78,6 +78,8 @@ class Chair:
     lean_damping: float = 0.3
     lean_drag: float = 0.5
     pressure: float = 1.0
+    turn_length: float = 0.6  # radius of a wheel's path round which its patch, that resists being turned, half slides
+    turn_length_f: float = 0.1
     patch_load: float = 0.0  # 1: the floor carries the casters at their patches, 0: under their pivots, as in the paper
     # Effects, off at zero.
     load_exponent: float = 0.0

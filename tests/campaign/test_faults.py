@@ -275,13 +275,35 @@ CASTERS = {"start.caster_l": (-3.2, 3.2), "start.caster_r": (-3.2, 3.2)}
                 "turn is meant, write -1.5708"
             ],
         ),
+        (
+            "0.67",
+            [
+                "note: campaign.toml line 18: run 1 (a.csv): start.caster_l = 0.67 is 38°, as it is in rad; if a share of a "
+                "turn is meant, write -2.0944"
+            ],
+        ),
+        (
+            "1.0",
+            [
+                "note: campaign.toml line 18: run 1 (a.csv): start.caster_l = 1 is 57°, as it is in rad; if a share of a "
+                "turn is meant, write 0.0000"
+            ],
+        ),
         ("0.48", []),
+        ("0.12", []),
     ],
 )
 def test_an_angle_of_a_caster_in_another_unit(campaign, said, told):
     """Half a turn and 0.5 rad are one number: what a share of a turn would be written as is said to be an angle in rad."""
     runs = RUNS.replace("u0 = 1.0\n", f"u0 = 1.0\nset = {{ start.caster_l = {said} }}\n", 1)
     assert lines(campaign(runs=runs), known_parameters=KNOWN | CASTERS) == told
+
+
+def test_a_place_that_changes_nothing_is_said(campaign):
+    """A gyro and a wheel's sensor read the same wherever they sit; an accelerometer does not."""
+    said = lines(campaign(head=HEAD + "[sensor]\nyaw_rate = { at = [0.1, 0] }\na_x = { at = [0.1, 0] }\n"))
+    (line,) = [s for s in said if "[sensor]" in s]
+    assert line.endswith("[sensor] yaw_rate.at changes nothing: yaw_rate reads the same wherever it sits; leave it out")
 
 
 # --- recordings ------------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from math import degrees, hypot, isfinite, pi, remainder
+from math import copysign, degrees, hypot, isfinite, pi, remainder
 from typing import Any
 
 from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
@@ -13,7 +13,7 @@ from ...model.former import clash, former, renamed
 from ...units import UnitError, quantity
 from .. import body
 from ..axes import ISO, SAE
-from ..channels import BY_NAME, CHANNEL_NAMES, SOURCES, TIME, Channel
+from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
 from ..derived import ENDS
 from ..devices import devices, parts, point, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
@@ -24,7 +24,9 @@ from ..recorded import PUSHES_CLOCK
 from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
 
 CASTERS = ("start.caster_l", "start.caster_r")
-TURNS = (0.25, 0.5)  # what a quarter and half a turn would be written as; a caster turned by more is turned the other way
+TURNS = tuple(sorted({n / d for d in (3, 8) for n in range(1, d + 1)}))  # what thirds and eighths of a turn would be written as
+ROUNDED = 0.005  # by which a third may be
+PLACED = frozenset(name for names in MOUNTED.values() for name in names)  # channels for which it matters where they are read
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
 FARTHEST = 1.2  # m from the centre of mass, of anything on a chair: as long as a chair is in all
@@ -185,6 +187,9 @@ def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
             yield doc.fault(f"sensor.{name}", f"[sensor] {name} = {entry!r} is no point", cure)
         elif hypot(*(point_of(entry) or ())) > FARTHEST:
             yield doc.fault(f"sensor.{name}", f"[sensor] {name}.at = {entry['at']} {OFF}", "write it in m")
+        elif name not in PLACED:
+            fact = f"[sensor] {name}.at changes nothing: {name} reads the same wherever it sits"
+            yield doc.fault(f"sensor.{name}", fact, "leave it out", severity=NOTE)
     for place, table in enumerate(doc.recordings):
         if hypot(*(point(table.get("at")) or ())) > FARTHEST:
             fact = f"{_device_title(place, table)}: at = {table['at']} {OFF}"
@@ -381,9 +386,18 @@ def _parameter(
         if not lower <= plain <= upper:
             fact = f"{title}{name} = {plain:g} is outside {lower:g} to {upper:g}"
             yield doc.fault(path, fact, "correct it; parameters are in SI units, angles in rad, pressures in bar", place)
-        elif name in CASTERS and abs(plain) in TURNS:
+        elif name in CASTERS and (turns := _share_of_a_turn(plain)):
             fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
-            yield doc.fault(path, fact, f"if a share of a turn is meant, write {2 * pi * plain:.4f}", place, NOTE)
+            angle = remainder(2 * pi * turns, 2 * pi)
+            yield doc.fault(path, fact, f"if a share of a turn is meant, write {angle:.4f}", place, NOTE)
+
+
+def _share_of_a_turn(angle: float) -> float:
+    """The third or eighth of a turn that a number looks like, with its sign; 0.0 if it looks like none. One that is written as
+    rad as a rule has two decimals, and an eighth of a turn has three."""
+    share = min(TURNS, key=lambda s: abs(s - abs(angle)))
+    thirds = abs(share * 3 - round(share * 3)) < 1e-9 and share < 1
+    return copysign(share, angle) if abs(share - abs(angle)) < (ROUNDED if thirds else 1e-9) else 0.0
 
 
 def _in_number(name: str, value: Any) -> str:
