@@ -23,6 +23,10 @@ SWINGING: tuple[tuple[tuple[str, ...], str], ...] = (  # asked by a law of caste
     ((), "slow"),
     (("rolling_resistance_asymmetry",), "everyday"),
     (("pivot_torque",), "one-handed"),
+    (("rolling_resistance_asymmetry",), "slow"),
+    (("turn_slip",), "slow"),
+    (("pivot_torque",), "slow"),
+    (("scrub_torque",), "slow"),
 )
 NEAR_TIES = ("aerodynamic_drag", "rolling_resistance_speed")  # on straight runs, where nobody can tell them apart
 

@@ -130,3 +130,15 @@ def test_nothing_is_missing_of_casters_that_nobody_measured(tmp_path, seed):
 def test_with_casters_that_swing_on_both_sides_nothing_is_missing(tmp_path, manoeuvres, noise, seed):
     found = diagnose(read(make(tmp_path / "c", {}, manoeuvres=manoeuvres, noise=noise, seed=seed, chair=AT_PATCHES)), CHAIR)
     assert found.verdict in ("adequate", "cannot_see", "small") and not found.included
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", [5, 7])
+def test_a_pivot_torque_is_found_of_casters_that_nobody_measured(tmp_path, seed):
+    """Without it a fit bends the casters, starts runs elsewhere and takes pushes for wrong; no step leads back from there."""
+    hidden = {"pivot_torque": {"M": 1.5}}
+    found = diagnose(read(make(tmp_path / "c", hidden, manoeuvres="slow", seed=seed, chair=AT_PATCHES)), UNMEASURED)
+    assert found.verdict in ("missing", "tie") and "pivot_torque" in found.effects
+    assert found.ladder[-1].fit < 1.1 and found.ladder[-1].heldout < 1.1
+    low, high = found.intervals["effect.pivot_torque.M"]
+    assert low <= 1.5 <= high

@@ -10,7 +10,7 @@ import pytest
 
 from tests.inference.linear import evidence
 from wheelchair_fmu.errors import SimulationError
-from wheelchair_fmu.inference.decision.foretold import on_led_runs, worsened
+from wheelchair_fmu.inference.decision.foretold import on_led_runs, worse, worsened
 from wheelchair_fmu.inference.residual.physical import ChannelError
 from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import selection
@@ -49,6 +49,30 @@ def test_a_position_that_is_further_off_by_chance_is_not_worse(after, said):
 def test_where_nothing_was_put_in_or_held_out_nothing_is_said():
     assert not worsened([step("nominal", u=0.01), step("calibrated", u=0.5)])
     assert not worsened([Step("nominal", 2.0, np.nan), Step("calibrated", 1.2, np.nan), Step("+drag", 1.0, np.nan)])
+
+
+@pytest.mark.parametrize(
+    ("after", "is_worse"),
+    [
+        (dict(u=0.025, yaw_rate=0.02), True),  # a quarter more of both
+        (dict(u=0.021, yaw_rate=0.017), False),  # a twentieth
+        (dict(u=0.03, yaw_rate=0.0107), False),  # half as much more of one, and two thirds of the other: as good, all in all
+        (dict(u=0.03, yaw_rate=0.014), True),
+    ],
+)
+def test_a_model_is_worse_by_all_its_channels_together(after, is_worse):
+    assert worse(step("calibrated", u=0.02, yaw_rate=0.016), step("+drag", **after)) == is_worse
+
+
+def test_without_held_out_runs_nothing_is_worse():
+    assert not worse(Step("calibrated", 1.2, np.nan), Step("+drag", 1.0, np.nan))
+
+
+def test_a_position_that_drifts_by_chance_makes_nothing_worse():
+    before, last = (
+        replace(step(name, x=x), heldout_whitened={"x": w}) for name, x, w in (("c", 0.0145, 1.04), ("+m", 0.0295, 1.01))
+    )
+    assert not worse(before, last)
 
 
 def led(fails: bool = False) -> Some:

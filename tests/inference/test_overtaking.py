@@ -185,7 +185,7 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
     ladder = ("nominal", "calibrated", "+drag")
     foot = Selection(models, top("drag", rms=1.15), ladder, 0.0, print, rounds=(Some(effects=("drag",)),))
     helped = replace(foot, ladder=(*ladder, "+part"), helping=frozenset({"toe"}))
-    found = iter([lambda now: (helped, Some(effect="toe", fit=None)), lambda now: (now, None)])
+    found = iter([lambda now: (helped, Some(effect="toe", fit=None, afresh=False)), lambda now: (now, None)])
     monkeypatch.setattr(Selection, "_found", lambda self: next(found)(self))
     monkeypatch.setattr(Selection, "_looked_beside", lambda self: (self, False))
     monkeypatch.setattr(Selection, "_step", lambda self: replace(self, ladder=(*self.ladder, "+toe")))

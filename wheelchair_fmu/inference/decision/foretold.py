@@ -43,6 +43,14 @@ def worsened(ladder: Sequence[Step]) -> list[str]:
     ]
 
 
+def worse(calibrated: Step, last: Step) -> bool:
+    """Does a model foretell runs that were held out clearly worse than the calibrated one, over all channels: by the geometric
+    mean of its errors over those?"""
+    before, after = (pooled(step.heldout_errors.values()) for step in (calibrated, last))
+    both = [c for c in after if c in before and before[c].rms > 0 and after[c].rms > 0 and not _drifted(c, calibrated, last)]
+    return bool(both) and float(np.mean([np.log(after[c].rms / before[c].rms) for c in both])) > np.log(WORSE)
+
+
 def _drifted(channel: str, calibrated: Step, last: Step) -> bool:
     """Is a position or heading further off by chance alone? What pushes a chair a little adds up there without end, and by what
     each reading adds to those before it the last model is not worse."""

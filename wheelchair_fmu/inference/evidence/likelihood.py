@@ -204,7 +204,7 @@ class Likelihood:
             found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
             pushed = self._errors_of_pushes(run)
-            found = self._evaluated(run, values, by, at, None, rounds, pushed, self._may_flip and rounds > 0)
+            found = self._evaluated(run, values, by, at, None, rounds, pushed, self.may_flip and rounds > 0)
             if found.pushed is not None and found.pushed is not pushed:
                 self.paths[run.name] = found.pushed
             if not np.array_equal(found.start, at):
@@ -212,7 +212,7 @@ class Likelihood:
         return self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
 
     @property
-    def _may_flip(self) -> bool:
+    def may_flip(self) -> bool:
         """May casters swing round, on a run that no other forces lead? While a chair backs up, they stand as pencils on their
         tips: noise of the pushes decides when they swing, and so where the chair goes. Slopes about any other path than its own
         say little of it, so all is linearised about the likeliest errors of the pushes, which are kept for the next values."""
@@ -221,7 +221,7 @@ class Likelihood:
     def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
         """As they were found, (n, nq), for a model whose casters may flip."""
         found = self.paths.get(run.name)
-        return found if self._may_flip and found is not None and len(found) == len(run.time) else None
+        return found if self.may_flip and found is not None and len(found) == len(run.time) else None
 
     def _evaluated(
         self,

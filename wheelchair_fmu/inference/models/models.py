@@ -124,6 +124,11 @@ class Models:
             self._heldout[hypothesis] = self.heldout(self.likelihood(effects), found)
         return Model(hypothesis.effects, found, self._heldout[hypothesis])
 
+    def afresh(self) -> Models:
+        """The same models with runs that start where the campaign has them, and no errors of pushes known, as if no model had
+        been fitted yet: what a model found of either that lacks something large leads another one astray."""
+        return replace(self, setting=replace(self.setting, starts={}, paths={}))
+
     def rival_of(self, effect: str, base: Model) -> Model:
         """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
         same = self.doubles.get(effect)

@@ -37,6 +37,7 @@ class Candidate:
     stretched: bool = False  # to a bound, beyond which no chair is: what asks for more of it is something else
     bounded: float = 0.0  # −2 log likelihood that its lack costs by its own slopes, all other values being within their bounds
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
+    afresh: bool = False  # its runs start where the campaign has them, and not where the model without it wants them
     by_errors: bool = False  # its fall is by standard errors, which allow for how large and how correlated residuals are
     policy: SearchPolicy = DEFAULT
 

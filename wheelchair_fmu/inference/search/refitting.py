@@ -13,6 +13,7 @@ from ...quantities import Parameter
 from ..estimation.fit import Fit
 from ..estimation.starts import most_promising, outlook
 from ..evidence.evidence import Evidence
+from ..evidence.initial_state import TUNING
 from ..evidence.likelihood import Likelihood
 from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
@@ -46,7 +47,12 @@ def candidate(
     starts = _starts(models, likelihood, base.fit, s, least)
     if starts:
         models.say(f"refitting {effect}")
-    found = _best_of(models, effects, starts, min(rival, base.fit.misfit))  # which it has as a special case
+    rival = min(rival, base.fit.misfit)  # which it has as a special case
+    found, anew = _best_of(models, effects, starts, rival), _afresh(models, base, s, least, rival)
+    afresh = anew is not None and (found is None or anew.misfit < found.misfit)
+    if afresh:
+        found, models = anew, models.afresh()
+        likelihood = models.likelihood(effects)
     if found is None:
         return None
     found = models.compared(models.started(effects, found), effect, base.fit)
@@ -54,10 +60,12 @@ def candidate(
     if risen(base.fit, found):
         return None  # no fit: the model without the effect is one with it
     try:
-        held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
+        held = models.heldout(likelihood, found, tune_start=TUNING if afresh else 0)
+        held = likelihood.restarted(held, found.values)
     except SimulationError:
         return None  # a model that cannot be simulated on what was held out foretells nothing of it
-    return judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
+    judged = judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
+    return replace(judged, afresh=afresh)
 
 
 def risen(before: Fit, after: Fit) -> bool:
@@ -89,6 +97,33 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
         return models.refit(effects, best.values) if best and constants else best
     except SimulationError:
         return best  # by the law as its record has it
+
+
+def _afresh(models: Models, base: Model, s: Screened, least: float, rival: float) -> Fit | None:
+    """The same from the best of several sizes with nothing kept of a model that lacks something large: neither its bent values,
+    nor where it has runs start, nor what it took for errors of the pushes. Where casters may swing round, these send a run
+    another way altogether, and no step leads back from there."""
+    w, effects = models.factory, (*base.effects, s.score.effect)
+    fresh = models.afresh()
+    likelihood = fresh.likelihood(effects)
+    unbent = at_prior_mean(likelihood, base.fit, BENT) if likelihood.may_flip and s.score.drop >= least / BEYOND else []
+    if not unbent or s.score.effect in w.groups:
+        return None
+    own = w.parameters(s.score.effect)
+    sizes = sizes_to_try(s, [w.records[n] for n in own], w.unfitted(own))
+    tries = [{**unbent[0], **dict(zip(own, map(float, size), strict=True))} for size in sizes]
+
+    def misfit(values: dict[str, float]) -> float:
+        try:
+            return likelihood.evidence(w.campaign.fit, values).misfit
+        except SimulationError:
+            return math.inf
+
+    start = tries[int(np.argmin(parallel_map(misfit, tries)))]
+    try:
+        return fresh.restarted(likelihood, fresh.names(effects), start, rival=rival)
+    except SimulationError:
+        return None
 
 
 def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, least: float) -> list[Start]:

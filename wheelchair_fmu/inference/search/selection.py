@@ -89,7 +89,8 @@ class Selection:
         """The model with what the last round found, and without what that makes needless; None if the error rises once runs
         start where this model wants them, or it cannot run from there."""
         try:
-            models, top = self.models.settled((*self.rounds[-1].effects, best.effect), best.fit)
+            known = self.models.afresh() if best.afresh else self.models
+            models, top = known.settled((*self.rounds[-1].effects, best.effect), best.fit)
         except SimulationError:
             return None
         if risen(self.top.fit, top.fit):
