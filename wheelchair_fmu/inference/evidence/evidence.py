@@ -12,6 +12,7 @@ from ...campaign import BY_NAME, Run, pace
 from ..parallel import parallel_map
 from .initial_state import starts_of, uncertain
 from .local import Marginal, read
+from .noise_model import effort
 
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 
@@ -79,6 +80,11 @@ class RunEvidence:
     def pace(self) -> np.ndarray:
         """Speed (n,) at which the chair rolls: `campaign.pace`, once for all strengths of forces that are tried."""
         return pace(self.run)
+
+    @cached_property
+    def effort(self) -> np.ndarray:
+        """How hard (n,) in N hands push about each moment: `noise_model.effort`, once for all strengths as well."""
+        return effort(self.run)
 
     @property
     def misfit(self) -> float:
