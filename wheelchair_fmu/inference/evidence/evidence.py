@@ -47,6 +47,21 @@ class RunEvidence:
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
     foretelling: np.ndarray | None = None  # (m,) of a run that was held out, −2 log of how likely each block of it was
 
+    @cached_property
+    def finite(self) -> np.ndarray:
+        """Which innovations (n, nz) there are."""
+        return np.isfinite(self.r)
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """The sample (m,) of each of these."""
+        return np.nonzero(self.finite)[0]
+
+    @cached_property
+    def step(self) -> float:
+        """Usual time in s between samples."""
+        return float(np.median(np.diff(self.run.time)))
+
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
         good = np.isfinite(self.r)
@@ -152,11 +167,11 @@ class Evidence:
 
     @cached_property
     def r(self) -> np.ndarray:
-        return np.concatenate([e.r[np.isfinite(e.r)] for e in self.runs] or [np.empty(0)])
+        return np.concatenate([e.r[e.finite] for e in self.runs] or [np.empty(0)])
 
     @cached_property
     def S(self) -> np.ndarray:
-        return np.concatenate([e.S[np.isfinite(e.r)] for e in self.runs] or [np.empty((0, len(self.by)))])
+        return np.concatenate([e.S[e.finite] for e in self.runs] or [np.empty((0, len(self.by)))])
 
     @cached_property
     def misfit(self) -> float:
@@ -183,8 +198,7 @@ class Evidence:
         """Each run, which of its innovations (n, nz) are finite, and where these stand in `r` and `S`."""
         at = 0
         for e in self.runs:
-            good = np.isfinite(e.r)
-            yield e, good, slice(at, at := at + int(good.sum()))
+            yield e, e.finite, slice(at, at := at + len(e.rows))
 
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
