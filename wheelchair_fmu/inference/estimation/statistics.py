@@ -71,14 +71,14 @@ def between_runs(found: Fit) -> np.ndarray:
 
 def degrees_between_runs(found: Fit, at: int) -> float:
     """Degrees of freedom of one of these variances, by Satterthwaite: one less than there are runs where all decide alike, and
-    fewer where a few of them decide most (Bell and McCaffrey 2002)."""
+    fewer where a few of them decide most (Bell and McCaffrey 2002). One of what no run tells anything of."""
     known, squares, pulls = _inverse(found), [], []
     for _, _, R, root in _decided(found, known):
         weight = root @ (R @ known[:, at])  # of the run's residuals in the estimate
         squares.append(float(weight @ weight))
         pulls.append(R.T @ weight)
     G = np.diag(squares) - np.array(pulls) @ known @ np.array(pulls).T
-    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G)))
+    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G))) if G.any() else 1.0
 
 
 def _decided(found: Fit, known: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
