@@ -71,9 +71,10 @@ def robust_variance(evidence: Evidence, s: np.ndarray, r: np.ndarray) -> np.ndar
     """Variance (k, k) of sᵀ r, within runs: Newey and West's with lags up to LAG, of what an AR(1) law leaves of each product,
     and from there back (Andrews and Monahan 1992), as lags alone see too little of noise that lasts."""
     total, terms = np.zeros((s.shape[1], s.shape[1])), s * r[:, None]
-    for e, _, part in evidence.parts():
-        q = np.stack([np.bincount(e.rows, column, minlength=len(e.r)) for column in terms[part].T], axis=1)
-        total += _long_run_variance(q, max(1, round(LAG / e.step)))
+    for e, good, part in evidence.parts():
+        sample = np.nonzero(good)[0]
+        q = np.stack([np.bincount(sample, column, minlength=len(e.r)) for column in terms[part].T], axis=1)
+        total += _long_run_variance(q, max(1, round(LAG / float(np.median(np.diff(e.run.time))))))
     return total
 
 

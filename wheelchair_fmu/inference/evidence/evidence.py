@@ -52,16 +52,6 @@ class RunEvidence:
         """Which innovations (n, nz) there are."""
         return np.isfinite(self.r)
 
-    @cached_property
-    def rows(self) -> np.ndarray:
-        """The sample (m,) of each of these."""
-        return np.nonzero(self.finite)[0]
-
-    @cached_property
-    def step(self) -> float:
-        """Usual time in s between samples."""
-        return float(np.median(np.diff(self.run.time)))
-
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
         good = np.isfinite(self.r)
@@ -198,7 +188,7 @@ class Evidence:
         """Each run, which of its innovations (n, nz) are finite, and where these stand in `r` and `S`."""
         at = 0
         for e in self.runs:
-            yield e, e.finite, slice(at, at := at + len(e.rows))
+            yield e, e.finite, slice(at, at := at + int(e.finite.sum()))
 
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""
