@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import find_peaks
 
 from wheelchair_fmu.campaign.clocks import Signal, alike, offsets
+from wheelchair_fmu.campaign.clocks.lag import summits
 from wheelchair_fmu.campaign.clocks.scatter import long_run
 
 from .riding import coloured, ride, strokes
@@ -126,6 +128,15 @@ def test_drift_is_told_where_the_record_is_long_and_left_alone_where_it_is_short
     assert long.drift == pytest.approx(120e-6, abs=4 * long.drift_se) and long.drift_se < 30e-6
     assert long.offset == pytest.approx(0.4, abs=4 * long.se)
     assert short.drift == 0.0
+
+
+@pytest.mark.parametrize("levels", [2, 3, 10])
+def test_summits_of_a_profile_are_scipys_peaks_flat_ones_by_their_middle(levels):
+    rng = np.random.default_rng(levels)
+    for n in (1, 2, 3, 4, 50, 200):
+        heights = rng.integers(0, levels, n).astype(float)
+        np.testing.assert_array_equal(summits(heights), find_peaks(heights)[0])
+    assert summits(np.array([0.0, 2.0, 2.0, 2.0, 1.0, 3.0])).tolist() == [2]
 
 
 def test_gaps_are_not_read():

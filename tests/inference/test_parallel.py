@@ -39,3 +39,15 @@ def test_one_alone_leaves_the_cores_to_what_is_in_it():
 def test_a_fault_in_one_thing_is_told():
     with pytest.raises(ZeroDivisionError):
         parallel_map(lambda n: 1 / n, [1, 0, 2])
+
+
+def test_of_several_faults_the_first_in_the_order_of_things_is_told():
+    def do(n: int) -> int:
+        if n > 2:
+            raise ValueError(n)
+        return n
+
+    for _ in range(20):
+        with pytest.raises(ValueError, match=r"^3$"):
+            parallel_map(do, range(12), size=lambda n: n)
+    assert parallel_map(do, []) == []

@@ -22,6 +22,7 @@ from wheelchair_fmu.inference.estimation.statistics import (
     between_runs,
     correlation_time,
     decisive,
+    degrees_between_runs,
     held_out_gain,
     margin,
     resampled_totals,
@@ -165,6 +166,16 @@ def test_between_runs_alike_it_is_the_scatter_of_their_own_estimates():
     slope = found.evidence.runs[0].S[:, 0, :]
     off = np.array([np.linalg.lstsq(slope, e.r[:, 0], rcond=None)[0] for e in found.evidence.runs])
     np.testing.assert_allclose(between_runs(found), off.T @ off / (5 * 4), rtol=1e-9)
+
+
+def test_of_what_only_a_prior_knows_runs_have_nothing_to_differ_in():
+    """As of how fast a body swings that does not swing at all. Where runs decide alike, degrees are one less than there are."""
+    rng = np.random.default_rng(4)
+    slope = signals(rng, 1, 100, 2)[0] * [1.0, 0.0]
+    found = least_squares([noise(rng, (100, 1)) for _ in range(5)], [slope] * 5, NAMES[:2], prior_sd=np.array([np.inf, 0.25]))
+    assert degrees_between_runs(found, 0) == pytest.approx(4)
+    assert degrees_between_runs(found, 1) == 1.0
+    assert between_runs(found)[1, 1] == 0.0
 
 
 def test_few_runs_are_no_reason_to_be_sure_nor_are_many_to_doubt():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 from importlib import import_module
 from keyword import iskeyword
@@ -97,4 +98,5 @@ def wheelchair(
 def main(words: list[str] | None = None) -> None:
     """Run the command line, or these words of one, and exit with its code."""
     gc.set_threshold(COLLECTED)
+    atexit.register(gc.freeze)  # to look through all of them once more, only to end, takes a quarter of a second
     app(words, prog_name="wheelchair")

@@ -7,13 +7,14 @@ import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import prod
 
 import numpy as np
 
 from ..errors import SimulationError
 from .innovations import MOST, Disturbance, FilterRecord, Noise, NoiseRecord, Whitener, noise_arrays, steps
 from .sensitivities import DerivativesRecord, Sensitivities
-from .simulate import refuse_unrest, stopped
+from .simulate import stopped
 
 KINDS = {"clock": 0, "baseline": 1}
 UNBOUNDED = 5  # status: see evaluation.h
@@ -180,6 +181,7 @@ class Evaluator:
         self.of, self.tolerance = sensitivities, tolerance
         self._speeds = [i for i, s in enumerate(sensitivities.model.states) if s.name in ("u", "v")]
         self._names = [p.name for p in sensitivities.model.parameters]
+        self._states, self._results = sensitivities.model.x.numel(), sensitivities.model.y.numel()
 
     def evaluate(
         self,
@@ -199,7 +201,7 @@ class Evaluator:
         that is not 0. One that `follows` is linearised about the likeliest errors of its pushes, where slopes do not hold
         as far as these lead. Raises SimulationError where the model cannot go on.
         """
-        refuse_unrest(self.of.model, run.inputs, self.of.moving)
+        self.of.rest.refuse_unrest(run.inputs)
         place = _Place(self, run, values, by)
         place.view("start", (len(start),), "own")[:] = start
         place.view("path", place.path)[:] = 0.0 if path is None else path
@@ -221,8 +223,8 @@ class _Place:
     def __init__(self, of: Evaluator, run: Recording, values: Values, by: Sequence[str]):
         self.run, self.n, self.nz = run, len(run.time), run.readings.shape[1]
         self.library = of.of.library
-        model, names = of.of.model, of._names
-        self.nx, self.ny, self.ns, self.k = model.x.numel(), model.y.numel(), len(of.of.sensors), len(by) + len(run.starts)
+        names = of._names
+        self.nx, self.ny, self.ns, self.k = of._states, of._results, len(of.of.sensors), len(by) + len(run.starts)
         self.nd, self.l = 0 if run.unknown is None else run.unknown.count, len(run.constants)
         size = self.nx + len(run.pushes) + self.nd + self.nz
         if size > MOST:
@@ -260,8 +262,8 @@ class _Place:
         lay = self.library.wc_evaluation_room
         lay(ctypes.byref(recording), ctypes.byref(self.record), None, None, rooms)
         self.kept, self.work = (np.empty(room) for room in rooms)
-        blocks = (ctypes.c_void_p(b.ctypes.data) for b in (self.kept, self.work))
-        lay(ctypes.byref(recording), ctypes.byref(self.record), *blocks, rooms)
+        self._blocks = [(b, b.ctypes.data) for b in (self.kept, self.work)]
+        lay(ctypes.byref(recording), ctypes.byref(self.record), *(ctypes.c_void_p(at) for _, at in self._blocks), rooms)
 
     @property
     def records(self) -> tuple[object, ...]:
@@ -269,9 +271,9 @@ class _Place:
 
     def view(self, name: str, shape: tuple[int, ...], of: str = "") -> np.ndarray:
         """An array of the evaluation, or of a record in it, where it lies."""
-        address, count = getattr(getattr(self.record, of) if of else self.record, name), int(np.prod(shape))
-        for block in (self.kept, self.work):
-            first = (address - block.ctypes.data) // 8
+        address, count = getattr(getattr(self.record, of) if of else self.record, name), prod(shape)
+        for block, at in self._blocks:
+            first = (address - at) // 8
             if first >= 0 and first + count <= len(block):
                 return block[first : first + count].reshape(shape)
         raise AssertionError(f"{name} is nowhere")

@@ -171,6 +171,7 @@ class Whitener:
         shapes = {"B": (n - 1, nx, nq), "C": (n - 1, nx, nq), "H": (n, nz, nx), "D": (n, nz, nq), "input_sd": (n, nq)}
         shapes |= {"input_phi": (n - 1, nq), "phi": (n - 1, nz), "common": (nq, nq)}
         self.arrays |= {name: np.empty(shape) for name, shape in shapes.items()}
+        self.__dict__.pop("_filter", None)  # which is of the arrays that were
         said = noise_arrays(self.time, self.noise, self._steps, unknown)
         given = {"pushes": self._at, "which": self._which, **said}
         record = NoiseRecord(self.recorded, nz, nd, **{name: a.ctypes.data for name, a in given.items()})
@@ -178,6 +179,7 @@ class Whitener:
         slopes = _Slopes(by["by_push"].shape[2], by["by_state"].shape[1], **{name: a.ctypes.data for name, a in by.items()})
         filter_ = self._filter
         _library().wc_compose(ctypes.byref(record), ctypes.byref(slopes), ctypes.c_long(n), ctypes.byref(filter_))
+        filter_.sd = self.arrays["sd"].ctypes.data  # what was said is gone after this
         self._keep()
 
     def _design(self) -> None:
@@ -188,7 +190,7 @@ class Whitener:
         )
         self.logdet += self._of_kinks
 
-    @property
+    @cached_property
     def _of_kinks(self) -> float:
         """What readings about a rest are worth, as if they were as expected."""
         return float(self.kinks.sum(axis=0) @ (1 + 2 * np.log(self.noise.readings)))
@@ -213,14 +215,17 @@ class Whitener:
 
     def _composed(self, disturbance: Disturbance) -> Whitener:
         """The same but for its gains, which are those of the forces that were."""
-        steps = self._steps  # which both have
+        steps, of_kinks = self._steps, self._of_kinks  # which both have
         other = object.__new__(Whitener)
-        other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays), "_steps": steps}
+        other.__dict__ = {**self.__dict__, "arrays": dict(self.arrays), "_steps": steps, "_of_kinks": of_kinks}
         other.__dict__.pop("spread", None)
         other._compose(disturbance)
         return other
 
-    @property
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "_filter"}  # addresses are of this process
+
+    @cached_property
     def _filter(self) -> FilterRecord:
         return FilterRecord(*self.size, **{name: a.ctypes.data for name, a in self.arrays.items()})
 
@@ -242,8 +247,13 @@ class Whitener:
             ctypes.c_int(m),
             _of(out),
         )
-        out[~self.present, 0] = np.nan
+        out.reshape(-1, m)[self._gaps, 0] = np.nan
         return out
+
+    @cached_property
+    def _gaps(self) -> np.ndarray:
+        """Where among all readings none was taken."""
+        return np.flatnonzero(~self.present)
 
     def response(self, change: np.ndarray) -> np.ndarray:
         """Readings (n, nz) that recorded pushes (n, nq) add if they are larger by `change`, to first order."""
@@ -271,7 +281,7 @@ class Whitener:
         and push noise as it adds up. A body that swings at the start is as far off then as later: the simulation, which does
         not know it, begins at the speed of both."""
         certain, scale = np.zeros_like(self.noise.start), np.empty(self.present.shape)
-        from_there = self._filter
+        from_there = FilterRecord.from_buffer_copy(self._filter)
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
@@ -286,14 +296,14 @@ def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:
 
 def noise_arrays(time: np.ndarray, noise: Noise, step: np.ndarray, unknown: Disturbance | None) -> dict[str, np.ndarray]:
     """What a `NoiseRecord` points to, but for places; `step` (nz,) is the time between the samples of each reading."""
-    usual = np.full(len(noise.pushes), float(np.median(np.diff(time))))
     none = Disturbance(np.empty(0), np.empty(0), np.empty((len(noise.pushes), 0)))
     forces = none if unknown is None else unknown
+    push_step = noise.push_step if noise.push_step is not None else np.full(len(noise.pushes), np.median(np.diff(time)))
     arrays = {
         "time": time,
         "push_sd": noise.pushes,
         "push_ar": noise.push_colour,
-        "push_step": usual if noise.push_step is None else noise.push_step,
+        "push_step": push_step,
         "sd": noise.readings,
         "ar": noise.colour,
         "step": step,

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import SimulationError
 from ..model.variant import Variant
 from . import cache
-from .simulate import Simulator, refuse_unrest, stopped
+from .simulate import Rest, Simulator, stopped
 from .tangent import differentiable, noisy, sensed
 
 
@@ -62,7 +62,7 @@ class Sensitivities:
         self.variant, self.model = variant, variant.model()
         self.columns = tuple(p.name for p in differentiable(self.model, columns))
         self.simulator, self.moving = Simulator(variant, self.columns or None, moving), moving
-        self.pushes = noisy(moving)
+        self.pushes, self.rest = noisy(moving), Rest(self.model, moving)
         self.simulator.model = self.model  # which takes as long to assemble as ten runs
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
@@ -82,7 +82,7 @@ class Sensitivities:
         without being `moving`.
         """
         t, w, p = (np.ascontiguousarray(a, float) for a in (time, inputs, parameters))
-        refuse_unrest(self.model, w, self.moving)
+        self.rest.refuse_unrest(w)
         which = np.array([self.columns.index(name) for name in by], dtype=np.intc)
         n, nx, ny, ns, k = len(t), self.model.x.numel(), self.model.y.numel(), len(self.sensors), len(by)
         x, y = np.empty((n, nx)), np.empty((n, ny))

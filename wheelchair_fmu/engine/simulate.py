@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -58,6 +58,20 @@ class Simulator:
     def model(self) -> Model:
         return self.variant.model()
 
+    @cached_property
+    def _sizes(self) -> tuple[int, ...]:
+        """How many states, inputs, parameters and results there are, which an expression takes its time to tell."""
+        m = self.model
+        return m.x.numel(), m.w.numel(), m.p.numel(), m.y.numel()
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
+        return tuple(o.name for o in self.model.outputs)
+
+    @cached_property
+    def _rest(self) -> Rest | None:
+        return None if self._moving is None else Rest(self.model, self._moving)
+
     def inputs(self, n: int, values: Mapping[str, np.ndarray | float]) -> np.ndarray:
         """Inputs (n, nw) from arrays (n,) or numbers by FMI name; the rest stay at their start values."""
         names = [i.name for i in self.model.inputs]
@@ -87,12 +101,12 @@ class Simulator:
         t = np.ascontiguousarray(time, float)
         w = np.ascontiguousarray(inputs, float)
         p = np.ascontiguousarray(self.variant.vector() if parameters is None else parameters, float)
-        x = np.empty((len(t), self.model.x.numel()))
-        y = np.empty((len(t), self.model.y.numel()))
-        if w.shape != (len(t), self.model.w.numel()) or p.shape != (self.model.p.numel(),):
+        nx, nw, parameters_, ny = self._sizes
+        x, y = np.empty((len(t), nx)), np.empty((len(t), ny))
+        if w.shape != (len(t), nw) or p.shape != (parameters_,):
             raise ValueError(f"inputs {w.shape} and parameters {p.shape} do not fit {len(t)} times and this model")
-        if self._moving is not None:
-            refuse_unrest(self.model, w, self._moving)
+        if self._rest:
+            self._rest.refuse_unrest(w)
         reached, steps = ctypes.c_long(), ctypes.c_long()
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
@@ -111,7 +125,7 @@ class Simulator:
             )
         if status:
             raise SimulationError(stopped(status, t, reached.value))
-        return Trajectory(t, x, y, tuple(o.name for o in self.model.outputs), steps.value)
+        return Trajectory(t, x, y, self._names, steps.value)
 
     def _start(self, p: np.ndarray, w: np.ndarray, x: np.ndarray) -> int:
         return self._library.wc_start(self._at(self._kernel), _of(p), _of(w), _of(x))
@@ -137,14 +151,22 @@ def stopped(status: int, time: np.ndarray, reached: int) -> str:
     return f"the simulation stops at t = {when:.6g} s: {WHY[status]}; check the inputs and parameters there"
 
 
-def refuse_unrest(model: Model, inputs: np.ndarray, moving: Container[str]) -> None:
-    """Raise ValueError where `inputs` (n, nw) brake, slope or change the floor, and none of the `moving` does so."""
-    resting = [(u, column) for u, column in zip(model.inputs, inputs.T, strict=True) if u.seldom and u.name not in moving]
-    moved = [u.name for u, column in resting if np.any(column != u.start)]
-    if moved:
-        raise ValueError(
-            f"this model has a level floor and open brakes; leave {', '.join(moved)} at rest, or name it as moving"
-        )
+class Rest:
+    """The inputs that brake, slope or change the floor, and stay at their start unless they are among the `moving`."""
+
+    def __init__(self, model: Model, moving: Collection[str]):
+        resting = {i: u for i, u in enumerate(model.inputs) if u.seldom and u.name not in moving}
+        self._names, self._starts = [u.name for u in resting.values()], np.array([u.start for u in resting.values()])
+        self._at = np.array([*resting], np.intp)
+
+    def refuse_unrest(self, inputs: np.ndarray) -> None:
+        """Raise ValueError where one of them moves among `inputs` (n, nw)."""
+        unrest = inputs.take(self._at, axis=1) != self._starts
+        if unrest.any():
+            moved = [name for name, moves in zip(self._names, unrest.any(axis=0), strict=True) if moves]
+            raise ValueError(
+                f"this model has a level floor and open brakes; leave {', '.join(moved)} at rest, or name it as moving"
+            )
 
 
 def _of(array: np.ndarray) -> ctypes.c_void_p:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -22,22 +23,47 @@ def parallel_map(
     things = list(things)
     if len(things) == 1 or getattr(_this, "works", False):
         return [do(thing) for thing in things]
-    order = sorted(range(len(things)), key=lambda i: -size(things[i]))
-    begun = {i: _pool().submit(do, things[i]) for i in order}
+    left = deque(sorted(range(len(things)), key=lambda i: -size(things[i])))
+    done: dict[int, Result] = {}
+    faults: dict[int, BaseException] = {}
+
+    def share() -> None:
+        """What one core does, thing after thing: to hand over each by itself would take as long as the smallest of them."""
+        while left:
+            try:
+                i = left.popleft()
+            except IndexError:  # another core has just taken the last
+                return
+            if i > min(faults, default=i):
+                continue  # nobody will ask for it
+            try:
+                done[i] = do(things[i])
+            except BaseException as fault:
+                faults[i] = fault
+
+    shares = [_pool().submit(share) for _ in range(min(_cores(), len(things)))]
     try:
-        return [begun[i].result() for i in range(len(things))]
-    finally:  # after a fault, or Ctrl-C, nobody waits for the rest
-        for waiting in begun.values():
-            waiting.cancel()
+        for each in shares:
+            each.result()
+        if faults:
+            raise faults[min(faults)]  # the first in the order of things, whichever came first
+    finally:
+        left.clear()  # after Ctrl-C nobody waits for the rest
+        faults.clear()  # each holds on to what was at work when it came
+    return [done[i] for i in range(len(things))]
 
 
 _this = local()  # thread
 
 
+def _cores() -> int:
+    """All, or one where this is one of several processes that share them."""
+    return 1 if parent_process() else cpu_count() or 1
+
+
 @cache
 def _pool() -> ThreadPoolExecutor:
-    """All cores, or one where this is one of several processes that share them."""
-    return ThreadPoolExecutor(1 if parent_process() else cpu_count(), initializer=_works)
+    return ThreadPoolExecutor(_cores(), initializer=_works)
 
 
 def _works() -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
-from PIL import Image
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from PIL import Image
 
 STEADY: Any = {"svg.hashsalt": "wheelchair-fmu", "svg.fonttype": "path", "pdf.fonttype": 42}  # letters of a PDF stay letters
 COLOURS = 32  # of a film
@@ -42,6 +42,8 @@ def save_film(frames: Iterable[np.ndarray], path: Path, pause: float) -> None:
 
     All frames share the first one's colours, so that only what moves is stored again.
     """
+    from PIL import Image  # here, not above: only a film needs it
+
     pictures: list[Image.Image] = []
     for frame in frames:
         picture = Image.fromarray(frame)

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from .equation import Equation
 from .fine import refine
@@ -86,10 +85,20 @@ def find(equations: Sequence[Equation]) -> Lag | None:
     )
 
 
+def summits(heights: np.ndarray) -> np.ndarray:
+    """Where a profile (n,) is higher than on both sides; of a flat top its middle, and no end. These are the peaks of
+    `scipy.signal`, which takes longer to load than all clocks of a campaign to find."""
+    first = np.flatnonzero(np.diff(heights, prepend=np.nan) != 0)  # of each stretch of equal heights
+    last = np.append(first[1:], len(heights)) - 1
+    up = np.diff(heights[first]) > 0
+    top = np.flatnonzero(up[:-1] & ~up[1:]) + 1
+    return (first[top] + last[top]) // 2
+
+
 def _rival(support: np.ndarray, better: np.ndarray, best: int) -> tuple[int | None, float]:
     """The maximum of a profile that comes nearest to the best, and by how much it is behind over as long a time as it shares:
     strokes that are all alike fit as well one stroke later, in a record that is one stroke shorter."""
-    peaks = scipy.signal.find_peaks(np.nan_to_num(better, nan=-1.0))[0]
+    peaks = summits(np.nan_to_num(better, nan=-1.0))
     others = peaks[(np.abs(peaks - best) > WIDE) & (better[peaks] > SERIOUS * better[best])]
     if not len(others):
         return None, float(better[best])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import takewhile
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -70,14 +71,14 @@ def between_runs(found: Fit) -> np.ndarray:
 
 def degrees_between_runs(found: Fit, at: int) -> float:
     """Degrees of freedom of one of these variances, by Satterthwaite: one less than there are runs where all decide alike, and
-    fewer where a few of them decide most (Bell and McCaffrey 2002)."""
+    fewer where a few of them decide most (Bell and McCaffrey 2002). One of what no run tells anything of."""
     known, squares, pulls = _inverse(found), [], []
     for _, _, R, root in _decided(found, known):
         weight = root @ (R @ known[:, at])  # of the run's residuals in the estimate
         squares.append(float(weight @ weight))
         pulls.append(R.T @ weight)
     G = np.diag(squares) - np.array(pulls) @ known @ np.array(pulls).T
-    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G)))
+    return max(1.0, float(np.trace(G) ** 2 / np.sum(G * G))) if G.any() else 1.0
 
 
 def _decided(found: Fit, known: np.ndarray) -> Iterator[tuple[slice, np.ndarray, np.ndarray, np.ndarray]]:
@@ -134,14 +135,16 @@ def correlation_time(evidence: Evidence) -> float:
     for e in evidence.runs:
         for i in range(e.r.shape[1]):
             r = e.r[np.isfinite(e.r[:, i]), i]  # from reading to reading: rows of other loggers are no residuals of zero
-            n = len(r)
-            power = float(r @ r)
-            if power == 0:
-                continue
-            rho = [float(r[k:] @ r[:-k]) / power for k in range(1, min(n // 4, 100))]
-            stop = next((k for k, value in enumerate(rho) if value < 2 / np.sqrt(n)), len(rho))
-            time, weight = time + n * (1 + 2 * sum(rho[:stop])), weight + n
+            if r.any():
+                time, weight = time + len(r) * (1 + 2 * _lasting(r)), weight + len(r)
     return max(1.0, time / max(weight, 1))
+
+
+def _lasting(r: np.ndarray) -> float:
+    """Σ ρ_k of a series (n,) until ρ falls below noise, which it soon does."""
+    n, power = len(r), float(r @ r)
+    rho = (float(r[k:] @ r[:-k]) / power for k in range(1, min(n // 4, 100)))
+    return sum(takewhile(lambda value: value >= 2 / np.sqrt(n), rho))
 
 
 def decisive(evidence: Evidence, policy: SearchPolicy = DEFAULT) -> float:

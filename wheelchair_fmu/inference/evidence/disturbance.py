@@ -160,7 +160,7 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     """Forces as changes of the inputs that the filter of a run has noise for."""
     alone = pushes_of(e.run)
     inputs = alone if len(alone) == e.filter.whitener.recorded else pushes_of(e.run, led=True)
-    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swinging(e.run), speed=e.pace)
+    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swung(e.effort), speed=e.pace)
 
 
 def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:

@@ -12,6 +12,7 @@ from ...campaign import BY_NAME, Run, pace
 from ..parallel import parallel_map
 from .initial_state import starts_of, uncertain
 from .local import Marginal, read
+from .noise_model import effort
 
 BLOCK = 2.0  # s of data that a bootstrap resamples together
 
@@ -46,6 +47,11 @@ class RunEvidence:
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
     foretelling: np.ndarray | None = None  # (m,) of a run that was held out, −2 log of how likely each block of it was
 
+    @cached_property
+    def finite(self) -> np.ndarray:
+        """Which innovations (n, nz) there are."""
+        return np.isfinite(self.r)
+
     def posterior_sd(self, name: str, prior_sd: float) -> float:
         """Standard deviation, given the readings, of what is uncertain of this run under this name."""
         good = np.isfinite(self.r)
@@ -79,6 +85,11 @@ class RunEvidence:
     def pace(self) -> np.ndarray:
         """Speed (n,) at which the chair rolls: `campaign.pace`, once for all strengths of forces that are tried."""
         return pace(self.run)
+
+    @cached_property
+    def effort(self) -> np.ndarray:
+        """How hard (n,) in N hands push about each moment: `noise_model.effort`, once for all strengths as well."""
+        return effort(self.run)
 
     @property
     def misfit(self) -> float:
@@ -146,11 +157,11 @@ class Evidence:
 
     @cached_property
     def r(self) -> np.ndarray:
-        return np.concatenate([e.r[np.isfinite(e.r)] for e in self.runs] or [np.empty(0)])
+        return np.concatenate([e.r[e.finite] for e in self.runs] or [np.empty(0)])
 
     @cached_property
     def S(self) -> np.ndarray:
-        return np.concatenate([e.S[np.isfinite(e.r)] for e in self.runs] or [np.empty((0, len(self.by)))])
+        return np.concatenate([e.S[e.finite] for e in self.runs] or [np.empty((0, len(self.by)))])
 
     @cached_property
     def misfit(self) -> float:
@@ -177,8 +188,7 @@ class Evidence:
         """Each run, which of its innovations (n, nz) are finite, and where these stand in `r` and `S`."""
         at = 0
         for e in self.runs:
-            good = np.isfinite(e.r)
-            yield e, good, slice(at, at := at + int(good.sum()))
+            yield e, e.finite, slice(at, at := at + int(e.finite.sum()))
 
     def table(self) -> dict[str, dict[str, float]]:
         """Whitened RMS by run and channel."""

@@ -111,7 +111,7 @@ class Likelihood:
 
         def one(e: RunEvidence) -> RunEvidence:
             assert isinstance(e.whitener, Marginal)  # evidence in brief is never run again
-            there = replace(e, measured=self._measured(e.run, values))
+            there = replace(e, measured=self._measured(e.run, values)) if self.offsets else e
             if e.path is None:
                 there = self._simulated_again(there, values, e.start, whole)
             else:  # where other values leave another rest, other forces make up for it
@@ -157,7 +157,7 @@ class Likelihood:
         self, e: RunEvidence, values: Mapping[str, float], start: Mapping[str, float], whole: bool = True
     ) -> RunEvidence:
         """A run at other `values` or from another `start`, by the filter that it has."""
-        there = replace(e, start=start)
+        there = replace(e, start=start) if start is not e.start else e
         if whole or e.pushed is None:
             results, predicted = self._simulated(e.run, values, start)
             there = replace(there, results=results, predicted=predicted)
@@ -187,7 +187,7 @@ class Likelihood:
         if pushed is not None:
             w = self._pushed(run, w, pushed)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
-        predicted = results[:, [self.sensitivities.rows[i] for i in self._which(run)]]
+        predicted = results.take([self.sensitivities.rows[i] for i in self._which(run)], axis=1)
         return results, read(run, self._channels(run), predicted, start)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:

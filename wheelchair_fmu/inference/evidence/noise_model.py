@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag, solve_banded
+from scipy.linalg import solve_banded
 
 from ...campaign import BY_NAME, Run
 from ...campaign.channels import BY_FMU_NAME, MOMENTUM, PUSHES
@@ -65,7 +65,11 @@ class NoiseModel:
 
     def swinging(self, run: Run) -> np.ndarray:
         """Times the usual (n,) that a rider's body swings at each moment of a run: who pushes moves, who rolls sits still."""
-        return effort(run) / self.stroke if self.stroke else np.ones(len(run.time))
+        return self.swung(effort(run))
+
+    def swung(self, efforts: np.ndarray) -> np.ndarray:
+        """The same (n,) from a run's `effort`, where that is known already."""
+        return efforts / self.stroke if self.stroke else np.ones(len(efforts))
 
     @property
     def disturbed(self) -> bool:
@@ -136,7 +140,8 @@ def disturbance(
     """
     body, floor = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
     lasting = np.array([FORGOTTEN, noise_model.lasting, *body.lasting, *floor.lasting])  # s, or m
-    as_push, common = np.zeros((len(inputs), FORCED)), block_diag(1.0, 1.0, body.together, floor.together)
+    as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
+    common[np.ix_(BODYS, BODYS)], common[-len(RISES) :, -len(RISES) :] = body.together, floor.together
     along = mass / noise_model.mass if noise_model.mass else 1.0
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
     if not shares.keys() <= set(inputs):
