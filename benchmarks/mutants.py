@@ -54,7 +54,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (L + "search/judge.py", "chance_beyond(drop / correlation, len", "chance_beyond(drop, len"),
     (L + "estimation/score.py", "p / 2 if estimate[0] > 0 else 1 - p / 2", "p"),
     (L + "estimation/score.py", "width = min(lags, len(q) // 4) + 1", "width = 1"),
-    (L + "estimation/statistics.py", "1 + 2 * sum(rho[:stop])", "1 + sum(rho[:stop])"),
+    (L + "estimation/statistics.py", "1 + 2 * _lasting(r)", "1 + _lasting(r)"),
     (L + "estimation/statistics.py", " / np.sqrt(np.maximum(size, ALONE))", ""),
     (L + "estimation/statistics.py", "student(0.95, n - 1)", "student(0.5, n - 1)"),
     (L + "estimation/statistics.py", " * float(np.mean(evidence.r**2))", ""),
