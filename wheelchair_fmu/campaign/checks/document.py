@@ -24,7 +24,7 @@ from ..recorded import PUSHES_CLOCK
 from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING, RUN, TableRecord, fits
 
 CASTERS = ("start.caster_l", "start.caster_r")
-TURNS = tuple(sorted({n / d for d in (3, 8) for n in range(1, d + 1)}))  # what thirds and eighths of a turn would be written as
+THIRDS, EIGHTHS = (1 / 3, 2 / 3), tuple(n / 8 for n in range(1, 9))  # as shares of a turn would be written
 ROUNDED = 0.005  # by which a third may be
 PLACED = frozenset(name for names in MOUNTED.values() for name in names)  # channels for which it matters where they are read
 Known = Mapping[str, tuple[float, float]]
@@ -393,11 +393,10 @@ def _parameter(
 
 
 def _share_of_a_turn(angle: float) -> float:
-    """The third or eighth of a turn that a number looks like, with its sign; 0.0 if it looks like none. One that is written as
-    rad as a rule has two decimals, and an eighth of a turn has three."""
-    share = min(TURNS, key=lambda s: abs(s - abs(angle)))
-    thirds = abs(share * 3 - round(share * 3)) < 1e-9 and share < 1
-    return copysign(share, angle) if abs(share - abs(angle)) < (ROUNDED if thirds else 1e-9) else 0.0
+    """The third of a turn, perhaps rounded, or the eighth that a number looks like, with its sign; 0.0 if like none."""
+    size = abs(angle)
+    share = next((third for third in THIRDS if abs(third - size) < ROUNDED), size if size in EIGHTHS else 0.0)
+    return copysign(share, angle)
 
 
 def _in_number(name: str, value: Any) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from ...campaign import BY_NAME
 from ...errors import SimulationError
 from ..models.models import Models
-from ..residual.physical import channel_errors, pooled
+from ..residual.physical import ChannelError, channel_errors, pooled
 from ..residual.staircase import Step
 
 WORSE = 1.1  # times an error: a start that is off within what readings say of it changes one by less
@@ -33,22 +33,25 @@ def worsened(ladder: Sequence[Step]) -> list[str]:
     (_, calibrated, *further) = ladder
     if not further:
         return []
-    last = further[-1]
-    before, after = (pooled(step.heldout_errors.values()) for step in (calibrated, last))
     return [
-        f"{channel}: on the runs held out the last model is off by {error.rms:.2g} {error.unit}, where the calibrated one is "
-        f"by {before[channel].rms:.2g}: for this channel what was found is no improvement"
-        for channel, error in after.items()
-        if channel in before and error.rms > WORSE * before[channel].rms and not _drifted(channel, calibrated, last)
+        f"{channel}: on the runs held out the last model is off by {after.rms:.2g} {after.unit}, where the calibrated one is "
+        f"by {before.rms:.2g}: for this channel what was found is no improvement"
+        for channel, before, after in _by_channel(calibrated, further[-1])
+        if after.rms > WORSE * before.rms
     ]
 
 
 def worse(calibrated: Step, last: Step) -> bool:
     """Does a model foretell runs that were held out clearly worse than the calibrated one, over all channels: by the geometric
     mean of its errors over those?"""
+    told = [(before.rms, after.rms) for _, before, after in _by_channel(calibrated, last) if before.rms > 0 and after.rms > 0]
+    return bool(told) and float(np.mean([np.log(after / before) for before, after in told])) > np.log(WORSE)
+
+
+def _by_channel(calibrated: Step, last: Step) -> list[tuple[str, ChannelError, ChannelError]]:
+    """Each channel with its errors on held-out runs by both, but for one that is further off by chance alone."""
     before, after = (pooled(step.heldout_errors.values()) for step in (calibrated, last))
-    both = [c for c in after if c in before and before[c].rms > 0 and after[c].rms > 0 and not _drifted(c, calibrated, last)]
-    return bool(both) and float(np.mean([np.log(after[c].rms / before[c].rms) for c in both])) > np.log(WORSE)
+    return [(c, before[c], e) for c, e in after.items() if c in before and not _drifted(c, calibrated, last)]
 
 
 def _drifted(channel: str, calibrated: Step, last: Step) -> bool:

@@ -179,10 +179,12 @@ def _with_forces(found: Diagnosis, again: Callable[[Models], Diagnosis], say: Ca
     except SimulationError:  # forces so strong that they hide all that a model does
         return replace(found, unexplained=_left(found, before))
     left = _left(second, before)
+    if left.ordered or not left.like_a_floor:
+        return replace(found, unexplained=left)
     nominal, calibrated = found.ladder[:2]
     calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.models)
     # What foretells worse than values that were merely calibrated is a model that the forces hold up, and no chair on a floor.
-    if left.ordered or not left.like_a_floor or worse(calibrated, second.ladder[-1]):
+    if worse(calibrated, second.ladder[-1]):
         return replace(found, unexplained=left)
     with_forces = replace(second.ladder[1], name=FORCES)
     return replace(second, ladder=(nominal, calibrated, with_forces, *second.ladder[2:]), unexplained=left)

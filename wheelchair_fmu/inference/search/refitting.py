@@ -13,7 +13,6 @@ from ...quantities import Parameter
 from ..estimation.fit import Fit
 from ..estimation.starts import most_promising, outlook
 from ..evidence.evidence import Evidence
-from ..evidence.initial_state import TUNING
 from ..evidence.likelihood import Likelihood
 from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
@@ -60,8 +59,7 @@ def candidate(
     if risen(base.fit, found):
         return None  # no fit: the model without the effect is one with it
     try:
-        held = models.heldout(likelihood, found, tune_start=TUNING if afresh else 0)
-        held = likelihood.restarted(held, found.values)
+        held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
     except SimulationError:
         return None  # a model that cannot be simulated on what was held out foretells nothing of it
     judged = judge(models, base, Model(effects, found, held), effect, models.factory.parameters(effect), tests)
