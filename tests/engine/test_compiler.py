@@ -104,15 +104,15 @@ def test_generated_code_is_compiled_once_whatever_it_is_derived_for(monkeypatch,
 
     monkeypatch.setattr(compiler, "compile_object", compile_object)
     cache.library(Choice(), ())
-    assert sorted(compiled) == ["advance.c", "model.c"]
+    assert sorted(compiled) == ["advance.c", "model.c", "processor.c"]
     cache.library(Choice(), (), ["tyre.C_lambda"])
     by_hand = ["evaluation.c", "innovations.c", "rodas.c", "tangent.c"]
-    assert sorted(compiled[2:]) == [*by_hand, "tangent_lanes.c", "tangent_model.c"]
+    assert sorted(compiled[3:]) == [*by_hand, "tangent_lanes.c", "tangent_model.c"]
     cache.library(Choice(caster="swivelling"), ())
-    assert compiled[8:] == ["model.c"]
+    assert compiled[9:] == ["model.c"]
     monkeypatch.setattr(cache, "sources", lambda: "changed, but not what is generated")
     cache.library(Choice(), (), ["tyre.C_lambda"])
-    assert sorted(compiled[9:]) == by_hand
+    assert sorted(compiled[10:]) == sorted([*by_hand, "processor.c"])
 
 
 def test_generated_code_depends_on_what_it_includes(monkeypatch, tmp_path):

@@ -116,6 +116,7 @@ def test_chairs_that_would_take_hours_are_refused_as_alone():
 def test_a_compiler_without_vectors_simulates_one_by_one(monkeypatch, caplog):
     simulator, t, w, p = case(Variant(), "slalom", np.random.default_rng(5))
     t, w = t[:200], w[:200]
+    assert simulator.library  # compiled before what follows
     monkeypatch.setattr(cache, "VECTORS", {3: ("--no-such-option",)})
     monkeypatch.setattr(cache, "width", lambda: 3)
     with caplog.at_level("INFO"):

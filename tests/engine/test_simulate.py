@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.kit import anywhere, variant_with
-from wheelchair_fmu.engine.kernel import kernel, seldom
+from wheelchair_fmu.engine.kernel import SIMULATED, at_rest, kernel, seldom
 from wheelchair_fmu.engine.simulate import Simulator, Trajectory
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.model.effects import bundled
@@ -194,6 +194,21 @@ def test_no_input_is_overlooked_because_most_runs_leave_it_at_rest(name):
     moved, unmoved = (simulator.run(t, inputs, start=x0, grid=0.01).states for inputs in (w, plain))
     first, second = np.abs(np.diff(moved - unmoved, axis=0)).max(axis=1)
     assert first > 1e-6 and second > 1e-6
+
+
+@pytest.mark.parametrize("force", [0.0, 15.0])
+@pytest.mark.parametrize("size", [0, 1])
+def test_where_only_a_force_moves_besides_pushes_one_step_serves_both(force, size):
+    """A plain one would be nearly the same; with no effect on, the bare one is taken where that force rests, and only there."""
+    variant, moving = variant_with(*bundled(), size=size), ("external.force", "external.moment")
+    assert not {"plain", "forward", "rate"} & kernel(at_rest(variant.model(), moving), SIMULATED).functions.keys()
+    assert "plain" in kernel(variant.model(), SIMULATED).functions
+    t = np.linspace(0, 1, 101)
+    runs = []
+    for simulator in (Simulator(variant), Simulator(variant, moving=moving)):
+        w = simulator.inputs(len(t), {"push.F_rl": 12.0, "push.F_rr": 9.0, "external.force": force * np.sin(3 * t)})
+        runs.append(simulator.run(t, w, tolerance=1e-9))
+    np.testing.assert_allclose(runs[1].states, runs[0].states, rtol=1e-7, atol=1e-9)
 
 
 def test_a_run_with_an_effect_that_is_hardly_on_is_a_run_without():

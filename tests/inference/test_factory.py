@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from wheelchair_fmu.engine import cache
+from wheelchair_fmu.engine.cache import Wanted
+from wheelchair_fmu.inference.decision import leftover
+from wheelchair_fmu.inference.decision.leftover import prepare
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
+from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.search.beginning import begin
+from wheelchair_fmu.inference.search.refitting import BEYOND, candidate
+from wheelchair_fmu.inference.search.screen import screen
 from wheelchair_fmu.model.caster import slipping
 from wheelchair_fmu.model.choice import Choice, OwnLaw
 from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
 
 SIGMA, TOE = "effect.relaxation_length.sigma", "effect.toe_misalignment.sum"
@@ -62,3 +73,34 @@ def test_what_a_law_of_swinging_casters_leaves_open_is_calibrated_whoever_wrote_
     assert not any(n.startswith("caster.") for n in ideal)
     assert {"caster.trail", "caster.I", "caster.M", "caster.C_lambda"} == set(bundled_) - set(ideal)
     assert mine == bundled_
+
+
+def test_no_model_is_compiled_with_derivatives_for_an_effect_that_promises_too_little(sample, monkeypatch):
+    models = Models.of(ModelFactory(sample, Variant(catalogue=bundled())))
+    begun = begin(models)
+    (scored,) = (s for s in screen(begun.models, begun.calibrated) if s.score.effect == "relaxation_length")
+    asked: list[object] = []
+    load = cache.library
+
+    def watched(*words, **options):
+        asked.append(words[2])
+        return load(*words, **options)
+
+    monkeypatch.setattr(cache, "library", watched)
+    refit = partial(candidate, begun.models, begun.calibrated, scored, 40)
+    assert refit(least=2 * BEYOND * scored.score.drop) is None and not asked
+    assert refit() is not None and asked
+
+
+def test_what_may_be_left_is_compiled_beside_other_work(sample, monkeypatch):
+    """The very library that is asked for in the end, and none where nothing is looked for."""
+    models, terms = Models.of(ModelFactory(sample, Variant(catalogue=bundled()))), library()
+    compiled: list[Wanted] = []
+    monkeypatch.setattr(leftover, "meanwhile", lambda do: do())
+    monkeypatch.setattr(cache, "library", lambda *words: compiled.append(Wanted.of(*words)))
+    prepare(models, terms)
+    models.widened(terms).wide(["toe_misalignment"]).compile()
+    assert len(compiled) == 2 and compiled[0] == compiled[1]
+    prepare(models, {})
+    prepare(replace(models, factory=models.factory.narrowed()), terms)
+    assert len(compiled) == 2

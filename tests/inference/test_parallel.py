@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from threading import get_ident
+from threading import Event, get_ident
 
 import pytest
 
-from wheelchair_fmu.inference.parallel import parallel_map
+from wheelchair_fmu.inference.parallel import meanwhile, parallel_map
 
 
 def test_results_stand_in_the_order_of_things():
@@ -51,3 +51,14 @@ def test_of_several_faults_the_first_in_the_order_of_things_is_told():
         with pytest.raises(ValueError, match=r"^3$"):
             parallel_map(do, range(12), size=lambda n: n)
     assert parallel_map(do, []) == []
+
+
+def test_what_is_made_meanwhile_is_made_by_another_thread_and_its_fault_told_to_whoever_asks_again():
+    made = Event()
+
+    def fails() -> None:
+        raise ZeroDivisionError
+
+    meanwhile(fails)
+    meanwhile(made.set)
+    assert made.wait(10)

@@ -8,7 +8,8 @@ import linecache
 import logging
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -23,7 +24,7 @@ from ..model.expression import ExpressionLaw
 from ..model.stage import Effect, Law
 from ..model.wheelchair import Choice, assemble
 from . import compiler, shipped
-from .kernel import at_rest, kernel, seldom_among
+from .kernel import SIMULATED, at_rest, kernel, seldom_among
 from .lanes import in_two, lanes_source, of_stages
 from .objects import compiled
 from .source import CSRC, c_source, coefficients, tangent_source
@@ -37,8 +38,10 @@ PACKAGE = Path(__file__).parent.parent
 LEVELS = {
     **{"model": "-O1", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
     **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
-    **{"innovations": "-O3", "evaluation": "-O3"},
+    **{"innovations": "-O3", "evaluation": "-O3", "processor": "-O2"},
 }
+SIMULATING, DERIVING = ("advance",), ("tangent", "rodas", "innovations", "evaluation")  # files of `csrc` in libraries that do
+OF_PUSHES = ("tangent", "rodas", "evaluation")  # and those that are compiled for a number of noisy inputs
 VECTORS = {8: ("-mavx512f", "-mavx512dq", "-mavx512vl"), 4: ("-mavx2",), 2: ()}  # flags by how many numbers a vector holds
 RESTING = {"output": (2,), "still": (1, 2)}  # results of a chair's rows: its parameters are the same in all; its inputs, too
 ANYWHERE = 2  # numbers in a vector: what every processor of a system has
@@ -125,7 +128,7 @@ def ship_helper(name: str, system: str, suffix: str, cross: tuple[str, ...] | No
 
 
 def _compile_helper(name: str, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
-    compiler.compile_shared([CSRC / f"{name}.c"], target, ["-fvisibility=default", "-O3", *VECTORS[min(wide, SHORT)]], cross)
+    compiler.compile_shared([_Build(0, wide, cross).by_hand(name)], target, (), cross)
 
 
 def _loaded(path: Path) -> ctypes.CDLL:
@@ -138,43 +141,36 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 
 def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
-    pushes, by_hand = noisy(wanted.moved or ()), ["tangent", "rodas", "innovations", "evaluation"]
-    with deriving:  # what compiles models runs side by side
-        texts, by = _derived(wanted, pushes, wide)
-    if by is None:
-        _link(texts, ["advance"], pushes, target, wide, cross)
-        return
-    try:
-        _link(texts, by_hand, pushes, target, wide, cross)
-    except BuildError as error:
-        log.info("stages are evaluated one by one: %s", error)
+    build, derives = _Build(noisy(wanted.moved or ()), wide, cross), wanted.columns is not None
+    with side_by_side(os.cpu_count()) as pool:
+        others = [
+            pool.submit(build.by_hand, name) for name in (DERIVING if derives else SIMULATING)
+        ]  # while models are derived
         with deriving:  # what compiles models runs side by side
-            plainly = tangent_source(by, "tangent")
-        _link({"model": texts["model"], "tangent_model": plainly}, by_hand, pushes, target, wide, cross)
+            texts, by = _derived(wanted, build)
+        try:
+            build.link(texts, others, target, pool)
+        except BuildError as error:
+            if by is None:
+                raise
+            log.info("stages are evaluated one by one: %s", error)
+            with deriving:
+                plainly = tangent_source(by, "tangent")
+            build.link({"model": texts["model"], "tangent_model": plainly}, others, target, pool)
 
 
-def _derived(wanted: Wanted, pushes: int, wide: int) -> tuple[dict[str, str], Tangent | None]:
+def _derived(wanted: Wanted, build: _Build) -> tuple[dict[str, str], Tangent | None]:
     """Generated C by name, and the derivatives that it has, if any."""
     model = assemble(wanted.choice, wanted.effects)
     if wanted.moved is not None:
         model = at_rest(model, wanted.moved)
-    texts = {"model": c_source(kernel(model), "model")}
+    texts = {"model": c_source(kernel(model, SIMULATED), "model")}
     if wanted.columns is None:
         return texts, None
-    by = tangent(model, wanted.columns, pushes)
+    by = tangent(model, wanted.columns, build.pushes)
     of_several, names = of_stages(by, "tangent")
-    together = {"tangent_lanes": of_several, "tangent_model": tangent_source(by, "tangent", names, wide)}
+    together = {"tangent_lanes": of_several, "tangent_model": tangent_source(by, "tangent", names, build.wide)}
     return {**texts, **together}, by
-
-
-def _link(
-    texts: Mapping[str, str], by_hand: Sequence[str], pushes: int, target: Path, wide: int, cross: tuple[str, ...] | None
-) -> None:
-    """Generated C by name, and files of `csrc`, as one library."""
-    with side_by_side(os.cpu_count()) as pool:
-        objects = [pool.submit(compiled, name, text, _flags(name, pushes, wide), cross) for name, text in texts.items()]
-        objects += [pool.submit(_by_hand, name, pushes, wide, cross) for name in by_hand]
-        compiler.compile_shared([o.result() for o in objects], target, (), cross)
 
 
 def _compile_lanes(wanted: Wanted, step: str, results: Sequence[str], wide: int, target: Path) -> None:
@@ -182,28 +178,46 @@ def _compile_lanes(wanted: Wanted, step: str, results: Sequence[str], wide: int,
     places = {o.name: i for i, o in enumerate(model.outputs)}
     some = cs.densify(model.y[[places[name] for name in results]])
     output = cs.Function("output", [model.x, model.w, model.p], cs.cse([some]))
-    texts = [lanes_source({"step": kernel(model).functions[step]})]
+    texts = [lanes_source({"step": kernel(model, [step]).functions[step]})]
     texts += [in_two(output, name, resting) for name, resting in RESTING.items()]
-    _link({"model_lanes": "".join(texts)}, ["lanes"], 0, target, wide, None)
+    with side_by_side(os.cpu_count()) as pool:
+        build = _Build(0, wide, None)
+        build.link({"model_lanes": "".join(texts)}, [pool.submit(build.by_hand, "lanes")], target, pool)
 
 
-def _by_hand(name: str, pushes: int, wide: int, cross: tuple[str, ...] | None) -> Path:
-    """A file of `csrc` that all models with so many noisy inputs share, compiled once."""
+@dataclass(frozen=True)
+class _Build:
+    """How the files of a library are compiled: for how many noisy inputs and numbers in a vector, by this system's compiler or
+    the one `cross` for another."""
 
-    def make(path: Path) -> None:
-        header = path.with_name("coefficients.h")
-        header.write_text(coefficients())
-        flags = ["-include", str(header), f"-I{CSRC}", *_flags(name, pushes, wide)]
-        compiler.compile_object(CSRC / f"{name}.c", path, flags, cross)
+    pushes: int
+    wide: int
+    cross: tuple[str, ...] | None
 
-    return kept(_name(f"{name}-{pushes}-{wide}", ".o", cross), ".o", make)
+    def link(self, texts: Mapping[str, str], others: Sequence[Future[Path]], target: Path, pool: ThreadPoolExecutor) -> None:
+        """Generated C by name, and `others`, objects of files of `csrc`, as one library."""
+        objects = [pool.submit(compiled, name, text, self._flags(name), self.cross) for name, text in texts.items()]
+        compiler.compile_shared([o.result() for o in (*objects, *others)], target, (), self.cross)
 
+    def by_hand(self, name: str) -> Path:
+        """A file of `csrc`, compiled once for all libraries of as many noisy inputs, or for all where it asks for none."""
+        if name not in OF_PUSHES and self.pushes:
+            return replace(self, pushes=0).by_hand(name)
 
-def _flags(name: str, pushes: int, wide: int) -> list[str]:
-    """How one of the files of a library is compiled. Those of one chair, whose rows are short, need no long vectors; no number
-    depends on it, as nothing is contracted."""
-    longest = wide if name.endswith("lanes") else min(wide, SHORT)
-    return ["-fvisibility=default", LEVELS[name], f"-DWC_PUSHES={pushes}", f"-DWC_LANES={wide}", *VECTORS[longest]]
+        def make(path: Path) -> None:
+            header = path.with_name("coefficients.h")
+            header.write_text(coefficients())
+            flags = ["-include", str(header), f"-I{CSRC}", *self._flags(name)]
+            compiler.compile_object(CSRC / f"{name}.c", path, flags, self.cross)
+
+        return kept(_name(f"{name}-{self.pushes}-{self.wide}", ".o", self.cross), ".o", make)
+
+    def _flags(self, name: str) -> list[str]:
+        """How one of the files is compiled. Those of one chair, whose rows are short, need no long vectors; no number depends
+        on it, as nothing is contracted."""
+        longest = self.wide if name.endswith("lanes") else min(self.wide, SHORT)
+        counts = [f"-DWC_PUSHES={self.pushes}", f"-DWC_LANES={self.wide}"]
+        return ["-fvisibility=default", LEVELS[name], *counts, *VECTORS[longest]]
 
 
 def _name(name: str, suffix: str, cross: tuple[str, ...] | None = None) -> str:

@@ -4,7 +4,7 @@
     project(x, w, p)                     → x     one Newton step that puts algebraic rows right
     step(x, w0, w1, h, p)                → x1, error, d2, d3   one step of Rodas4
     plain(x, w0, w1, h, p)               → the same, on a level floor with open brakes, which is a third less work;
-                                           none where the model is such a chair's anyway (`at_rest`)
+                                           none where the model is such a chair's anyway, or nearly (`at_rest`)
     bare(x, w0, w1, h, p)                → the same, and all effects off besides
     output(x, w, p)                      → y
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
@@ -29,6 +29,8 @@ from .lu import factorise
 from .rodas import step
 
 NAMES = ("start", "project", "step", "plain", "bare", "output", "forward", "rate", "mass")
+WORTH = 0.9  # of a step's operations: a plain one of more is not compiled, as of a model in which hardly anything moves besides
+SIMULATED = ("start", "project", "step", "plain", "bare", "output", "mass")  # what it takes to simulate a run
 
 
 @dataclass(frozen=True)
@@ -39,24 +41,30 @@ class Kernel:
     functions: dict[str, cs.Function]
 
 
-def kernel(model: Model) -> Kernel:
-    """Derive the functions of a model."""
+def kernel(model: Model, names: Container[str] = NAMES) -> Kernel:
+    """Derive those of a model's functions that have these `names`, and that it has."""
     x, w, p = model.x, model.w, model.p
-    functions = {
-        "start": cs.Function("start", [p, w], [model.start]),
-        "project": cs.Function("project", [x, w, p], [_projected(model)]),
-        "step": _step(model, "step"),
-        "output": cs.Function("output", [x, w, p], cs.cse([model.y])),
-        "forward": _forward(model),
-        "rate": cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
-        "mass": cs.Function("mass", [p], [cs.densify(model.mass)]),
+    makers = {
+        "start": lambda: cs.Function("start", [p, w], [model.start]),
+        "project": lambda: cs.Function("project", [x, w, p], [_projected(model)]),
+        "step": lambda: _step(model, "step"),
+        "output": lambda: cs.Function("output", [x, w, p], cs.cse([model.y])),
+        "forward": lambda: _forward(model),
+        "rate": lambda: cs.Function("rate", [x, w, p], cs.cse([rate(model), crossings(model)])),
+        "mass": lambda: cs.Function("mass", [p], [cs.densify(model.mass)]),
     }
     if seldom(model):
-        resting = at_rest(model)
-        functions["plain"] = _step(resting, "plain")
+        makers["plain"] = lambda: _step(at_rest(model), "plain")
         if switches(model):
-            functions["bare"] = _step(_off(resting), "bare")
+            makers["bare"] = lambda: _step(_off(at_rest(model)), "bare")
+    functions = {name: make() for name, make in makers.items() if name in names}
+    if functions.keys() >= {"step", "plain"} and _work(functions["plain"]) > WORTH * _work(functions["step"]):
+        del functions["plain"]
     return Kernel(model, functions)
+
+
+def _work(function: cs.Function) -> int:
+    return int(function.n_instructions())
 
 
 def seldom(model: Model) -> list[int]:

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..errors import SimulationError
 from ..model.variant import Variant
-from . import cache
-from .simulate import Rest, Simulator, stopped
+from .simulate import Rest, Simulator, address, stopped
 from .tangent import differentiable, noisy, sensed
 
 
@@ -54,9 +53,9 @@ class Linearised:
 
 
 class Sensitivities:
-    """A variant, compiled with its derivatives by all parameters that a fit may touch, or by some `columns` of them: the
-    fewer, the faster; with none, only its `simulator` runs. Of brakes, slopes and floors only those named as `moving` may leave
-    their start. Instances may run in parallel threads."""
+    """A variant with its derivatives by all parameters that a fit may touch, or by some `columns` of them: the fewer, the
+    faster; with none, only its `simulator` runs. It is compiled when it is first run. Of brakes, slopes and floors only those
+    named as `moving` may leave their start. Instances may run in parallel threads."""
 
     def __init__(self, variant: Variant, columns: Sequence[str] | None = None, moving: Collection[str] = ()):
         self.variant, self.model = variant, variant.model()
@@ -67,11 +66,16 @@ class Sensitivities:
         self.rows = sensed(self.model)
         self.sensors = tuple(self.model.outputs[i].name for i in self.rows)
         self.results = tuple(o.name for o in self.model.outputs)
-        if self.columns:
-            self.library = cache.library(variant.choice, variant.active(), self.columns, moving)
-            self.library.wc_tangent_work.restype = ctypes.c_long
-            self._kernel = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self.library, "model_kernel")))
-            self.tangent = ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(self.library, "tangent_tangent")))
+
+    @property
+    def library(self) -> ctypes.CDLL:
+        """What it is compiled to."""
+        return self.simulator.library
+
+    @property
+    def tangent(self) -> ctypes.c_void_p:
+        """Where the model's `wc_tangent` is."""
+        return address(self.library, "tangent_tangent")
 
     def run(
         self, time: np.ndarray, inputs: np.ndarray, parameters: np.ndarray, by: Sequence[str] = (), *, tolerance: float = 1e-6
@@ -97,11 +101,13 @@ class Sensitivities:
         }
         forced = any(not name.startswith("start.") for name in by)
         wanted = DerivativesRecord(k, which.ctypes.data, forced, *(a.ctypes.data for a in out.values()))
-        work = np.empty(self.library.wc_tangent_work(self._kernel, self.tangent, ctypes.c_int(k)))
+        kernel, tangent, room = self.simulator.kernel, self.tangent, self.library.wc_tangent_work
+        room.restype = ctypes.c_long
+        work = np.empty(room(kernel, tangent, ctypes.c_int(k)))
         reached = ctypes.c_long()
         status = self.library.wc_tangent_run(
-            self._kernel,
-            self.tangent,
+            kernel,
+            tangent,
             ctypes.c_void_p(p.ctypes.data),
             ctypes.c_double(tolerance),
             ctypes.c_long(n),

@@ -40,7 +40,7 @@ class Trajectory:
 
 
 class Simulator:
-    """A variant, compiled and ready to run. Instances share nothing and may run in parallel threads.
+    """A variant, compiled when it is first run. Instances share nothing and may run in parallel threads.
 
     `columns`: use the library that also has the model's derivatives by these parameters, where that is at hand anyway.
     `moving`: the only inputs that may brake, slope or change the floor, and `run` raises ValueError for others; all may if it
@@ -50,9 +50,15 @@ class Simulator:
     def __init__(
         self, variant: Variant = Variant(), columns: Sequence[str] | None = None, moving: Collection[str] | None = None
     ):
-        self.variant, self._moving = variant, moving
-        self._library = cache.library(variant.choice, variant.active(), columns, moving)
-        self._kernel = ctypes.c_char.in_dll(self._library, "model_kernel")
+        self.variant, self._columns, self._moving = variant, columns, moving
+        self._compiled: ctypes.CDLL | None = None
+
+    @property
+    def library(self) -> ctypes.CDLL:
+        """What it is compiled to."""
+        if self._compiled is None:  # a cached_property of Python 3.11 would compile one model at a time
+            self._compiled = cache.library(self.variant.choice, self.variant.active(), self._columns, self._moving)
+        return self._compiled
 
     @cached_property
     def model(self) -> Model:
@@ -110,8 +116,8 @@ class Simulator:
         reached, steps = ctypes.c_long(), ctypes.c_long()
         status = self._start(p, w, x) if start is None else self._given(start, x)
         if not status:
-            status = self._library.wc_run(
-                self._at(self._kernel),
+            status = self.library.wc_run(
+                self.kernel,
                 _of(p),
                 Accuracy(tolerance, grid),
                 ctypes.c_long(len(t)),
@@ -128,21 +134,22 @@ class Simulator:
         return Trajectory(t, x, y, self._names, steps.value)
 
     def _start(self, p: np.ndarray, w: np.ndarray, x: np.ndarray) -> int:
-        return self._library.wc_start(self._at(self._kernel), _of(p), _of(w), _of(x))
+        return self.library.wc_start(self.kernel, _of(p), _of(w), _of(x))
 
     @property
     def kernel(self) -> ctypes.c_void_p:
         """Where the model's `wc_kernel` is."""
-        return self._at(self._kernel)
+        return address(self.library, "model_kernel")
 
     @staticmethod
     def _given(start: np.ndarray, x: np.ndarray) -> int:
         x[0] = start
         return 0
 
-    @staticmethod
-    def _at(symbol: ctypes.c_char) -> ctypes.c_void_p:
-        return ctypes.c_void_p(ctypes.addressof(symbol))
+
+def address(library: ctypes.CDLL, name: str) -> ctypes.c_void_p:
+    """Where a library has a record of this name."""
+    return ctypes.c_void_p(ctypes.addressof(ctypes.c_char.in_dll(library, name)))
 
 
 def stopped(status: int, time: np.ndarray, reached: int) -> str:

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from threading import RLock
 
 import platformdirs
 
@@ -54,12 +55,20 @@ def found(name: str, suffix: str, place: Path | None = None) -> Path | None:
 
 
 def kept(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
-    """The file of this name; `make(path)` makes it where it is missing or damaged.
+    """The file of this name; `make(path)` makes it where it is missing or damaged, in one thread at a time.
 
     Raises BuildError where it cannot be kept, and what `make` raises.
     """
-    if there := found(name, suffix):
-        return there
+    with _turn(f"{name}{suffix}"):
+        return found(name, suffix) or _made(name, suffix, make)
+
+
+@cache
+def _turn(name: str) -> RLock:
+    return RLock()
+
+
+def _made(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
     try:
         with making() as work:
             beside = work / f"{name}{suffix}"

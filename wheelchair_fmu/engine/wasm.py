@@ -41,8 +41,10 @@ FLAGS = (
     "-fvisibility=hidden",
 )
 
-# What is small wins: the step in loops over its stages instead of written out, second derivatives by difference.
-KERNEL = {"step": "wc_page_step", "plain": NOTHING, "bare": NOTHING, "forward": NOTHING, "rate": NOTHING}
+# What is small wins: the step in loops over its stages instead of written out, and no other beside it; second derivatives by
+# difference.
+STEP = {"step": "wc_page_step"}
+KERNEL = ("start", "project", "output", "mass")
 TANGENT = dict.fromkeys(("prepare", "bend", "slopes_all", "prepare_all", "bend_all", "begin"), NOTHING)
 
 
@@ -116,7 +118,7 @@ def _written(
     with deriving:
         model = at_rest(assemble(choice, effects), moving)
         sources = {
-            "model.c": c_source(kernel(model), "model", KERNEL),
+            "model.c": c_source(kernel(model, KERNEL), "model", STEP),
             "tangent_model.c": tangent_source(tangent(model, columns, pushes), "tangent", TANGENT),
         }
     for name, text in {**sources, "coefficients.h": coefficients()}.items():

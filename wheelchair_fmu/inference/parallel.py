@@ -53,6 +53,13 @@ def parallel_map(
     return [done[i] for i in range(len(things))]
 
 
+def meanwhile(do: Callable[[], object]) -> None:
+    """Have made what will be asked for later, beside other work, where there are cores for it. What goes wrong there is told
+    when it is asked for."""
+    if _cores() > 1:
+        _background().submit(do)
+
+
 _this = local()  # thread
 
 
@@ -64,6 +71,11 @@ def _cores() -> int:
 @cache
 def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(_cores(), initializer=_works)
+
+
+@cache
+def _background() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1)
 
 
 def _works() -> None:

@@ -56,14 +56,15 @@ static void fill_rows(const wc_kernel *k, stretch *s, double done, double h, con
 
 /* What takes a step while the inputs go from w0 to w1. */
 static wc_function step_between(const wc_kernel *k, const double *p, const double *w0, const double *w1) {
-    if (!k->plain) return k->step;
+    if (!k->plain && !k->bare) return k->step;
     for (int i = 0; i < k->seldom; i++) {
         int at = k->seldom_inputs[i];
         if (w0[at] != k->resting[i] || w1[at] != k->resting[i]) return k->step;
     }
-    if (!k->bare) return k->plain;
+    wc_function resting = k->plain ? k->plain : k->step;
+    if (!k->bare) return resting;
     for (int i = 0; i < k->switches; i++)
-        if (p[k->switch_parameters[i]] != 0) return k->plain;
+        if (p[k->switch_parameters[i]] != 0) return resting;
     return k->bare;
 }
 

@@ -12,6 +12,7 @@ from ..estimation.statistics import estimates
 from ..models.factory import TOGETHER
 from ..models.hypothesis import Model
 from ..models.models import Models
+from ..parallel import meanwhile
 from ..policy import SearchPolicy
 from ..residual.staircase import Step
 from ..search.candidate import Candidate, ranked
@@ -26,13 +27,19 @@ from ..search.selection import Selection
 TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 
 
+def prepare(models: Models, generic: Mapping[str, Effect]) -> None:
+    """Have the model compiled, beside other work, that `leftover` asks for unless an effect with states is found."""
+    if terms := _terms_of(models, generic):
+        meanwhile(lambda: terms.wide().compile())
+
+
 def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:
     """Test the generic terms on what is left; a proposal where one is found that no effect explains."""
-    if not generic:
+    terms = _terms_of(found.models, generic)
+    if terms is None:
         return None, None
     models, top, base, rounds = found.models, found.top, found.top.fit, found.rounds
     models.say("looking for what no effect explains")
-    terms = models.widened(generic, models.policy.of_terms)
     first, later = rounds[0], found.effects[len(rounds[0].effects) :]
     if len(later) > 1 or (later and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
         promised = max((s.drop for s in first.scores if s.effect in later), default=0.0)  # by slopes, like the terms'
@@ -50,6 +57,12 @@ def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | N
     if best is not None and not all(_likelier(best, c, models.policy, len(first.scores)) for c in known):
         best = None  # an effect of the catalogue does so, be it too small to be named
     return left, best
+
+
+def _terms_of(models: Models, generic: Mapping[str, Effect]) -> Models | None:
+    """The models with generic terms too; None where nothing is looked for."""
+    looked_for = models.factory.catalogue.keys() - models.factory.own
+    return models.widened(generic, models.policy.of_terms) if generic and looked_for else None
 
 
 def _terms(terms: Models, generic: Mapping[str, Effect], base: Model, least: float, rival: float = np.inf) -> Round:

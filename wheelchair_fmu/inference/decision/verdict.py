@@ -49,7 +49,7 @@ from ..search.ties import grouped, probable, tied
 from .ahead import Ahead, ahead, run_to_fit, which_to_fit
 from .experiment import Experiment, reveal, separate
 from .foretold import on_led_runs, worse, worsened
-from .leftover import leftover, settled
+from .leftover import leftover, prepare, settled
 
 FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 
@@ -225,9 +225,9 @@ def _diagnosed(
 ) -> Diagnosis:
     """The search up the staircase, and the verdict on where it ends; `heard` are sentences on columns and clocks that there are
     already."""
-    beginning, found = _climbed(models, stepped)
+    beginning, found = _climbed(models, generic, stepped)
     models, rounds, base = found.models, found.rounds, found.top.fit
-    left, proposal = leftover(found, generic if models.factory.catalogue.keys() - models.factory.own else {})
+    left, proposal = leftover(found, generic)
     included, ladder = found.effects, found.ladder
     if proposal is not None:
         included, proposal, ladder = settled(found, generic, proposal)
@@ -279,9 +279,12 @@ def _named(verdict: str, effects: Sequence[str], ties: Sequence[Sequence[str]], 
     return _slight(first) if verdict == "small" else ()
 
 
-def _climbed(models: Models, stepped: Callable[[Sequence[Step]], None]) -> tuple[Beginning, Selection]:
+def _climbed(
+    models: Models, generic: Mapping[str, Effect], stepped: Callable[[Sequence[Step]], None]
+) -> tuple[Beginning, Selection]:
     """Where a search began, and how it ended; once again where its last model shows that pushes are a little early or late."""
     first = _where_wheels_roll(begin(models))
+    prepare(first.models, generic)
     found = selection(first, stepped).to_the_top()
     named = (*found.named(), *found.already)
     late = late_by_slopes(found.models, found.effects, named, found.top.fit)

@@ -13,7 +13,6 @@ from ...quantities import Parameter
 from ..estimation.fit import Fit
 from ..estimation.starts import most_promising, outlook
 from ..evidence.evidence import Evidence
-from ..evidence.likelihood import Likelihood
 from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models
@@ -43,7 +42,7 @@ def candidate(
     effect = s.score.effect
     effects, base = (*base.effects, effect), models.rival_of(effect, base)
     likelihood = models.likelihood(effects)
-    starts = _starts(models, likelihood, base.fit, s, least)
+    starts = _starts(models, base.fit, s, least)
     if starts:
         models.say(f"refitting {effect}")
     rival = min(rival, base.fit.misfit)  # which it has as a special case
@@ -124,10 +123,10 @@ def _afresh(models: Models, base: Model, s: Screened, least: float, rival: float
         return None
 
 
-def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, least: float) -> list[Start]:
+def _starts(models: Models, base: Fit, s: Screened, least: float) -> list[Start]:
     """Where to start refits, and what is known there, where −2 log likelihood may fall by `least`: a linear effect from zero,
     others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
-    w = models.factory
+    w, likelihood = models.factory, s.likelihood
     group = s.score.effect in w.groups
     if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
         return []
@@ -142,7 +141,7 @@ def _starts(models: Models, likelihood: Likelihood, base: Fit, s: Screened, leas
         off = _without(w, base, names)
         known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
         return [(dict(zip(names, off, strict=True)), known)]
-    thetas = _sizes(models, likelihood, base, names, calibrations, s, least)
+    thetas = _sizes(models, base, names, calibrations, s, least)
     return [(dict(zip(names, theta, strict=True)), None) for theta in dict.fromkeys(thetas)]
 
 
@@ -154,16 +153,10 @@ def _expected(models: Models, s: Screened) -> dict[str, float]:
 
 
 def _sizes(
-    models: Models,
-    likelihood: Likelihood,
-    base: Fit,
-    names: Sequence[str],
-    calibrations: Sequence[Sequence[float]],
-    s: Screened,
-    least: float,
+    models: Models, base: Fit, names: Sequence[str], calibrations: Sequence[Sequence[float]], s: Screened, least: float
 ) -> list[tuple[float, ...]]:
     """The most promising calibrations and sizes of an effect together, by `names`."""
-    w = models.factory
+    w, likelihood = models.factory, s.likelihood
     records = [w.records[n] for n in w.parameters(s.score.effect)]
     known, calibrated = s.evidence.only(base.names), len(base.names)
     members = [w.catalogue[member] for member in w.members(s.score.effect)]

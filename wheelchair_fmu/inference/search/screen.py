@@ -33,10 +33,12 @@ PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected 
 @dataclass(frozen=True)
 class Screened:
     """An effect's score, and the evidence it rests on, with sensitivities by what is fitted, by this effect and by others.
+    `likelihood` runs that evidence again with any size of it.
     `straight`: it does most about calibrated values as the campaign has them, not as a fit without it left them."""
 
     score: Score
     evidence: Evidence
+    likelihood: Likelihood
     delta: np.ndarray
     linear: bool
     straight: bool = False
@@ -96,7 +98,7 @@ def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -
     light = [e for e in free if e in w.light]
     dear = [more for group in (w.heavy, w.demanding) if (more := [e for e in free if e in group])]
     wanted = [partial(models.wide, base.effects), *(partial(models.rerun, (*base.effects, *more)) for more in dear)]
-    parallel_map(lambda make: make(), wanted)  # those that are not compiled yet, side by side
+    parallel_map(lambda make: make().compile(), wanted)  # those that are not compiled yet, side by side
     found, here = _by_slopes(models, base, [e for e in light if e not in models.doubles])
     # Beside unrecorded forces an offset without its nuisance would be made up for by these.
     for effect in [] if w.leads else [e for e in light if e in models.doubles]:
@@ -118,7 +120,7 @@ def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[
         tangent = _score(w, here, off, effect, here.S[:, own])
         bent = [] if w.linear(effect) else _secants(w, likelihood, here, fit.values, effect)
         secants = [_score(w, here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
-        return _most_promising(w, [tangent, *secants], here)
+        return _most_promising(w, [tangent, *secants], here, likelihood)
 
     return parallel_map(screened, light), here
 
@@ -140,16 +142,16 @@ def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidenc
         scores = [score for group in by for score in group]
         if not scores:
             return None
-        best = _most_promising(w, scores, here)
+        best = _most_promising(w, scores, here, likelihood)
         return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
 
     return [s for s in parallel_map(screened, effects) if s]
 
 
-def _most_promising(w: ModelFactory, scores: Sequence[Score], here: Evidence) -> Screened:
+def _most_promising(w: ModelFactory, scores: Sequence[Score], here: Evidence, likelihood: Likelihood) -> Screened:
     """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
     best = max(scores, key=lambda s: s.drop)
-    return Screened(replace(best, p=scores[0].p), here, w.deltas(best.names), w.linear(best.effect))
+    return Screened(replace(best, p=scores[0].p), here, likelihood, w.deltas(best.names), w.linear(best.effect))
 
 
 def _slopes_at_prior_mean(likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
