@@ -182,6 +182,19 @@ def test_shorter_steps_are_the_step_on_a_level_floor_with_open_brakes(name, effe
             np.testing.assert_allclose(np.array(short), np.array(whole), rtol=1e-9, atol=1e-12)
 
 
+def test_bare_results_are_the_results_on_a_level_floor_with_open_brakes_and_all_effects_off():
+    rng = np.random.default_rng(5)
+    variant = variant_with(*bundled(), size=0)
+    functions = kernel(variant.model()).functions
+    assert functions["bare_output"].n_instructions() < 0.6 * functions["output"].n_instructions()
+    for _ in range(20):
+        place = anywhere(variant, rng)
+        for i in seldom(variant.model()):
+            place.w[i] = variant.model().inputs[i].start
+        whole, short = (np.array(functions[name](place.x, place.w, place.p)) for name in ("output", "bare_output"))
+        np.testing.assert_allclose(short, whole, rtol=1e-12, atol=1e-14)
+
+
 @pytest.mark.parametrize("name", ["brake.rl", "brake.rr", "floor.slope_x", "floor.slope_y", "floor.rolling_factor"])
 def test_no_input_is_overlooked_because_most_runs_leave_it_at_rest(name):
     """From rest to somewhere, and from somewhere to rest, within one step."""

@@ -7,6 +7,7 @@
                                            none where the model is such a chair's anyway, or nearly (`at_rest`)
     bare(x, w0, w1, h, p)                → the same, and all effects off besides
     output(x, w, p)                      → y
+    bare_output(x, w, p)                 → the same where a bare step would be taken
     forward(x, w, p, dx, dw, dp)         → dy, dx'  derivatives along a direction
     rate(x, w, p)                        → x', z    algebraic states rest; results that are true or false switch where z does
     mass(p)                              → m     of each row; zero where it is algebraic
@@ -28,7 +29,7 @@ from ..model.wheelchair import Model
 from .lu import factorise
 from .rodas import step
 
-NAMES = ("start", "project", "step", "plain", "bare", "output", "forward", "rate", "mass")
+NAMES = ("start", "project", "step", "plain", "bare", "output", "bare_output", "forward", "rate", "mass")
 WORTH = 0.9  # of a step's operations: a plain one of more is not compiled, as of a model in which hardly anything moves besides
 SIMULATED = ("start", "project", "step", "plain", "bare", "output", "mass")  # what it takes to simulate a run
 
@@ -56,7 +57,9 @@ def kernel(model: Model, names: Container[str] = NAMES) -> Kernel:
     if seldom(model):
         makers["plain"] = lambda: _step(at_rest(model), "plain")
         if switches(model):
-            makers["bare"] = lambda: _step(_off(at_rest(model)), "bare")
+            off = _off(at_rest(model))
+            makers["bare"] = lambda: _step(off, "bare")
+            makers["bare_output"] = lambda: cs.Function("bare_output", [x, w, p], cs.cse([off.y]))
     functions = {name: make() for name, make in makers.items() if name in names}
     if functions.keys() >= {"step", "plain"} and _work(functions["plain"]) > WORTH * _work(functions["step"]):
         del functions["plain"]
@@ -95,8 +98,8 @@ def switches(model: Model) -> list[int]:
 def _off(model: Model) -> Model:
     """The model with its effects off, whatever their parameters are."""
     places = switches(model)
-    f, mass = cs.substitute([model.f, model.mass], [model.p[places]], [cs.DM.zeros(len(places))])
-    return replace(model, f=f, mass=mass)
+    f, y, mass = cs.substitute([model.f, model.y, model.mass], [model.p[places]], [cs.DM.zeros(len(places))])
+    return replace(model, f=f, y=y, mass=mass)
 
 
 def _step(model: Model, name: str) -> cs.Function:

@@ -54,18 +54,24 @@ static void fill_rows(const wc_kernel *k, stretch *s, double done, double h, con
     }
 }
 
+/* Do the inputs rest that most runs leave at rest? */
+static int rests(const wc_kernel *k, const double *w) {
+    for (int i = 0; i < k->seldom; i++)
+        if (w[k->seldom_inputs[i]] != k->resting[i]) return 0;
+    return 1;
+}
+
+static int without_effects(const wc_kernel *k, const double *p) {
+    for (int i = 0; i < k->switches; i++)
+        if (p[k->switch_parameters[i]] != 0) return 0;
+    return 1;
+}
+
 /* What takes a step while the inputs go from w0 to w1. */
 static wc_function step_between(const wc_kernel *k, const double *p, const double *w0, const double *w1) {
-    if (!k->plain && !k->bare) return k->step;
-    for (int i = 0; i < k->seldom; i++) {
-        int at = k->seldom_inputs[i];
-        if (w0[at] != k->resting[i] || w1[at] != k->resting[i]) return k->step;
-    }
-    wc_function resting = k->plain ? k->plain : k->step;
-    if (!k->bare) return resting;
-    for (int i = 0; i < k->switches; i++)
-        if (p[k->switch_parameters[i]] != 0) return resting;
-    return k->bare;
+    if ((!k->plain && !k->bare) || !rests(k, w0) || !rests(k, w1)) return k->step;
+    if (k->bare && without_effects(k, p)) return k->bare;
+    return k->plain ? k->plain : k->step;
 }
 
 /* Goes the whole stretch in steps of the size the error allows; *h is the first to try and the next. */
@@ -185,7 +191,8 @@ wc_status wc_advance(const wc_kernel *k, const double *p, wc_accuracy accuracy, 
 void wc_output(const wc_kernel *k, const double *p, const double *w, const double *x, double *y) {
     const double *arg[] = {x, w, p};
     double *res[] = {y};
-    k->output(arg, res, 0, 0, 0);
+    int bare = k->bare_output && rests(k, w) && without_effects(k, p);
+    (bare ? k->bare_output : k->output)(arg, res, 0, 0, 0);
 }
 
 /* The last row up to which the inputs go on in the straight line on which they leave row i. */

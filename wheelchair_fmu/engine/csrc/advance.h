@@ -25,8 +25,8 @@ typedef struct {
     const double *resting;
     int switches; /* how many parameters put effects on, and which they are */
     const int *switch_parameters;
-    /* `plain`, where given: a step while those inputs rest; `bare`: and while no effect is on */
-    wc_function start, project, step, plain, bare, output, forward, rate, mass;
+    /* `plain`, where given: a step while those inputs rest; `bare` and `bare_output`: and while no effect is on */
+    wc_function start, project, step, plain, bare, output, bare_output, forward, rate, mass;
 } wc_kernel;
 
 typedef enum {
