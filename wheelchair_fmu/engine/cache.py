@@ -34,11 +34,11 @@ from .tangent import Tangent, noisy, tangent
 log = logging.getLogger(__name__)
 PACKAGE = Path(__file__).parent.parent
 # How much to optimise: of what CasADi writes, straight lines of arithmetic, -O2 takes compilers up to twice as long, for a few
-# percent of speed in derivatives and for none in a step.
+# percent of speed in derivatives and for none in a step; of what calls the others, -O3 does.
 LEVELS = {
     **{"model": "-O1", "tangent_model": "-O1", "tangent_lanes": "-O1", "model_lanes": "-O2"},
     **{"advance": "-O2", "tangent": "-O3", "rodas": "-O3", "lanes": "-O3"},
-    **{"innovations": "-O3", "evaluation": "-O3", "processor": "-O2"},
+    **{"innovations": "-O3", "evaluation": "-O2", "processor": "-O2"},
 }
 SIMULATING, DERIVING = ("advance",), ("tangent", "rodas", "innovations", "evaluation")  # files of `csrc` in libraries that do
 OF_PUSHES = ("tangent", "rodas", "evaluation")  # and those that are compiled for a number of noisy inputs
