@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import Any
 
 from .dialect import (
@@ -33,6 +34,13 @@ from .units import split, suffixed
 _EMPTY = "export it again, or leave it out"
 _DECIMAL_COMMA = r"(?:^|{0})[ ]*[-+]?\d*,\d+(?:[eE][-+]?\d+)?[ ]*(?=$|{0})"
 _MOST_PREAMBLE = 20000  # lines
+_BETWEEN = {"tab": "\t", "space": SPACES, "spaces": SPACES}  # what stands between cells, in words
+# What options may be, what another one is not, and what to give instead.
+_LAWFUL: Mapping[str, tuple[Callable[[Any], bool], str, str]] = {
+    "separator": (lambda s: s in _BETWEEN or len(s) == 1, "separator", 'one character, such as ",", or "tab" or "spaces"'),
+    "decimal": (lambda s: s in (".", ","), "decimal sign", '"." or ","'),
+    "skip": (lambda n: n >= 0 and n % 1 == 0, "number of lines", "how many stand above the header"),
+}
 
 
 @dataclass(frozen=True)
@@ -57,7 +65,11 @@ def parse(file: str, raw: bytes, options: Mapping[str, Any] | None = None) -> tu
 
     `options` may hold encoding, separator, decimal and skip (lines before the header).
     """
-    options = options or {}
+    options = {name: value for name, value in (options or {}).items() if _is_one(name, value)}
+    for name, (lawful, what, cure) in _LAWFUL.items():
+        if name in options and not lawful(options[name]):
+            fact = f"{name} = {options[name]!r} is no {what}"
+            return None, [run_fault(file, fact, f"give {cure}, or leave it out to have it found")]
     if is_binary(raw):
         return None, [run_fault(file, "the file is binary, not text", "export it as CSV, or name its format")]
     try:
@@ -71,12 +83,17 @@ def parse(file: str, raw: bytes, options: Mapping[str, Any] | None = None) -> tu
     return _parsed(file, text.replace("\r\n", "\n").replace("\r", "\n"), options, notes)
 
 
+def _is_one(name: str, value: Any) -> bool:
+    """Is an option a text, or a number where it is to be one? What is not is told with the campaign's keys."""
+    if name != "skip":
+        return isinstance(value, str)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
+
+
 def _parsed(file: str, text: str, options: Mapping[str, Any], notes: list[str]) -> tuple[Text | None, list[Fault]]:
     seen = sample(text)
     asked = options.get("separator")
-    separator = (
-        {"tab": "\t", "space": SPACES, "spaces": SPACES}.get(str(asked), asked) or separator_of(seen) or _by_header(text)
-    )
+    separator = _BETWEEN.get(str(asked), asked) or separator_of(seen) or _by_header(text)
     rows = [cells(line, separator) for line in seen]
     numeric = columns_of_numbers(rows)
     above, layout_first = _above(text, separator, numeric, options.get("skip"))
@@ -135,7 +152,7 @@ def _above(text: str, separator: str, numeric: list[int], skip: Any) -> tuple[li
     """The cells of the lines before the first row of numbers, and the place of that row."""
     above: list[list[str]] = []
     at = 0
-    skip = int(skip) if isinstance(skip, int) else 0
+    skip = int(skip or 0)
     while numeric and at <= len(text) and len(above) < _MOST_PREAMBLE:
         end = text.find("\n", at)
         line = text[at : end if end >= 0 else len(text)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import json
 import sqlite3
 import zipfile
 from pathlib import Path
@@ -212,6 +213,31 @@ def test_comments_preambles_and_text_columns(tmp_path):
     read = table.rows([0, 2])
     assert read.faults == () and len(read.values[2]) == 50 and read.line(0) == 303 and read.line(49) == 353
     assert "301 lines before the header skipped" in table.notes[1] and "1 line of comment among the rows skipped" in table.notes
+
+
+@pytest.mark.parametrize(
+    ("options", "fact"),
+    [
+        ({"skip": -1}, "skip = -1 is no number of lines"),
+        ({"skip": 0.5}, "skip = 0.5 is no number of lines"),
+        ({"decimal": ";"}, "decimal = ';' is no decimal sign"),
+        ({"separator": ""}, "separator = '' is no separator"),
+        ({"separator": "tabs"}, "separator = 'tabs' is no separator"),
+    ],
+)
+def test_how_a_file_is_written_may_not_be_said_anyhow(tmp_path, options, fact):
+    (tmp_path / "a.csv").write_text(
+        "time [s],speed [m/s]\n" + "".join(f"{i / 10},{i}.5\n" for i in range(30)), encoding="utf-8"
+    )
+    _, faults = open_recording(tmp_path / "a.csv", "a.csv", options)
+    assert [f.fact for f in faults] == [fact] and "leave it out to have it found" in faults[0].cure
+
+
+@pytest.mark.parametrize("options", [{"skip": "two"}, {"decimal": 5}, {"separator": 3}, {"encoding": True}])
+def test_what_is_of_another_type_is_told_once_with_the_campaign_s_keys(campaign, options):
+    (key, value), *_ = options.items()
+    folder = campaign(runs=RUNS.replace("[[run]]\n", f"[[run]]\n{key} = {json.dumps(value)}\n", 1))
+    assert [key in str(f) and "which is no" in str(f) for f in check(folder)] == [True]
 
 
 def test_columns_between_spaces(tmp_path):

@@ -289,6 +289,13 @@ CASTERS = {"start.caster_l": (-3.2, 3.2), "start.caster_r": (-3.2, 3.2)}
                 "turn is meant, write 0.0000"
             ],
         ),
+        (
+            "-1.0",
+            [
+                "note: campaign.toml line 18: run 1 (a.csv): start.caster_l = -1 is -57°, as it is in rad; if a share of a "
+                "turn is meant, write 0.0000"
+            ],
+        ),
         ("0.48", []),
         ("0.12", []),
     ],
@@ -297,6 +304,16 @@ def test_an_angle_of_a_caster_in_another_unit(campaign, said, told):
     """Half a turn and 0.5 rad are one number: what a share of a turn would be written as is said to be an angle in rad."""
     runs = RUNS.replace("u0 = 1.0\n", f"u0 = 1.0\nset = {{ start.caster_l = {said} }}\n", 1)
     assert lines(campaign(runs=runs), known_parameters=KNOWN | CASTERS) == told
+
+
+def test_a_run_has_no_tyre_law_of_its_own_and_a_law_is_a_whole_number(campaign):
+    known = KNOWN | {"tyre.law": (1.0, 3.0)}
+    runs = RUNS.replace("u0 = 1.0\n", "u0 = 1.0\nset = { tyre.law = 3 }\n", 1)
+    (line,) = lines(campaign(runs=runs), known_parameters=known)
+    assert line.endswith("run 1 (a.csv): tyre.law is one for all runs; write law = 3 under [tyre]")
+    (line,) = lines(campaign(head=HEAD + "[tyre]\nlaw = 2.5\n"), known_parameters=known)
+    assert line.endswith("tyre.law = 2.5 is no law; give a whole number from 1 to 3")
+    assert lines(campaign(head=HEAD + "[tyre]\nlaw = 2\n"), known_parameters=known) == []
 
 
 def test_a_place_that_changes_nothing_is_said(campaign):
