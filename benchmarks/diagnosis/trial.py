@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.bootstrap import bootstrap
 from wheelchair_fmu.inference.decision.verdict import diagnose
@@ -17,8 +19,18 @@ from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 
 from ..independent.campaigns import make
+from ..independent.chair import Chair
 from .baselines import baselines
 from .cases import Case
+
+
+def _chair(case: Case) -> dict[str, float]:
+    """In what the other simulator's chair is not the usual one: casters that are not ideal have the front axle's load at their
+    patches, and no two tyres have patches of one length."""
+    chair = {} if case.casters == "ideal" else {"patch_load": 1.0}
+    if "turn_slip" in case.hidden:
+        chair["turn_length"] = Chair().turn_length * 2 ** np.random.default_rng([case.seed, 9]).uniform(-1, 1)
+    return chair
 
 
 def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
@@ -28,8 +40,7 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "campaign"
         how = dict(noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
-        at_patches = {"patch_load": 1.0} if case.casters != "ideal" else None  # where that law has the front axle's load
-        campaign = read(make(folder, case.hidden, chair=at_patches, **how))
+        campaign = read(make(folder, case.hidden, chair=_chair(case), **how))
         began = time.process_time()
         found = diagnose(campaign, chair, library())
         said = as_json(found)

@@ -11,12 +11,14 @@ from scipy.integrate import quad
 
 from benchmarks.independent.campaigns import make
 from wheelchair_fmu.campaign import read
+from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import prior_of
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.search.judge import _paid, judge
+from wheelchair_fmu.inference.search.usual import usual
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
@@ -30,15 +32,20 @@ CATALOGUE = {"trunk_motion": bundled()["trunk_motion"]}
 @pytest.fixture(scope="module")
 def swinging(sample):
     """Two runs of the chair with a rider whose body swings as BODY says."""
-    chance, runs = np.random.default_rng(4), []
     likelihood = Likelihood(sample, Variant().with_effects(["trunk_motion"]))
+    return simulated(likelihood, sample, (sample.fit[0], sample.fit[2]), BODY)
+
+
+def simulated(likelihood, sample, runs, values):
+    """The campaign with these runs alone, as a chair with such values would have been recorded on them."""
+    chance, recorded = np.random.default_rng(4), []
     names = [o.name for o in likelihood.variant.model().outputs]
-    for run in (sample.fit[0], sample.fit[2]):
-        (e,) = likelihood.evidence([run], BODY).runs
+    for run in runs:
+        (e,) = likelihood.evidence([run], values).runs
         read_off = {c: e.results[:, names.index(PREDICTS[c])] for c in run.channels}
         channels = {c: v + chance.normal(0, sample.noise[c], len(v)) for c, v in read_off.items()}
-        runs.append(replace(run, channels=channels))
-    return replace(sample, runs=tuple(runs))
+        recorded.append(replace(run, channels=channels))
+    return replace(sample, runs=tuple(recorded))
 
 
 def test_a_fit_finds_the_frequency_at_which_a_rider_swings(swinging):
@@ -94,9 +101,55 @@ def test_the_fall_of_an_effect_is_less_by_what_is_paid_for_its_constants(swingin
     models = Models.of(ModelFactory(swinging, Variant(catalogue=CATALOGUE)))
     base, found = models.model((), {}), models.model(("trunk_motion",), {SWING: 0.01})
     names = models.factory.parameters("trunk_motion")
-    judged, paid = judge(models, base, found, "trunk_motion", names, 1), _paid(found.fit, names)
+    paid = _paid(found.fit, names, usual(models, found, names))
+    judged = judge(models, base, found, "trunk_motion", names, 1)
     assert paid > 2
     assert judged.drop * judged.dispersion == pytest.approx(base.fit.misfit - found.fit.misfit - paid)
+
+
+TORQUE, LENGTH = "effect.turn_slip.M", "effect.turn_slip.L"
+
+
+@pytest.fixture(scope="module")
+def patches(sample):
+    """Runs of the chair on patches of twice the usual length that resist being turned."""
+    catalogue = {"turn_slip": bundled()["turn_slip"]}
+    likelihood = Likelihood(sample, Variant(catalogue=catalogue).with_effects(["turn_slip"]))
+    return catalogue, simulated(likelihood, sample, sample.fit[2:6], {TORQUE: 2.5, LENGTH: 1.2})
+
+
+def test_a_size_counts_as_by_the_usual_law_it_would_have_to_be_to_do_as_much(patches):
+    """A fit that may not adjust the length has that size, and knows it as well: what runs show is what a patch does."""
+    catalogue, campaign = patches
+    free, fixed = (Models.of(ModelFactory(campaign, Variant(catalogue=catalogue), fixed)) for fixed in ((), {LENGTH}))
+    own, plain = (models.model(("turn_slip",), {TORQUE: 1.0}) for models in (free, fixed))
+    names = free.factory.parameters("turn_slip")
+    at_usual, as_is = usual(free, own, names), usual(fixed, plain, names)
+    assert as_is.size[0] == plain.fit.values[TORQUE] and np.array_equal(as_is.slopes, np.eye(len(plain.fit.names)))
+    assert own.fit.values[LENGTH] > 0.9 and own.fit.values[TORQUE] < 0.8 * plain.fit.values[TORQUE]
+    assert at_usual.size[0] == pytest.approx(plain.fit.values[TORQUE], rel=0.05)
+    errors = [
+        float(np.sqrt(u.moved(m.fit.covariance)[at, at]))
+        for u, m in ((at_usual, own), (as_is, plain))
+        for at in [m.fit.names.index(TORQUE)]
+    ]
+    assert errors[0] == pytest.approx(errors[1], rel=0.2)
+    assert _paid(own.fit, names, at_usual) < _paid(own.fit, names) - 0.1  # at one such size hardly anything tells the length
+    assert errors[0] < 0.9 * np.sqrt(own.fit.covariance[own.fit.names.index(TORQUE), own.fit.names.index(TORQUE)])
+
+
+def test_a_size_of_none_and_one_of_a_model_that_cannot_run_by_the_usual_law_are_as_they_are(patches, monkeypatch):
+    catalogue, campaign = patches
+    models = Models.of(ModelFactory(campaign, Variant(catalogue=catalogue)))
+    found, names = models.model(("turn_slip",), {TORQUE: 1.0}), models.factory.parameters("turn_slip")
+    none = replace(found, fit=replace(found.fit, values={**found.fit.values, **dict.fromkeys(names, 0.0)}))
+    assert not usual(models, none, names).size.any()
+
+    def fails(*words, **options):
+        raise SimulationError
+
+    monkeypatch.setattr(Likelihood, "evidence", fails)
+    assert usual(models, found, names).size[0] == found.fit.values[TORQUE]
 
 
 @pytest.mark.nightly

@@ -14,6 +14,7 @@ from wheelchair_fmu.inference.estimation.calibration import at_bound, calibratio
 from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.quantities import M, Parameter
 
@@ -94,3 +95,16 @@ def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
         assert story(found)["calibration"]["chair.a"]["beyond"]
     else:
         assert "turn_slip" in found.effects
+
+
+@pytest.mark.parametrize("M", [1.5, 1.8])
+def test_no_model_is_adequate_that_probably_lacks_something(M, tmp_path):
+    """Patches whose torque everyday turns leave unsure by a half: too little to name them, and too much to say that nothing is
+    missing, be they put in because they help, as of 1.8 N m."""
+    names = ("turn_slip", "gyro_bias", "wheel_radius_error", "floor_slope", "push_force_delay")
+    campaign = read(make(tmp_path / "c", {"turn_slip": {"M": M}}, seed=5))
+    found = diagnose(campaign, Variant(catalogue={e: bundled()[e] for e in names}))
+    probability = found.beliefs["turn_slip"].large
+    assert found.verdict == "cannot_see" and found.effects == () and found.seen > found.models.policy.library
+    said = f"turn_slip is probably missing, with a size of interest ({probability:.2f}), but not surely enough to be named"
+    assert probability > 0.5 and f"{said}; further runs would tell" in found.notes

@@ -27,7 +27,8 @@ def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, di
     known = dict(p=0.0, heldout=None, lawful=True, by_errors=by_errors)
     one = np.ones(len(estimate))
     scale = dict(delta=one, one_sided=one < 0, dispersion=dispersion, correlation=correlation, gain=gain)
-    return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, covariance, **scale, **known)
+    usual = estimate, covariance, covariance
+    return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, covariance, usual, **scale, **known)
 
 
 def fitted(effect, slopes, y) -> Candidate:
@@ -121,7 +122,7 @@ def test_a_group_may_be_what_a_round_finds():
     r = Round((), NONE, evidence, (), (alone,), groups=(joined,))
     assert r.winner.effect == "a+b"
     assert replace(r, groups=(replace(joined, drop=42.0),)).winner.effect == "a"
-    slight = replace(joined, estimate=0.3 * joined.estimate)
+    slight = replace(joined, estimate=0.3 * joined.estimate, usual=(0.3 * joined.estimate, certain, certain))
     assert replace(r, groups=(slight,), candidates=()).winner is None
     assert replace(r, groups=(replace(joined, stretched=True),), candidates=()).winner is None
     assert replace(r, groups=(replace(joined, lawful=False),), candidates=()).winner is None

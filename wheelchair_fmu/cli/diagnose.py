@@ -33,7 +33,7 @@ SENTENCES = {
     "small": "There, but too small to matter: {effects}. The model is adequate without.",
     "needed": "There, too small to matter by itself: {effects}. Without, the model leaves more than noise.",
     "adequate": "Nothing is missing: the model explains these data, and would have shown an effect of interesting size.",
-    "cannot_see": "Nothing was found, but many effects could be of interesting size and these runs would not show it.",
+    "cannot_see": "Nothing was found for sure, but effects could be of interesting size and these runs would not show it.",
 }
 
 

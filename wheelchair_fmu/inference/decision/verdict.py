@@ -101,7 +101,7 @@ class Diagnosis:
     def beliefs(self) -> dict[str, Belief]:
         """How probable it is that each effect is there, and larger than δ."""
         found = {e: self._decided(e) for e in self.included if e not in self.already}
-        return beliefs(found, self.rounds[-1], self._one_sided)
+        return beliefs(found, self.rounds[-1], _one_sided(self.models.factory))
 
     @property
     def odds(self) -> tuple[dict[str, float], ...]:
@@ -117,12 +117,6 @@ class Diagnosis:
     def larger(self) -> tuple[Larger, ...]:
         """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
         return _instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
-
-    @property
-    def _one_sided(self) -> dict[str, np.ndarray]:
-        """By effect, which of its parameters (k,) may only be positive."""
-        w = self.models.factory
-        return {e: w.one_sided(w.parameters(e)) for e in w.catalogue}
 
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
@@ -240,7 +234,9 @@ def _diagnosed(
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
-    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained)
+    decided = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.added if e in included}
+    likely = {} if effects else _likely(models.factory, decided, rounds[-1])
+    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained, likely)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *beginning.heard(in_time))
@@ -265,7 +261,7 @@ def _diagnosed(
         retimed=beginning.retimed,
         clocks=in_time,
         heard=heard,
-        notes=(*_notes(found, heard, verdict, proposal, values), *which_to_fit(ladder, held, models.policy)),
+        notes=(*_notes(found, heard, verdict, proposal, values, likely), *which_to_fit(ladder, held, models.policy)),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
         seen=seen,
         ahead=held,
@@ -307,7 +303,12 @@ def _where_wheels_roll(first: Beginning) -> Beginning:
 
 
 def _notes(
-    found: Selection, heard: Sequence[str], verdict: str, proposal: Candidate | None, values: Sequence[Calibrated]
+    found: Selection,
+    heard: Sequence[str],
+    verdict: str,
+    proposal: Candidate | None,
+    values: Sequence[Calibrated],
+    likely: Mapping[str, float],
 ) -> tuple[str, ...]:
     """Sentences on recordings, on noise, and on what a model came out at that nobody should believe."""
     models, top, rounds = found.models, found.top, found.rounds
@@ -316,7 +317,26 @@ def _notes(
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
     large = tuple(other.words for other in _instead_of_small(rounds[0])) if verdict == "small" else ()
-    return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large)
+    unsure = tuple(_unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
+    return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large, *unsure)
+
+
+def _likely(w: ModelFactory, decided: Mapping[str, Round], last: Round) -> dict[str, float]:
+    """The probability of effects that are more probably of a size of interest than not, though none is sure enough to be named:
+    of those that only help the model, by the round that decided on each, and of others beside it."""
+    return {e: b.large for e, b in beliefs(decided, last, _one_sided(w)).items() if b.large > 0.5}
+
+
+def _one_sided(w: ModelFactory) -> dict[str, np.ndarray]:
+    """By effect, which of its parameters (k,) may only be positive."""
+    return {e: w.one_sided(w.parameters(e)) for e in w.catalogue}
+
+
+def _unsure(effect: str, probability: float) -> str:
+    return (
+        f"{effect} is probably missing, with a size of interest ({probability:.2f}), but not surely enough to be named; "
+        "further runs would tell"
+    )
 
 
 def _allowance(found: Selection) -> dict[str, float]:
@@ -413,8 +433,10 @@ def _verdict(
     ladder: Sequence[Step],
     left: tuple[Evidence, Ahead],
     strained: Sequence[str],
+    likely: Mapping[str, float],
 ) -> tuple[str, float | None]:
-    """The verdict, and the share of causes that would have been seen, where it rests on that."""
+    """The verdict, and the share of causes that would have been seen, where it rests on that. No model is adequate that is
+    `likely` to lack something."""
     if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
         return "outside", None
     # Where forces lead the runs, what lasts is theirs: whether anything is behind that is asked of them (see `Unexplained`).
@@ -429,7 +451,7 @@ def _verdict(
     if _slight(rounds[0]):
         return "small", None
     seen = share_seen(_seen(models, rounds[0]), models.factory.catalogue)
-    return ("adequate" if seen >= models.policy.library else "cannot_see"), seen
+    return ("adequate" if seen >= models.policy.library and not likely else "cannot_see"), seen
 
 
 def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:

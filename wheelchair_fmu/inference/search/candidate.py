@@ -26,6 +26,7 @@ class Candidate:
     without: np.ndarray  # the same in a model that lacks it: zero, or what the campaign says
     covariance: np.ndarray  # (k, k) of the estimate
     between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
+    usual: tuple[np.ndarray, np.ndarray, np.ndarray]  # its size by usual laws (k,), and both covariances of that (see `usual`)
     delta: np.ndarray
     one_sided: np.ndarray  # which of its parameters may only be positive
     dispersion: float  # mean square innovation
@@ -71,8 +72,8 @@ class Candidate:
     @cached_property
     def support(self) -> Support:
         """What bears it out, beside the model without it, and however many parameters it has."""
-        covariances, ahead = (self.covariance, self.between), self.gain[0] / self.scale if self.gain else 0.0
-        what = self.size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy, self.bounded
+        (size, *covariances), ahead = self.usual, self.gain[0] / self.scale if self.gain else 0.0
+        what = size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy, self.bounded
         return support_of(self.effect, *what)
 
     @property

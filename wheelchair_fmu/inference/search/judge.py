@@ -13,10 +13,11 @@ from ..estimation.fit import Fit
 from ..estimation.inverse import inverse
 from ..estimation.marginal import support_of
 from ..estimation.score import RUNS
-from ..estimation.statistics import between_runs, bounded, correlation_time, estimates, held_out_gain, seen_directions
+from ..estimation.statistics import between_runs, bounded, correlation_time, estimates, held_out_gain, sandwich, seen_directions
 from ..models.hypothesis import Model
 from ..models.models import Models
 from .candidate import Candidate
+from .usual import Usual, usual
 
 
 def judge(models: Models, base: Model, found: Model, effect: str, names: Sequence[str], tests: int) -> Candidate:
@@ -28,7 +29,8 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     one_sided, near, without = w.one_sided(names), 1e-6 * delta, w.unfitted(names)
     along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
-    fall, correlation = base.fit.misfit - fit.misfit - _paid(fit, names), correlation_time(fit.evidence)
+    at_usual = usual(models, found, names)
+    fall, correlation = base.fit.misfit - fit.misfit - _paid(fit, names, at_usual), correlation_time(fit.evidence)
     drop = fall / dispersion
     p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
     if len(names) == 1 and one_sided[0]:
@@ -41,6 +43,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         without=without,
         covariance=covariance,
         between=_between(fit, names, covariance),
+        usual=_spread(fit, at_usual),
         delta=delta,
         one_sided=one_sided,
         dispersion=dispersion,
@@ -56,7 +59,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     )
 
 
-def _paid(found: Fit, names: Sequence[str]) -> float:
+def _paid(found: Fit, names: Sequence[str], at_usual: Usual | None = None) -> float:
     """What −2 log likelihood is the less for, as constants of the effects of `names` were adjusted: twice the log of how far
     data narrowed them down, so that a law that can be bent is no likelier for that (Laplace)."""
     of = {n.rpartition(".")[0] for n in names}
@@ -65,20 +68,30 @@ def _paid(found: Fit, names: Sequence[str]) -> float:
     if not constants:
         return 0.0
     both = [*own, *constants]
-    told = inverse(found.covariance[np.ix_(both, both)])[len(own) :, len(own) :]
+    covariance = (at_usual.moved(found.covariance) if at_usual else found.covariance)[np.ix_(both, both)]
+    told = inverse(covariance)[len(own) :, len(own) :]
     sd = 1 / np.diag(found.prior_slopes)[constants]
     return max(0.0, float(np.linalg.slogdet(told * np.outer(sd, sd))[1]))
 
 
-def surely_large(models: Models, found: Fit, effect: str) -> bool:
-    """Is an effect of a fit with sensitivities surely large, rather than slight or nothing?"""
-    w = models.factory
+def surely_large(models: Models, found: Model, effect: str) -> bool:
+    """Is an effect of a model with sensitivities surely large, rather than slight or nothing?"""
+    w, fit = models.factory, found.fit
     names = w.parameters(effect)
-    delta, (estimate, covariance) = w.deltas(names), estimates(found, names)
-    between, fall = _between(found, names, covariance), models.weight(found, effect)
-    size = estimate - w.unfitted(names)
-    told = support_of(effect, size, (covariance, between), delta, w.one_sided(names), fall, 0.0, models.policy)
+    size, *covariances = _spread(fit, usual(models, found, names))
+    told = support_of(
+        effect, size, covariances, w.deltas(names), w.one_sided(names), models.weight(fit, effect), 0.0, models.policy
+    )
     return float(special.expit(told.large - max(0.0, told.slight))) > models.policy.sure
+
+
+def _spread(found: Fit, at_usual: Usual) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sizes (k,) by usual laws, their covariance (k, k), and the same between runs."""
+    own, every = at_usual.own, at_usual.moved(sandwich(found))
+    covariance = every[np.ix_(own, own)]
+    if len(found.evidence.runs) < RUNS:
+        return at_usual.size, covariance, covariance
+    return at_usual.size, covariance, at_usual.moved(between_runs(found))[np.ix_(own, own)]
 
 
 def _between(found: Fit, names: Sequence[str], otherwise: np.ndarray) -> np.ndarray:

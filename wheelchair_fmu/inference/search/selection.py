@@ -81,7 +81,7 @@ class Selection:
         """The effects that were found, without those that only help: what is likelier slight, be it of a group, unless all of
         the group are."""
         doubtful = self.helping.union(self.parts).intersection(self.added)
-        large = {e for e in doubtful if surely_large(self.models, self.top.fit, e)}
+        large = {e for e in doubtful if surely_large(self.models, self.top, e)}
         helping, parts = self.helping.difference(large), self.parts.difference(large)
         return tuple(e for e in self.added if e not in helping and (e not in parts or not large.intersection(self.parts)))
 

@@ -45,6 +45,7 @@ LENGTH = Parameter(
     upper=5.0,
     symbol="L_turn",
     source="chosen: 45 N m/rad, half a patch of 34 mm and 2.5 N m; Pacejka, turn slip",
+    known_to=0.4,
 )
 CASTER_LENGTH = Parameter(
     "L_f",
