@@ -94,14 +94,14 @@ def test_what_is_paid_for_a_constant_is_its_integral(told):
 
     mode = told * best / (told + s**-2)
     integral = quad(likely, -4 * s, 4 * s, epsabs=1e-12, points=[mode])[0] / (s * np.sqrt(2 * np.pi))
-    assert np.exp(-0.5 * _paid(fit, ["effect.a.size"])) == pytest.approx(integral / likely(mode), rel=1e-3)
+    assert np.exp(-0.5 * _paid(fit, ["effect.a.size"], fit.covariance)) == pytest.approx(integral / likely(mode), rel=1e-3)
 
 
 def test_the_fall_of_an_effect_is_less_by_what_is_paid_for_its_constants(swinging):
     models = Models.of(ModelFactory(swinging, Variant(catalogue=CATALOGUE)))
     base, found = models.model((), {}), models.model(("trunk_motion",), {SWING: 0.01})
     names = models.factory.parameters("trunk_motion")
-    paid = _paid(found.fit, names, usual(models, found, names))
+    paid = _paid(found.fit, names, usual(models, found, names).moved(found.fit.covariance))
     judged = judge(models, base, found, "trunk_motion", names, 1)
     assert paid > 2
     assert judged.drop * judged.dispersion == pytest.approx(base.fit.misfit - found.fit.misfit - paid)
@@ -123,7 +123,7 @@ def test_a_size_counts_as_by_the_usual_law_it_would_have_to_be_to_do_as_much(pat
     catalogue, campaign = patches
     free, fixed = (Models.of(ModelFactory(campaign, Variant(catalogue=catalogue), fixed)) for fixed in ((), {LENGTH}))
     own, plain = (models.model(("turn_slip",), {TORQUE: 1.0}) for models in (free, fixed))
-    names = free.factory.parameters("turn_slip")
+    names, covariance = free.factory.parameters("turn_slip"), own.fit.covariance
     at_usual, as_is = usual(free, own, names), usual(fixed, plain, names)
     assert as_is.size[0] == plain.fit.values[TORQUE] and np.array_equal(as_is.slopes, np.eye(len(plain.fit.names)))
     assert own.fit.values[LENGTH] > 0.9 and own.fit.values[TORQUE] < 0.8 * plain.fit.values[TORQUE]
@@ -134,8 +134,21 @@ def test_a_size_counts_as_by_the_usual_law_it_would_have_to_be_to_do_as_much(pat
         for at in [m.fit.names.index(TORQUE)]
     ]
     assert errors[0] == pytest.approx(errors[1], rel=0.2)
-    assert _paid(own.fit, names, at_usual) < _paid(own.fit, names) - 0.1  # at one such size hardly anything tells the length
-    assert errors[0] < 0.9 * np.sqrt(own.fit.covariance[own.fit.names.index(TORQUE), own.fit.names.index(TORQUE)])
+    assert (
+        _paid(own.fit, names, at_usual.moved(covariance)) < _paid(own.fit, names, covariance) - 0.1
+    )  # at one such size hardly anything tells the length
+    assert errors[0] < 0.9 * np.sqrt(np.diag(covariance)[own.fit.names.index(TORQUE)])
+
+
+def test_what_the_lack_of_an_effect_costs_is_no_less_for_a_constant_that_trades_with_its_size(patches):
+    """Where other values may go no further, whether the length is fitted or known."""
+    catalogue, campaign = patches
+    costs = []
+    for fixed in ((), {LENGTH}):
+        models = Models.of(ModelFactory(campaign, Variant(catalogue=catalogue), fixed))
+        base, found = models.model((), {}), models.model(("turn_slip",), {TORQUE: 1.0})
+        costs.append(judge(models, base, found, "turn_slip", models.factory.parameters("turn_slip"), 1).bounded)
+    assert costs[0] == pytest.approx(costs[1], rel=0.3)
 
 
 def test_a_size_of_none_and_one_of_a_model_that_cannot_run_by_the_usual_law_are_as_they_are(patches, monkeypatch):

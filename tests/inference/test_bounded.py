@@ -19,7 +19,9 @@ FREE = np.full(2, np.inf)
 
 def lack(found, upper=FREE) -> float:
     """What a model without the effect costs."""
-    return bounded(replace(found, lower=-np.inf * np.ones(len(upper)), upper=upper), ["effect"], np.zeros(1))
+    at, size = found.names.index("effect"), found.values["effect"]
+    limited = replace(found, lower=-np.inf * np.ones(len(upper)), upper=upper)
+    return bounded(limited, [at], np.array([size]), sandwich(found))
 
 
 @pytest.fixture(scope="module")

@@ -97,12 +97,11 @@ def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
         assert "turn_slip" in found.effects
 
 
-@pytest.mark.parametrize("M", [1.5, 1.8])
-def test_no_model_is_adequate_that_probably_lacks_something(M, tmp_path):
+def test_no_model_is_adequate_that_probably_lacks_something(tmp_path):
     """Patches whose torque everyday turns leave unsure by a half: too little to name them, and too much to say that nothing is
-    missing, be they put in because they help, as of 1.8 N m."""
+    missing."""
     names = ("turn_slip", "gyro_bias", "wheel_radius_error", "floor_slope", "push_force_delay")
-    campaign = read(make(tmp_path / "c", {"turn_slip": {"M": M}}, seed=5))
+    campaign = read(make(tmp_path / "c", {"turn_slip": {"M": 1.2}}, seed=5))
     found = diagnose(campaign, Variant(catalogue={e: bundled()[e] for e in names}))
     probability = found.beliefs["turn_slip"].large
     assert found.verdict == "cannot_see" and found.effects == () and found.seen > found.models.policy.library

@@ -28,7 +28,7 @@ def candidate(effect, fall, estimate, covariance, gain=None, correlation=1.0, di
     one = np.ones(len(estimate))
     scale = dict(delta=one, one_sided=one < 0, dispersion=dispersion, correlation=correlation, gain=gain)
     usual = estimate, covariance, covariance
-    return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, covariance, usual, **scale, **known)
+    return Candidate(effect, NONE, fall / dispersion, estimate, 0 * estimate, covariance, usual, **scale, **known)
 
 
 def fitted(effect, slopes, y) -> Candidate:
@@ -96,7 +96,7 @@ def test_a_fall_by_standard_errors_is_no_more_than_runs_agree_on():
     """What runs would have apart by much more than their moments say is as little sure as they have it."""
     size, tight, wide = np.array([6.5]), np.array([[0.27]]), np.array([[4.9]])
     alike = candidate("a", 6.5**2 / 0.27, size, tight, by_errors=True)
-    apart = replace(alike, between=wide)
+    apart = replace(alike, usual=(size, tight, wide))
     assert alike.fall == pytest.approx(6.5**2 / 0.27) and apart.fall == pytest.approx(6.5**2 / 4.9)
     assert alike.support.large > 50 > 5 > apart.support.large
 

@@ -93,6 +93,6 @@ def settled(
     kept = every[:-1]
     steps = tuple(step for step in found.ladder if not step.name.startswith("+") or step.name[1:] in kept)
     last = Step.of(f"+{proposal.effect}", top.fit.evidence, top.heldout, top.fit.values)
-    usual = estimate - proposal.without, covariance, proposal.between  # no term has constants
+    usual = estimate - proposal.without, covariance, proposal.usual[2]  # no term has constants
     now = replace(proposal, fit=top.fit, heldout=top.heldout, estimate=estimate, covariance=covariance, usual=usual)
     return kept, now, (*steps, last)

@@ -96,20 +96,20 @@ def estimates(found: Fit, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]
     return np.array([found.values[n] for n in names]), sandwich(found)[np.ix_(at, at)]
 
 
-def bounded(found: Fit, names: Sequence[str], without: np.ndarray) -> float:
-    """By how much −2 log likelihood rises, as slopes and `sandwich` of a fit have it, where the parameters `names` are as in a
-    model `without` them, all others being as likely as they may within the fit's bounds. Without bounds that is the size in
-    standard errors, squared; a bound that is in the way makes it more. 0 of a fit without bounds."""
-    own = [found.names.index(n) for n in names]
+def bounded(found: Fit, own: Sequence[int], size: np.ndarray, covariance: np.ndarray) -> float:
+    """By how much −2 log likelihood rises, as slopes and the `covariance` (n, n) of a fit's values have it, where its `own`
+    ones, which are off by `size` (k,), are as in a model without them, all others being as likely as they may within the fit's
+    bounds. Without bounds that is the size in standard errors, squared; a bound that is in the way makes it more. 0 of a fit
+    without bounds."""
     others = [i for i in range(len(found.names)) if i not in own]
     if found.lower is None or found.upper is None or not others:
         return 0.0
-    theta, covariance = np.array([found.values[n] for n in found.names]), sandwich(found)
+    theta = np.array([found.values[n] for n in found.names])
     sd = np.sqrt(np.maximum(np.diag(covariance), TINY))
     width, axes = np.linalg.eigh(covariance / np.outer(sd, sd))
     seen = width > SINGULAR * width[-1]
     root = axes[:, seen].T / np.sqrt(width[seen])[:, None]
-    moved = root[:, own] @ ((theta[own] - without) / sd[own])
+    moved = root[:, own] @ (size / sd[own])
     ends = [((end - theta) / sd)[others] for end in (found.lower, found.upper)]
     best = lsq_linear(root[:, others], moved, bounds=(np.minimum(ends[0], -CLOSE), np.maximum(ends[1], CLOSE)))
     return 2 * float(best.cost)

@@ -25,8 +25,8 @@ class Candidate:
     estimate: np.ndarray
     without: np.ndarray  # the same in a model that lacks it: zero, or what the campaign says
     covariance: np.ndarray  # (k, k) of the estimate
-    between: np.ndarray  # (k, k) the same by how far runs would have it apart, where there are enough
-    usual: tuple[np.ndarray, np.ndarray, np.ndarray]  # its size by usual laws (k,), and both covariances of that (see `usual`)
+    # Its size by usual laws (k,), that one's covariance (k, k), and the same by how far runs would have it apart: see `usual`.
+    usual: tuple[np.ndarray, np.ndarray, np.ndarray]
     delta: np.ndarray
     one_sided: np.ndarray  # which of its parameters may only be positive
     dispersion: float  # mean square innovation
@@ -63,11 +63,13 @@ class Candidate:
         """Of −2 log likelihood, in `unit`s; by standard errors no more than the widest of them have it: runs that would have an
         effect apart say less of it than their moments do."""
         whole = max(self.drop, 0.0) * self.dispersion / self.unit
-        return min(whole, self._away(self.covariance), self._away(self.between)) if self.by_errors else whole
+        return min(whole, *self._away) if self.by_errors else whole
 
-    def _away(self, covariance: np.ndarray) -> float:
-        """How far its size is from none, squared, in the standard errors of a covariance (k, k)."""
-        return squared(self.size / self.delta, covariance / np.outer(self.delta, self.delta))
+    @cached_property
+    def _away(self) -> list[float]:
+        """How far its size by usual laws is from none, squared, in standard errors, and in those between runs."""
+        size, *covariances = self.usual
+        return [squared(size / self.delta, covariance / np.outer(self.delta, self.delta)) for covariance in covariances]
 
     @cached_property
     def support(self) -> Support:
@@ -85,7 +87,7 @@ class Candidate:
     def excess(self) -> float:
         """Log likelihood that is gained, and neither by the estimate, as its standard errors have it, nor for other values'
         bounds: of a model that is not exact a parameter may take up what it did not do."""
-        return 0.5 * max(0.0, self.fall - max(self._away(self.covariance), self.bounded))
+        return 0.5 * max(0.0, self.fall - max(self._away[0], self.bounded))
 
     @property
     def se(self) -> np.ndarray:

@@ -30,7 +30,10 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
     at_usual = usual(models, found, names)
-    fall, correlation = base.fit.misfit - fit.misfit - _paid(fit, names, at_usual), correlation_time(fit.evidence)
+    fall, correlation = (
+        base.fit.misfit - fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance)),
+        correlation_time(fit.evidence),
+    )
     drop = fall / dispersion
     p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
     if len(names) == 1 and one_sided[0]:
@@ -42,7 +45,6 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         estimate=estimate,
         without=without,
         covariance=covariance,
-        between=_between(fit, names, covariance),
         usual=_spread(fit, at_usual),
         delta=delta,
         one_sided=one_sided,
@@ -54,22 +56,22 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         lawful=not bool(np.all((estimate <= near) & one_sided)),
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         policy=models.policy,
-        bounded=bounded(fit, names, without),
+        bounded=bounded(fit, at_usual.own, at_usual.size, at_usual.moved(sandwich(fit))),
         by_errors=w.leads,
     )
 
 
-def _paid(found: Fit, names: Sequence[str], at_usual: Usual | None = None) -> float:
+def _paid(found: Fit, names: Sequence[str], covariance: np.ndarray) -> float:
     """What −2 log likelihood is the less for, as constants of the effects of `names` were adjusted: twice the log of how far
-    data narrowed them down, so that a law that can be bent is no likelier for that (Laplace)."""
+    data narrowed them down, so that a law that can be bent is no likelier for that (Laplace). By the `covariance` (n, n) of a
+    fit's values, with such sizes among them as are judged."""
     of = {n.rpartition(".")[0] for n in names}
     own = [i for i, n in enumerate(found.names) if n in names]
     constants = [i for i, n in enumerate(found.names) if n.rpartition(".")[0] in of and n not in names]
     if not constants:
         return 0.0
     both = [*own, *constants]
-    covariance = (at_usual.moved(found.covariance) if at_usual else found.covariance)[np.ix_(both, both)]
-    told = inverse(covariance)[len(own) :, len(own) :]
+    told = inverse(covariance[np.ix_(both, both)])[len(own) :, len(own) :]
     sd = 1 / np.diag(found.prior_slopes)[constants]
     return max(0.0, float(np.linalg.slogdet(told * np.outer(sd, sd))[1]))
 
@@ -79,9 +81,8 @@ def surely_large(models: Models, found: Model, effect: str) -> bool:
     w, fit = models.factory, found.fit
     names = w.parameters(effect)
     size, *covariances = _spread(fit, usual(models, found, names))
-    told = support_of(
-        effect, size, covariances, w.deltas(names), w.one_sided(names), models.weight(fit, effect), 0.0, models.policy
-    )
+    fall = float(size @ inverse(covariances[0]) @ size)
+    told = support_of(effect, size, covariances, w.deltas(names), w.one_sided(names), fall, 0.0, models.policy)
     return float(special.expit(told.large - max(0.0, told.slight))) > models.policy.sure
 
 
@@ -92,11 +93,3 @@ def _spread(found: Fit, at_usual: Usual) -> tuple[np.ndarray, np.ndarray, np.nda
     if len(found.evidence.runs) < RUNS:
         return at_usual.size, covariance, covariance
     return at_usual.size, covariance, at_usual.moved(between_runs(found))[np.ix_(own, own)]
-
-
-def _between(found: Fit, names: Sequence[str], otherwise: np.ndarray) -> np.ndarray:
-    """Covariance (k, k) of some of a fit's parameters between runs, if there are enough of these."""
-    if len(found.evidence.runs) < RUNS:
-        return otherwise
-    at = [found.names.index(n) for n in names]
-    return between_runs(found)[np.ix_(at, at)]
