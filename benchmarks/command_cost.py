@@ -1,6 +1,7 @@
 """What somebody waits for who types `wheelchair diagnose` on the sample campaign: a process from its start to its end.
 
-What it compiles is compiled already, and a call that is not counted comes first; of the first diagnosis on a machine, nothing is.
+What it compiles is compiled already, and a call that is not counted comes first; of the first diagnosis on a machine nothing
+is.
 """
 
 from __future__ import annotations
