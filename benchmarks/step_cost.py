@@ -44,7 +44,7 @@ def rows() -> Iterator[Row]:
         for effects, target in MEDIAN_TARGETS.items():
             medians, worsts = zip(*(_run(host, Path(folder), effects) for _ in range(RUNS)), strict=True)
             functions = kernel(with_chosen_effects(Variant(), effects).model()).functions
-            work = limits.of(functions["bare"]) + limits.of(functions["output"])
+            work = limits.of(functions["bare"]) + limits.of(functions["bare_output"])
             yield Row(
                 f"FMU step, --effects {effects}: median",
                 "µs",
