@@ -52,7 +52,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (L + "search/judge.py", "fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance))", "fit.misfit"),
     (L + "search/judge.py", "at_usual.size, at_usual.moved(sandwich(fit))", "at_usual.size, sandwich(fit)"),
     (L + "search/usual.py", "longer * np.outer(size[of_it], by_constant)", "0.0"),
-    (L + "search/usual.py", "np.sqrt(length / usually)", "np.sqrt(usually / length)"),
+    (L + "search/usual.py", "return adjusted / usually", "return usually / adjusted"),
     (L + "search/judge.py", "p /= 2", "p /= 1"),
     (L + "search/judge.py", "chance_beyond(drop / correlation, len", "chance_beyond(drop, len"),
     (L + "estimation/score.py", "p / 2 if estimate[0] > 0 else 1 - p / 2", "p"),

@@ -231,7 +231,8 @@ def test_what_was_found_is_named_as_long_as_it_or_its_rivals_are_probable():
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "rises"), [(0.88, 0.99, False), (0.88, 1.2, True), (2.0, 2.1, False), (2.0, 2.3, True)]
+    ("before", "after", "rises"),
+    [(0.88, 0.99, False), (0.88, 1.2, True), (0.99, 1.03, True), (1.03, 1.05, False), (2.0, 2.1, False), (2.0, 2.3, True)],
 )
 def test_an_error_that_comes_to_the_noise_has_not_risen(before, after, rises):
     """Whatever is below the noise is there by errors of the pushes, and is no gain that another effect could lose."""

@@ -19,7 +19,7 @@ from ..models.models import Models
 from ..parallel import parallel_map
 from .candidate import Candidate
 from .judge import judge
-from .screen import BENT, SLIGHTLY, Screened, at_prior_mean
+from .screen import AT_THE_FLOOR, BENT, SLIGHTLY, Screened, at_prior_mean
 
 BEYOND = 10.0  # times what slopes that say little promise of an effect, which it may do
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
@@ -67,8 +67,10 @@ def candidate(
 
 def risen(before: Fit, after: Fit) -> bool:
     """Does one more effect cost fitted runs an error above the noise? A model whose casters swing may leave less than that, as
-    errors of the pushes are found with them."""
-    return after.evidence.rms > RISEN * max(1.0, before.evidence.rms)
+    errors of the pushes are found with them. Where nothing was left to explain, one that leaves more than noise explains
+    nothing: it is likelier only as its filter, with casters that stick, expects less noise than there is."""
+    nothing_left = before.evidence.rms < AT_THE_FLOOR < after.evidence.rms
+    return nothing_left or after.evidence.rms > RISEN * max(1.0, before.evidence.rms)
 
 
 def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:

@@ -63,13 +63,15 @@ def _longer(
     fit, likelihood = found.fit, models.likelihood(found.effects)
     prior = prior_of(likelihood, constants)
     plain = {**fit.values, **dict(zip(constants, prior.mean.tolist(), strict=True))}
-    before = likelihood.evidence(models.campaign.fit, plain, names).S @ size
-    S = _columns(fit, names)
-    signature = S @ size
-    length, usually = float(signature @ signature), float(before @ before)
-    if length <= 0 or usually <= 0:
+    # Both anew: a fit's runs may start elsewhere, from where casters go another way.
+    adjusted, usually = (
+        float(np.linalg.norm(likelihood.evidence(models.campaign.fit, values, names).S @ size))
+        for values in (fit.values, plain)
+    )
+    signature = _columns(fit, names) @ size
+    if not (adjusted and usually and signature.any()):
         return 1.0, np.zeros(len(constants))
-    return float(np.sqrt(length / usually)), _columns(fit, constants).T @ signature / length
+    return adjusted / usually, _columns(fit, constants).T @ signature / float(signature @ signature)
 
 
 def _columns(fit: Fit, names: Sequence[str]) -> np.ndarray:
