@@ -48,7 +48,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (M + "chassis.py", "F_rl + M_rl / R, F_rr + M_rr / R", "F_rr + M_rr / R, F_rl + M_rl / R"),
     (M + "chassis.py", "cs.vertcat(-t_r / 2, t_r / 2)", "cs.vertcat(t_r / 2, -t_r / 2)"),
     (L + "search/judge.py", "p=min(1.0, tests * p)", "p=min(1.0, p)"),
-    (L + "search/judge.py", "drop = fall / dispersion", "drop = fall"),
+    (L + "search/judge.py", "fall / dispersion, corr", "fall, corr"),
     (L + "search/judge.py", "fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance))", "fit.misfit"),
     (L + "search/judge.py", "at_usual.size, at_usual.moved(sandwich(fit))", "at_usual.size, sandwich(fit)"),
     (L + "search/usual.py", "longer * np.outer(size[of_it], by_constant)", "0.0"),

@@ -30,11 +30,8 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
     at_usual = usual(models, found, names)
-    fall, correlation = (
-        base.fit.misfit - fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance)),
-        correlation_time(fit.evidence),
-    )
-    drop = fall / dispersion
+    fall = base.fit.misfit - fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance))
+    drop, correlation = fall / dispersion, correlation_time(fit.evidence)
     p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
     if len(names) == 1 and one_sided[0]:
         p /= 2
