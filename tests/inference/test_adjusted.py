@@ -134,9 +134,8 @@ def test_a_size_counts_as_by_the_usual_law_it_would_have_to_be_to_do_as_much(pat
         for at in [m.fit.names.index(TORQUE)]
     ]
     assert errors[0] == pytest.approx(errors[1], rel=0.2)
-    assert (
-        _paid(own.fit, names, at_usual.moved(covariance)) < _paid(own.fit, names, covariance) - 0.1
-    )  # at one such size hardly anything tells the length
+    # At one such size hardly anything tells the length.
+    assert _paid(own.fit, names, at_usual.moved(covariance)) < _paid(own.fit, names, covariance) - 0.1
     assert errors[0] < 0.9 * np.sqrt(np.diag(covariance)[own.fit.names.index(TORQUE)])
 
 

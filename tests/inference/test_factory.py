@@ -97,9 +97,9 @@ def test_what_may_be_left_is_compiled_beside_other_work(sample, monkeypatch):
     models, terms = Models.of(ModelFactory(sample, Variant(catalogue=bundled()))), library()
     compiled: list[Wanted] = []
     monkeypatch.setattr(leftover, "meanwhile", lambda do: do())
-    monkeypatch.setattr(cache, "library", lambda *words: compiled.append(Wanted.of(*words)))
+    monkeypatch.setattr(cache, "library", lambda *words: compiled.append(Wanted.of(*words)) or "loaded")
     prepare(models, terms)
-    models.widened(terms).wide(["toe_misalignment"]).compile()
+    assert models.widened(terms).wide(["toe_misalignment"]).sensitivities.library == "loaded"
     assert len(compiled) == 2 and compiled[0] == compiled[1]
     prepare(models, {})
     prepare(replace(models, factory=models.factory.narrowed()), terms)

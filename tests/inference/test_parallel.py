@@ -6,6 +6,7 @@ from threading import Event, get_ident
 
 import pytest
 
+from wheelchair_fmu.inference import parallel
 from wheelchair_fmu.inference.parallel import meanwhile, parallel_map
 
 
@@ -53,12 +54,20 @@ def test_of_several_faults_the_first_in_the_order_of_things_is_told():
     assert parallel_map(do, []) == []
 
 
-def test_what_is_made_meanwhile_is_made_by_another_thread_and_its_fault_told_to_whoever_asks_again():
-    made = Event()
+def test_what_is_made_meanwhile_is_made_by_another_thread_whatever_failed_before(monkeypatch):
+    monkeypatch.setattr(parallel, "_cores", lambda: 2)
+    made, by = Event(), list[int]()
 
     def fails() -> None:
         raise ZeroDivisionError
 
+    def makes() -> None:
+        by.append(get_ident())
+        made.set()
+
     meanwhile(fails)
-    meanwhile(made.set)
-    assert made.wait(10)
+    meanwhile(makes)
+    assert made.wait(10) and by != [get_ident()]
+    monkeypatch.setattr(parallel, "_cores", lambda: 1)
+    meanwhile(makes)  # on one core it would only delay what is waited for
+    assert len(by) == 1

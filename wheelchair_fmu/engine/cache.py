@@ -141,11 +141,9 @@ def _loaded(path: Path) -> ctypes.CDLL:
 
 
 def _compile(wanted: Wanted, target: Path, wide: int, cross: tuple[str, ...] | None = None) -> None:
-    build, derives = _Build(noisy(wanted.moved or ()), wide, cross), wanted.columns is not None
+    build, by_hand = _Build(noisy(wanted.moved or ()), wide, cross), SIMULATING if wanted.columns is None else DERIVING
     with side_by_side(os.cpu_count()) as pool:
-        others = [
-            pool.submit(build.by_hand, name) for name in (DERIVING if derives else SIMULATING)
-        ]  # while models are derived
+        others = [pool.submit(build.by_hand, name) for name in by_hand]  # while the model is derived
         with deriving:  # what compiles models runs side by side
             texts, by = _derived(wanted, build)
         try:

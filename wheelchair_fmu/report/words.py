@@ -50,7 +50,7 @@ def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: M
         "missing": f"Missing from the model: {_all_of(missing)}.",
         "small": _small(names, needed(diagnosis)),
         "adequate": "The model is adequate: nothing is missing that this campaign could have shown.",
-        "cannot_see": "Nothing was found for sure, but effects could be of a size that matters, and these runs not show them.",
+        "cannot_see": "Nothing was found for sure; an effect could be of a size that matters without these runs showing it.",
         "outside": outside(diagnosis, records).removesuffix(".")
         + (f"; what helps but does not suffice: {helping}." if helping else "."),
     }[diagnosis["verdict"]]

@@ -387,10 +387,11 @@ def _parameter(
         if not lower <= plain <= upper:
             fact = f"{title}{name} = {plain:g} is outside {lower:g} to {upper:g}"
             yield doc.fault(path, fact, "correct it; parameters are in SI units, angles in rad, pressures in bar", place)
+        elif name == TYRE_LAW and plain % 1:
+            cure = f"give a whole number from {lower:g} to {upper:g}"
+            yield doc.fault(path, f"{title}{name} = {plain:g} is no law", cure, place)
         elif name == TYRE_LAW and entry:
             yield doc.fault(path, f"{title}{name} is one for all runs", f"write law = {plain:g} under [tyre]", place)
-        elif name == TYRE_LAW and plain % 1:
-            yield doc.fault(path, f"{name} = {plain:g} is no law", f"give a whole number from {lower:g} to {upper:g}", place)
         elif name in CASTERS and (turns := _share_of_a_turn(plain)):
             fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
             angle = remainder(2 * pi * turns, 2 * pi) or 0.0  # and not -0.0

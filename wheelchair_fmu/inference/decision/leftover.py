@@ -30,7 +30,7 @@ TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which 
 def prepare(models: Models, generic: Mapping[str, Effect]) -> None:
     """Have the model compiled, beside other work, that `leftover` asks for unless an effect with states is found."""
     if terms := _terms_of(models, generic):
-        meanwhile(lambda: terms.wide().compile())
+        meanwhile(lambda: terms.wide().sensitivities.library)
 
 
 def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | None, Candidate | None]:

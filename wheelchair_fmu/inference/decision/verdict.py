@@ -227,14 +227,14 @@ def _diagnosed(
         included, proposal, ladder = settled(found, generic, proposal)
         stepped(ladder)
     beside = {e: r for e, r in found.beside.items() if r} if proposal is None else {}
-    judged = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.named() if e in included}
+    decided = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.added if e in included}
+    judged = {e: decided[e] for e in found.named() if e in decided}
     effects = tuple(e for e, r in judged.items() if probable(r, e))  # what others made needless later only helps
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
-    decided = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.added if e in included}
     likely = {} if effects else _likely(models.factory, decided, rounds[-1])
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained, likely)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:

@@ -74,10 +74,6 @@ class Likelihood:
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
-    def compile(self) -> None:
-        """Compile the model now, and not only when a run of it is asked for."""
-        self.sensitivities.library  # noqa: B018  (it is made when it is first asked for)
-
     def _uncertain(self, run: Run) -> dict[str, float]:
         return uncertain(run, self.start_names)
 

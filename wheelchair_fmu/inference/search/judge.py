@@ -13,7 +13,7 @@ from ..estimation.fit import Fit
 from ..estimation.inverse import inverse
 from ..estimation.marginal import support_of
 from ..estimation.score import RUNS
-from ..estimation.statistics import between_runs, bounded, correlation_time, estimates, held_out_gain, sandwich, seen_directions
+from ..estimation.statistics import between_runs, bounded, correlation_time, held_out_gain, sandwich, seen_directions
 from ..models.hypothesis import Model
 from ..models.models import Models
 from .candidate import Candidate
@@ -24,12 +24,12 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     """What an effect, whose parameters are `names`, does in the model `found` beside `base`, which lacks it; so many `tests`
     were made with that of it."""
     w, fit, held = models.factory, found.fit, found.heldout
-    delta, (estimate, covariance) = w.deltas(names), estimates(fit, names)
+    at_usual, told, delta = usual(models, found, names), sandwich(fit), w.deltas(names)
+    estimate, covariance = np.array([fit.values[n] for n in names]), told[np.ix_(at_usual.own, at_usual.own)]
     lower, upper = (np.array([getattr(w.records[n], side) for n in names]) for side in ("lower", "upper"))
     one_sided, near, without = w.one_sided(names), 1e-6 * delta, w.unfitted(names)
     along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
-    at_usual = usual(models, found, names)
     fall = base.fit.misfit - fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance))
     drop, correlation = fall / dispersion, correlation_time(fit.evidence)
     p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
@@ -42,7 +42,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         estimate=estimate,
         without=without,
         covariance=covariance,
-        usual=_spread(fit, at_usual),
+        usual=_spread(fit, at_usual, told),
         delta=delta,
         one_sided=one_sided,
         dispersion=dispersion,
@@ -53,7 +53,7 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         lawful=not bool(np.all((estimate <= near) & one_sided)),
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
         policy=models.policy,
-        bounded=bounded(fit, at_usual.own, at_usual.size, at_usual.moved(sandwich(fit))),
+        bounded=bounded(fit, at_usual.own, at_usual.size, at_usual.moved(told)),
         by_errors=w.leads,
     )
 
@@ -77,16 +77,15 @@ def surely_large(models: Models, found: Model, effect: str) -> bool:
     """Is an effect of a model with sensitivities surely large, rather than slight or nothing?"""
     w, fit = models.factory, found.fit
     names = w.parameters(effect)
-    size, *covariances = _spread(fit, usual(models, found, names))
+    size, *covariances = _spread(fit, usual(models, found, names), sandwich(fit))
     fall = float(size @ inverse(covariances[0]) @ size)
-    told = support_of(effect, size, covariances, w.deltas(names), w.one_sided(names), fall, 0.0, models.policy)
-    return float(special.expit(told.large - max(0.0, told.slight))) > models.policy.sure
+    support = support_of(effect, size, covariances, w.deltas(names), w.one_sided(names), fall, 0.0, models.policy)
+    return float(special.expit(support.large - max(0.0, support.slight))) > models.policy.sure
 
 
-def _spread(found: Fit, at_usual: Usual) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sizes (k,) by usual laws, their covariance (k, k), and the same between runs."""
-    own, every = at_usual.own, at_usual.moved(sandwich(found))
-    covariance = every[np.ix_(own, own)]
-    if len(found.evidence.runs) < RUNS:
-        return at_usual.size, covariance, covariance
-    return at_usual.size, covariance, at_usual.moved(between_runs(found))[np.ix_(own, own)]
+def _spread(found: Fit, at_usual: Usual, told: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sizes (k,) by usual laws, their covariance (k, k) by that of all values as `told` (n, n), and by how far runs would have
+    them apart, if there are enough of these."""
+    between = between_runs(found) if len(found.evidence.runs) >= RUNS else told
+    own = np.ix_(at_usual.own, at_usual.own)
+    return at_usual.size, at_usual.moved(told)[own], at_usual.moved(between)[own]

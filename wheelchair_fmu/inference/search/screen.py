@@ -98,7 +98,7 @@ def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -
     light = [e for e in free if e in w.light]
     dear = [more for group in (w.heavy, w.demanding) if (more := [e for e in free if e in group])]
     wanted = [partial(models.wide, base.effects), *(partial(models.rerun, (*base.effects, *more)) for more in dear)]
-    parallel_map(lambda make: make().compile(), wanted)  # those that are not compiled yet, side by side
+    parallel_map(lambda make: make().sensitivities.library, wanted)  # those that are not compiled yet, side by side
     found, here = _by_slopes(models, base, [e for e in light if e not in models.doubles])
     # Beside unrecorded forces an offset without its nuisance would be made up for by these.
     for effect in [] if w.leads else [e for e in light if e in models.doubles]:

@@ -2,12 +2,12 @@
 
 Where data tell only what an effect does, its size and a constant of its law trade one for the other: half the torque on a patch
 of twice the length does the same to a chair that rolls. What an effect does is what they tell well, and what δ is a size of. So
-a size θ counts as κ θ, where κ is how much longer the signature is by the law as it was adjusted than by the usual one.
+a size θ counts as λ θ, where λ is how much longer the signature is by the law as it was adjusted than by the usual one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,15 +63,16 @@ def _longer(
     fit, likelihood = found.fit, models.likelihood(found.effects)
     prior = prior_of(likelihood, constants)
     plain = {**fit.values, **dict(zip(constants, prior.mean.tolist(), strict=True))}
-    # Both anew: a fit's runs may start elsewhere, from where casters go another way.
-    adjusted, usually = (
-        float(np.linalg.norm(likelihood.evidence(models.campaign.fit, values, names).S @ size))
-        for values in (fit.values, plain)
-    )
     signature = _columns(fit, names) @ size
-    if not (adjusted and usually and signature.any()):
-        return 1.0, np.zeros(len(constants))
-    return adjusted / usually, _columns(fit, constants).T @ signature / float(signature @ signature)
+    length = float(signature @ signature)
+    by_constant = _columns(fit, constants).T @ signature / length if length else np.zeros(len(constants))
+
+    def norm(values: Mapping[str, float]) -> float:
+        """Of the signature anew: a fit's runs may start elsewhere, from where casters go another way."""
+        return float(np.linalg.norm(likelihood.evidence(models.campaign.fit, values, names).S @ size))
+
+    adjusted, usually = (norm(fit.values), norm(plain)) if plain != fit.values else (1.0, 1.0)
+    return (adjusted / usually, by_constant) if adjusted and usually else (1.0, np.zeros(len(constants)))
 
 
 def _columns(fit: Fit, names: Sequence[str]) -> np.ndarray:
