@@ -51,9 +51,9 @@ def test_the_fingerprint_follows_every_file(campaign):
 def test_every_channel_has_a_prediction_and_a_meaning():
     assert [c.name for c in CHANNELS] == ["wheel_speed_l", "wheel_speed_r", "yaw_rate", "a_x", "a_y", "x", "y", "yaw", "u", "v"]
     pushed = ["push.F_rl", "push.M_rl", "brake.rl", "push.F_rr", "push.M_rr", "brake.rr"]
-    assert sorted(c.fmu for c in INPUTS) == sorted(
-        [*pushed, "rider.s", "rider.momentum", "rider.force", "stroke.phase", "stroke.rate"]
-    )
+    body = ["rider.s", "rider.momentum", "rider.force", "stroke.phase", "stroke.rate"]
+    floor = ["floor.rolling_factor", "floor.slope_x", "floor.slope_y"]
+    assert sorted(c.fmu for c in INPUTS) == sorted([*pushed, *body, *floor])
     assert all(c.meaning and c.fmu and c.low < c.high for c in CHANNELS + INPUTS)
 
 
@@ -202,7 +202,7 @@ def test_axes_turn_and_turning_twice_is_the_identity(campaign):
     values = {c.name: np.arange(3.0) + i for i, c in enumerate(CHANNELS + INPUTS)}
     turned = to_sae(values, "ISO-8855")
     flipped = {name for name in values if (turned[name] == -values[name]).all()}
-    assert flipped == {"a_y", "y", "v", "yaw", "yaw_rate"}
+    assert flipped == {"a_y", "y", "v", "yaw", "yaw_rate", "floor.slope_y"}
     for name, series in to_sae(turned, "ISO-8855").items():
         np.testing.assert_allclose(series, values[name])
     assert all((to_sae(values, "SAE-J670")[name] == values[name]).all() for name in values)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.contracts import Subject
-from wheelchair_fmu.contracts.energy import Energy
+from wheelchair_fmu.contracts.energy import KINDS, NONE, SAME, Energy
+from wheelchair_fmu.contracts.places import Place
 from wheelchair_fmu.model.choice import serves
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.stage import Effect, Law, Row, adds
@@ -69,6 +70,53 @@ def test_nor_does_any_pair_however_long_one_looks(chair):
         assert told(chair.breaches([effect], rng, times=600)) == [], effect.id
     for pair in combinations(chair.subject.effects, 2):
         assert told(chair.breaches(pair, rng, times=40)) == [], [e.id for e in pair]
+
+
+TYRES = (
+    "camber_misalignment",
+    "inflation_pressure",
+    "load_sensitivity",
+    "pneumatic_trail_decay",
+    "tyre_saturation",
+    "turn_slip",
+)
+
+
+@pytest.mark.parametrize("tyre", ["linear", "dugoff", "magic_formula"])
+def test_camber_and_self_aligning_torque_give_less_than_rolling_resistance_takes(tyre):
+    """The paper's laws of them oppose no velocity: beside the chair's rolling resistance energy falls even so.
+
+    But for a linear tyre that slides while its wheel hardly rolls, far beyond what that law is for.
+    """
+    choice = Choice(tyre)
+    effects = [EFFECTS[id] for id in TYRES if all(serves(choice, kind, law) for kind, law in EFFECTS[id].needs.items())]
+    chair = Energy(Subject(tuple(effects), assemble(choice, effects), assemble(choice)))
+    names, whole = [q.name for q in chair.subject.model.parameters], chair.subject.values(0.0)
+    kept = [i for i, name in enumerate(names) if name in NONE]
+    constants = [names.index(f"effect.{e.id}.{q.name}") for e in effects for q in e.constants]
+    rng, still = np.random.default_rng(SEED), np.array([i.start for i in chair.subject.model.inputs])
+    for effect in (None, *effects):
+        for kind in (kind for kind in KINDS if tyre != "linear" or kind != "sliding"):
+            for _ in range(200):
+                p = chair._values([effect] if effect else [], rng)
+                p[kept], p[constants] = whole[kept], whole[constants]
+                power, scale, _ = chair._powers_at(Place(chair._states(KINDS[kind], rng), still, p))
+                assert power <= SAME * scale, (kind, effect and effect.id)
+
+
+def test_and_without_rolling_resistance_they_give_what_is_told():
+    """Of both, at small slip on a straight way: C_mλ² ψ'²/(4 C_λ v) a wheel, where λ = C_mλ ψ'/(2 C_λ v)."""
+    bare = assemble(Choice())
+    chair = Energy(Subject((), bare, bare))
+    p = chair.subject.values(0.0)
+    of = {q.name: i for i, q in enumerate(bare.parameters)}
+    p[[of["resistance.f_r"], of["resistance.f_f"]]] = 0.0
+    C, C_m, u, psi_dot = p[of["tyre.C_lambda"]], p[of["tyre.C_m_lambda"]], 2.0, 0.02
+    v = p[of["chair.b"]] * psi_dot + C_m * psi_dot / (2 * C)  # of the axle, aside: its force gives less than its torque
+    x, still = np.zeros(bare.x.numel()), np.array([i.start for i in bare.inputs])
+    x[3:6] = u, v, psi_dot
+    power, _, _ = chair._powers_at(Place(x, still, p))
+    assert power == pytest.approx(2 * C_m**2 * psi_dot**2 / (4 * C * u), rel=1e-3)
 
 
 def turned(law: Law) -> Law:

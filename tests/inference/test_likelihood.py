@@ -206,3 +206,19 @@ def test_a_recorded_brake_brakes(short):
     braked = likelihood.evidence([pulled], {}, NAMES)
     assert braked.rms > 1.5 * before.rms
     assert likelihood.resimulated(braked, {}).rms == pytest.approx(braked.rms, rel=1e-6)
+
+
+def test_a_floor_that_a_run_is_on_is_that_of_the_chair_s_own_parameters(short):
+    """Twice the rolling resistance by the floor's factor or by both coefficients; a slope as an input or as the effect."""
+    first = short.fit[0]
+    ones = np.ones(len(first.time))
+    carpet = replace(first, inputs={**first.inputs, "floor.rolling_factor": 2 * ones})
+    rough = replace(first, set={**first.set, "resistance.f_r": 0.024, "resistance.f_f": 0.04})
+    ramp = replace(first, inputs={**first.inputs, "floor.slope_x": 0.01 * ones})
+    sloped = replace(first, set={**first.set, "effect.floor_slope.x": 0.01})
+    runs = (first, carpet, rough, ramp, sloped)
+    likelihood = Likelihood(replace(short, runs=runs), Variant().with_effects(["floor_slope"]))
+    hard, *others = (likelihood.evidence([run], {}, ("tyre.C_lambda",)).rms for run in runs)
+    assert np.abs(np.array(others) - hard).min() > 0.1 * hard
+    assert others[0] == pytest.approx(others[1], rel=1e-6)
+    assert others[2] == pytest.approx(others[3], rel=1e-6)

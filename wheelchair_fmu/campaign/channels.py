@@ -201,10 +201,42 @@ STROKE: tuple[Channel, ...] = (
     Channel("stroke.rate", HZ, "stroke.rate", "rate of change of stroke.phase", -20.0, 20.0),
 )
 
+FLOOR: tuple[Channel, ...] = (
+    Channel(
+        "floor.rolling_factor",
+        ONE,
+        "floor.rolling_factor",
+        "factor of the floor on both rolling resistances, 1 on a hard one; as a constant also a name of `wheelchair surfaces`",
+        0.1,
+        20.0,
+        wrong_unit="%",
+    ),
+    Channel(
+        "floor.slope_x",
+        RAD,
+        "floor.slope_x",
+        "slope of the floor along the room's x, positive where it falls towards +x",
+        -0.5,
+        0.5,
+        wrong_unit="deg",
+    ),
+    Channel(
+        "floor.slope_y",
+        RAD,
+        "floor.slope_y",
+        "slope of the floor along the room's y, positive where it falls towards +y",
+        -0.5,
+        0.5,
+        -1,
+        wrong_unit="deg",
+    ),
+)
+
 INPUTS: tuple[Channel, ...] = (
     *(channel for pair in zip(_pushes("rl", "left"), _pushes("rr", "right"), strict=True) for channel in pair),
     *RIDER,
     *STROKE,
+    *FLOOR,
 )
 
 # What a file may hold that channels are made from: the turn of a wheel, by which its ripple goes too.
@@ -228,7 +260,7 @@ INTEGRALS: dict[str, int] = {channel.name: channel.integrals for channel in CHAN
 SIDES: tuple[str, ...] = tuple(channel.name for channel in CHANNELS if channel.side)  # the left one first
 CHANNEL_NAMES = tuple(channel.name for channel in CHANNELS)
 INPUT_NAMES = tuple(channel.name for channel in INPUTS)
-PUSHED = tuple(channel.name for channel in INPUTS if channel not in (*RIDER, *STROKE))  # what hands give
+PUSHED = tuple(channel.name for channel in INPUTS if channel not in (*RIDER, *STROKE, *FLOOR))  # what hands give
 PUSH_NAMES = ("F_rl", "F_rr", "M_rl", "M_rr")
 MOUNTED = {
     "accelerometer_offset": ("a_x", "a_y"),
@@ -236,4 +268,5 @@ MOUNTED = {
 }  # what one instrument reads, if nothing else is said
 BODY_NAMES = POSITION, MOMENTUM, FORCE = tuple(channel.name for channel in RIDER)  # of the rider's body
 PHASE, PHASE_RATE = (channel.name for channel in STROKE)
+ROLLING_FACTOR = FLOOR[0].name
 PUSHES = {"F_rl": "M_rl", "F_rr": "M_rr"}  # a push must be known, as a force or as an axle torque

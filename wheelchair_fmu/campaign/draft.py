@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from ..faults import Fault
+from ..faults import Fault, suggestion
+from ..surroundings.surfaces import SURFACES
 from ..tables import FrameTable, Rows, Table
 from ..units import UnitError, quantity
 from . import body
 from .angles import cleaned, wheel_speed
 from .axes import to_sae
 from .binding import Bindings, bind
-from .channels import BY_NAME, CHANNEL_NAMES, FORCE, INPUT_NAMES, MOMENTUM, POSITION, PUSHED, SOURCES, Channel
+from .channels import BY_NAME, CHANNEL_NAMES, FORCE, INPUT_NAMES, MOMENTUM, POSITION, PUSHED, ROLLING_FACTOR, SOURCES, Channel
 from .derived import marker_columns, pose, position
 from .devices import Part
 from .document import Document, Entry, number
@@ -127,7 +128,11 @@ class Draft(Readings):
 
 
 def constant_value(channel: Channel, value: Any) -> float:
-    """A constant in SI: a number, or text with a unit. Raises UnitError."""
+    """A constant in SI: a number, text with a unit, or the name of a floor. Raises UnitError."""
+    if channel.name == ROLLING_FACTOR and isinstance(value, str) and (word := value.strip())[:1].isalpha():
+        if word not in SURFACES:
+            raise UnitError(f"there is no floor {word!r}", suggestion(word, SURFACES))
+        return SURFACES[word].factor()
     if isinstance(value, str):
         return quantity(value, channel.unit.name)
     plain = number(value)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .axes import ISO
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .devices import clock
 from .document import Document, Entry
@@ -50,8 +51,9 @@ class Recorded(Readings):
 
     @cached_property
     def constants(self) -> dict[str, float]:
-        """Channels that were not logged but are known, in SI."""
-        return constants(self.entry)
+        """Channels that were not logged but are known, in SI and SAE J670."""
+        known, axes = constants(self.entry), self.doc.axes
+        return {name: value * BY_NAME[name].iso_sign if axes == ISO else value for name, value in known.items()}
 
     @cached_property
     def time(self) -> np.ndarray | None:

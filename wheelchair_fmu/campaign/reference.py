@@ -75,7 +75,8 @@ A column is matched by its whole header first, then without the unit behind it: 
 wheels (F or M, or a constant) are needed; of the rest, whatever was measured. What the rider's body does is an input like a
 push, `rider.s` (with `[rider] m`, the mass that moves with it) or `rider.momentum`: each makes what the model needs of the
 others, and a run is cut to where the body was seen. Without it, the pushes tell the phase of the strokes, where these have a
-rhythm; `stroke.phase` gives it where they do not.
+rhythm; `stroke.phase` gives it where they do not. A floor that is not hard and level is an input, too: `floor.rolling_factor`,
+`floor.slope_x` and `floor.slope_y`, mostly as constants of a run.
 
 """
 FORMAT_WORDS = """## Formats

@@ -156,8 +156,8 @@ RUN = TableRecord(
         Key(
             "constant",
             "table",
-            "Channels that were not logged but are known: a number in SI units, or text with a unit.",
-            example="constant = { F_rl = 0, F_rr = 0 }",
+            "Channels that were not logged but are known: a number in SI units, or text with a unit; of a floor also its name.",
+            example='constant = { F_rl = 0, F_rr = 0, "floor.rolling_factor" = "carpet" }',
             fault="constant has no channel 'F_r'",
         ),
         Key(

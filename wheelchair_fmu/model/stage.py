@@ -105,7 +105,7 @@ class Alternative:
     stages: tuple[Stage, ...]
     parameters: tuple[Parameter, ...] = ()
     rows: tuple[Row, ...] = ()
-    loads: Stage | None = None  # in place of the chair's, where wheels do not touch the floor where that takes them to
+    loads: tuple[Stage, ...] = ()  # in place of the chair's, where wheels do not touch the floor where that takes them to
     serves: tuple[str, ...] = ()  # laws that effects may ask for and have this one instead
     absorbs: Law | None = None  # the power [W] that goes into its states, as an effect's
 

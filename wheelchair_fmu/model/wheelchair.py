@@ -194,7 +194,7 @@ def line(choice: Choice) -> tuple[Stage, ...]:
         chassis.wheel_planes,
         chassis.floor,
         chassis.gravity,
-        caster_law.loads or chassis.loads,
+        *(caster_law.loads or (chassis.loads,)),
         common.inflation,
         common.tyres,
         common.slip_paper if paper else common.slip,

@@ -76,9 +76,10 @@ def test_the_chair_loses_what_the_bearings_rub():
 def test_caster_friction_pushes_the_swinging_caster_with_its_lever():
     """Casters straight while the chair begins to turn: they swing to the right, and their patches are pushed to the left.
 
-    Ideal casters, trailing at once, are pushed with the lever that is stated, real ones with that by which they swing.
+    Ideal casters, trailing at once, are pushed with the lever that is stated, 50 mm, real ones with that by which they swing,
+    be it longer or shorter; halfway between 1 and 20 mm it is halfway between 50 and 20 mm.
     """
-    for trail, lever in ((0.0, 0.05), (0.099, 0.1)):
+    for trail, lever in ((0.0, 0.05), (0.0095, 0.035), (0.019, 0.02), (0.029, 0.03), (0.099, 0.1)):
         now = snapshot(
             {**SMOOTH, "effect.caster_friction.M": 0.2, "effect.caster_trail.c": trail, "start.psi_dot": 0.5},
             states={"swivel.fl": 0.0, "swivel.fr": 0.0},

@@ -13,7 +13,7 @@ from ...model.former import clash, former, renamed
 from ...units import UnitError, quantity
 from .. import body
 from ..axes import ISO, SAE
-from ..channels import BY_NAME, CHANNEL_NAMES, MOUNTED, SOURCES, TIME, Channel
+from ..channels import BY_FMU_NAME, BY_NAME, CHANNEL_NAMES, INPUTS, MOUNTED, SOURCES, TIME, Channel
 from ..derived import ENDS
 from ..devices import devices, parts, point, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
@@ -366,7 +366,7 @@ def bad_prior(doc: Document, known: Known | None) -> Iterator[Fault]:
             yield doc.fault(path, f"{name} is a former name, which has no prior of its own", f"give those of {names}")
             continue
         if known is not None and name not in known:
-            yield doc.fault(path, f"no parameter {name!r}", suggestion(name, known))
+            yield doc.fault(path, f"no parameter {name!r}", _instead(name, known))
         if sd is None or sd <= 0:
             fact = f"the prior of {name} is {value!r}"
             yield doc.fault(path, fact, "give a standard deviation above 0 in the unit of the parameter")
@@ -377,7 +377,7 @@ def _parameter(
 ) -> Iterator[Fault]:
     place, title = (entry.place, f"{entry.title}: ") if entry else (None, "")
     if known is not None and name not in known:
-        yield doc.fault(path, f"{title}no parameter {name!r}", suggestion(name, known), place)
+        yield doc.fault(path, f"{title}no parameter {name!r}", _instead(name, known), place)
         return
     plain = number(value)
     if plain is None:
@@ -396,6 +396,14 @@ def _parameter(
             fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
             angle = remainder(2 * pi * turns, 2 * pi) or 0.0  # and not -0.0
             yield doc.fault(path, fact, f"if a share of a turn is meant, write {angle:.4f}", place, NOTE)
+
+
+def _instead(name: str, known: Known) -> str:
+    """What to write for a parameter that there is not: an input is given in a run, another name is misspelt."""
+    channel = BY_FMU_NAME.get(name)
+    if channel is None or channel not in INPUTS:
+        return suggestion(name, known)
+    return f'it is an input: write constant = {{ "{channel.name}" = ... }} in each run'
 
 
 def _share_of_a_turn(angle: float) -> float:

@@ -16,7 +16,8 @@ PARAMETERS = (
     Parameter(
         "caster.trail",
         M,
-        "caster trail c in (8): the lever between a torque on the caster and its lateral force, unless its own is longer",
+        "caster trail c in (8): the lever between a torque on the caster and its lateral force, unless caster_trail tells the "
+        "real one",
         default=0.05,
         lower=1e-3,
         upper=0.5,

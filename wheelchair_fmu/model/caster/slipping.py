@@ -131,22 +131,22 @@ DEFLECTED = State("deflection", RAD, "deflection of each caster's tyre over its 
 
 
 @stage(
-    define("N_f", N, "vertical load of each caster", "+swap", FRONT),
-    define("N_r", N, "vertical load of each rear wheel", "+swap", REAR),
-)
-def loads(m, g_z, x_f, x_r, trail, swivel):
-    """(18), (19) with the front axle where the patches are in the mean."""
-    ahead = x_f - trail * cs.sum1(cs.cos(swivel)) / 2
-    weight = m * g_z / (2 * (ahead - x_r))
-    return per_wheel(-x_r * weight), per_wheel(ahead * weight)
-
-
-@stage(
     define("c", M, "caster trail, by which it swings and which is the lever of its lateral force", "+swap", FRONT),
     define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT),
 )
 def one_trail(trail):
     return per_wheel(trail), per_wheel(1.0)
+
+
+@stage(
+    define("N_f", N, "vertical load of each caster", "+swap", FRONT),
+    define("N_r", N, "vertical load of each rear wheel", "+swap", REAR),
+)
+def loads(m, g_z, x_f, x_r, c, swivel):
+    """(18), (19) with the front axle where the patches are in the mean."""
+    ahead = x_f - cs.dot(c, cs.cos(swivel)) / 2
+    weight = m * g_z / (2 * (ahead - x_r))
+    return per_wheel(-x_r * weight), per_wheel(ahead * weight)
 
 
 @stage(
@@ -204,7 +204,7 @@ def turned_and_wound(turning_rate, turning_torque, C_caster, deflection, mu_cast
 
 LAW = Alternative(
     "slipping",
-    (one_trail, patches, swivelling.turned, tyres, torques, casters),
+    (patches, swivelling.turned, tyres, torques, casters),
     PARAMETERS,
     (
         Row(swivelling.SWIVEL, lambda: 1.0, lambda swivel_rate: swivel_rate, swivelling.trailing),
@@ -216,7 +216,7 @@ LAW = Alternative(
         ),
         Row(DEFLECTED, lambda sigma_caster: per_wheel(sigma_caster), lambda deflecting: deflecting),
     ),
-    loads=loads,
+    loads=(one_trail, loads),
     serves=(swivelling.LAW.name,),
     absorbs=turned_and_wound,
 )

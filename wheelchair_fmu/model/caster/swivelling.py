@@ -10,9 +10,10 @@ one. The moments about the pivot balance as in (8) with the swivel inertia left 
 caster needs a lateral force at the patch, whose lever is that same c. With another lever the bearing
 would make energy.
 
-A torque M_w over 1 mm would be an absurd force. A trail shorter than the stated `caster.trail` stands
-for a caster that is ideal but for this torque, and so passes on c / `caster.trail` of it: its lateral
-force is M_w / `caster.trail`, that of the real lever, and still no energy is made.
+A torque M_w over 1 mm would be an absurd force. That trail stands for a caster that is ideal but for
+this torque, and so passes on c / `caster.trail` of it: its lateral force is M_w / `caster.trail`, that of
+the real lever, and still no energy is made. From 20 mm on, which is about the shortest that casters
+have, c is a real trail and the lever itself; between the two, the lever goes over from one to the other.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from ..stage import Alternative, Row, define, stage
 from . import ideal
 
 SLOW = 0.05  # m/s of a pivot, above which its caster trails it as a chair starts
+SHORTEST = 20  # times the least trail, of the trails that casters have
 ASIDE = 1e-3  # rad by which casters stand apart at rest, so that none is in line with its way exactly
 
 PARAMETERS: tuple[Parameter, ...] = (
@@ -77,8 +79,11 @@ def kinematic_trail(least_trail):
 
 
 @stage(define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT))
-def leverage(c, trail):
-    return c / cs.fmax(c, trail)
+def leverage(c, trail, least_trail):
+    """c over the lever: `caster.trail` at the least trail, c from the shortest real one on."""
+    shortest = SHORTEST * least_trail
+    gone = (c - least_trail) / (shortest - least_trail)
+    return c / cs.fmax(c, trail - gone * cs.fmax(trail - shortest, 0))
 
 
 @stage(

@@ -27,7 +27,7 @@ EXPONENT_M = Parameter(
     source="Doria, Fig. 7",
 )
 REFERENCE = Parameter(
-    "N_ref", N, "load at which C_λ and C_mλ were measured", default=400.0, lower=1.0, upper=1e4, source="Doria, Table 1"
+    "N_ref", N, "load at which C_λ and C_mλ were measured", default=400.0, lower=50.0, upper=2000.0, source="Doria, Table 1"
 )
 LIGHTEST = 0.01  # of the reference load; a wheel that carries less is off the ground
 

@@ -1,4 +1,7 @@
-"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law:  D = μ N  in (1)."""
+"""The lateral force bends over: the Magic Formula law's own 1/μ, which is zero in the linear law:  D = μ N  in (1).
+
+The linear law's self-aligning torque bends over with it, as the force stays as far behind the hub.
+"""
 
 from math import atan, sin
 

@@ -19,16 +19,20 @@ def endless_friction():
     return 0.0
 
 
-@stage(define("F_lam", N, "lateral force by slip of each rear tyre", "-swap", REAR))
+@stage(
+    define("F_lam", N, "lateral force by slip of each rear tyre", "-swap", REAR),
+    define("bend", ONE, "lateral force by slip of each rear tyre beside what its stiffness would give", "+swap", REAR),
+)
 def magic_force(k_F, lam_F, inv_mu, N_r, force_C, force_E):
     """(1) with D = μN and BCD = C_λ: C_λ λ times what the bend leaves of it."""
-    Bx = k_F * lam_F * inv_mu / (force_C * cs.fmax(N_r, LIGHTEST))
-    return k_F * lam_F * sine_over(Bx, force_C, force_E)
+    bend = sine_over(k_F * lam_F * inv_mu / (force_C * cs.fmax(N_r, LIGHTEST)), force_C, force_E)
+    return k_F * lam_F * bend, bend
 
 
 @stage(define("M_lam", N_M, "self-aligning torque of each rear tyre, rolling forward", "-swap", REAR))
-def linear_torque(k_M, lam_F):
-    return -k_M * lam_F  # (15), (16)
+def linear_torque(k_M, lam_F, bend):
+    """(15), (16): a force that bends over is C_mλ/C_λ behind the hub as before, and so the torque bends over with it."""
+    return -k_M * lam_F * bend
 
 
 LAW = Alternative("linear", (endless_friction, magic_force, linear_torque))
