@@ -25,6 +25,7 @@ from .inverse import inverse
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
 MOST = 8  # linearisations
+FURTHER = 3  # times that a step is doubled
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
@@ -234,6 +235,9 @@ def fit(
         further = _taken(problem, theta, here, to, shrinks) or _by_likelihood(problem, theta, here)
         if further is None:
             break
+        gained = problem.misfit(here, theta) - problem.misfit(further[1], further[0])
+        if likelihood.may_flip and gained > PROMISED:
+            further = _beyond(problem, theta, *further)
         theta, here = further
     return _found(problem, theta, here)
 
@@ -287,6 +291,33 @@ def _taken(
         if problem.misfit(found, trial) < before:
             return trial, found
     return None
+
+
+def _beyond(problem: Problem, theta: np.ndarray, to: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence]:
+    """A step that helped, or twice as far and so on while that is likelier, with runs that follow the errors of their pushes.
+
+    Slopes are about the errors that a run had before the step. Where casters may flip these hold it on its way, so that a step
+    is much too short, however often it is taken.
+    """
+    likelihood = problem.likelihood
+
+    def followed(trial: np.ndarray) -> float:
+        try:
+            return problem.misfit(likelihood.evidence(likelihood.campaign.fit, problem.values(trial), tune_start=1), trial)
+        except SimulationError:
+            return math.inf
+
+    before = likelihood.begun
+    far, best, kept = to, followed(to), likelihood.begun
+    for _ in range(FURTHER):
+        trial = np.clip(theta + 2 * (far - theta), problem.lower, problem.upper)
+        misfit = followed(trial)
+        if not misfit < best:
+            break
+        far, best, kept = trial, misfit, likelihood.begun
+    better = best < problem.misfit(here, to)
+    likelihood.begun = kept if better else before
+    return (far, problem.linearised(far)) if better else (to, here)
 
 
 def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence] | None:

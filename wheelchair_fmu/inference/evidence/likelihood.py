@@ -74,6 +74,15 @@ class Likelihood:
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
+    @property
+    def begun(self) -> tuple[dict[str, dict[str, float]], dict[str, np.ndarray]]:
+        """Where runs start, and the paths about which they are linearised, by run."""
+        return dict(self.starts), dict(self.paths)
+
+    @begun.setter
+    def begun(self, known: tuple[dict[str, dict[str, float]], dict[str, np.ndarray]]) -> None:
+        self.starts, self.paths = dict(known[0]), dict(known[1])
+
     def _uncertain(self, run: Run) -> dict[str, float]:
         return uncertain(run, self.start_names)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -26,9 +27,10 @@ from .factory import BEARING, ONSET, ModelFactory
 from .hypothesis import Hypothesis, Model
 from .setting import Setting
 
-# Where a fit begins as well that comes to no end near the noise, in standard deviations of its prior from what is usual: dry
-# friction that is more or sharper than a chair's holds it and its casters where they stand, and no slope tells of it then.
-LOOSE = ({BEARING: -1.0, ONSET: 0.3}, {ONSET: 0.3}, {BEARING: -1.0, ONSET: 1.0}, {ONSET: 1.0})
+# Where a calibration begins of a chair whose casters swing, in standard deviations of the priors from what is usual, and again
+# while it comes to no end near the noise: dry friction that is more or sharper than a chair's holds it and its casters where
+# they stand, and no slope tells of it then.
+LOOSE = ({ONSET: 0.3}, {BEARING: -1.0, ONSET: 1.0})
 
 
 def quiet(words: str) -> None:
@@ -167,20 +169,26 @@ class Models:
         start = {n: self.setting.begun.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
         nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=1)
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
-        found = self._from(likelihood, names, start, nominal)
-        for loose in LOOSE if BEARING in names and not self.factory.leads else ():
-            if found.evidence.rms < self.policy.a_little:
-                break
-            again = self.likelihood()
-            there = self._loosened(again, names, loose)
-            here = again.evidence(self.campaign.fit, there, names, tune_start=1)
-            other = self._from(again, names, there, here)
-            found, likelihood = min((found, likelihood), (other, again), key=lambda one: one[0].misfit)
+        swinging = BEARING in names and not self.factory.leads
+        likelihood, found = self._loosely(names) if swinging else (likelihood, self._from(likelihood, names, start, nominal))
         held = self.heldout(likelihood, found)
         setting = self.setting.started_as(likelihood)
         if self.factory.leads:
             setting = replace(setting, begun=dict(found.values))
         return replace(self, setting=setting), Model((), found, held), nominal, nominal_held
+
+    def _loosely(self, names: Sequence[str]) -> tuple[Likelihood, Fit]:
+        """The likeliest fit from where nothing is held, and its likelihood, with runs that start where it wants them."""
+        ends: list[tuple[Likelihood, Fit]] = []
+        for loose in LOOSE:
+            likelihood = self.likelihood()
+            there = self._loosened(likelihood, names, loose)
+            here = likelihood.evidence(self.campaign.fit, there, names, tune_start=1)
+            rival = min((found.misfit for _, found in ends), default=math.inf)
+            ends.append((likelihood, self._from(likelihood, names, there, here, rival)))
+            if ends[-1][1].evidence.rms < self.policy.a_little:
+                break
+        return min(ends, key=lambda end: end[1].misfit)
 
     def _loosened(self, likelihood: Likelihood, names: Sequence[str], by: Mapping[str, float]) -> dict[str, float]:
         """What is usual, or given, with some values so many standard deviations of their priors from that, within bounds."""
@@ -189,9 +197,12 @@ class Models:
         off = np.array([by[n] * s if n in by else 0.0 for n, s in zip(names, sd, strict=True)])
         return problem.values(np.clip(mean + off, problem.lower, problem.upper))
 
-    def _from(self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], here: Evidence) -> Fit:
-        """A fit from `start`, with the evidence `here`, and again from where its runs start by it."""
-        return self.restarted(likelihood, names, fit(likelihood, names, start, here).values, 1)
+    def _from(
+        self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], here: Evidence, rival: float = math.inf
+    ) -> Fit:
+        """A fit from `start`, with the evidence `here`, and again from where its runs start by it; neither is followed to its
+        end that falls too slowly to come up with a `rival`'s misfit."""
+        return self.restarted(likelihood, names, fit(likelihood, names, start, here, rival).values, 1, rival=rival)
 
     def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Models, Model]:
         """The model with these effects, which the variant has already, estimated anew."""

@@ -82,12 +82,15 @@ def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
 
 def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
     """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
-    deviations. None where forces lead the runs, which make up for what values would be bent for."""
+    deviations. None where forces lead the runs, which make up for what values would be bent for. What is known to be as small
+    as can be, as the speed over which drag sets in, stays as it was found: it lies beside that bound in every chair, and at the
+    bound itself, where dry friction holds whatever stands, no slope tells of anything."""
     if likelihood.leads or base.evidence.rms < AT_THE_FLOOR:
         return []
     prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
-    off = np.where(np.isfinite(prior.sd), np.abs(values - prior.mean) / prior.sd, 0.0)
-    straight = np.where(np.isfinite(prior.sd) & (prior.sd > 0), prior.mean, values)
+    known = np.isfinite(prior.sd) & (prior.sd > 0) & (prior.mean > [likelihood.records[n].lower for n in base.names])
+    off = np.where(known, np.abs(values - prior.mean) / prior.sd, 0.0)
+    straight = np.where(known, prior.mean, values)
     return [dict(zip(base.names, map(float, straight), strict=True))] if off.max(initial=0) > least else []
 
 
