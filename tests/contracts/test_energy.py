@@ -185,9 +185,9 @@ def test_what_drives_is_found_out(effect, fact):
     assert len(found) == 1 and fact in found[0] and "q = " in found[0]
 
 
-def lever_of_its_own(M_w, passed):
+def lever_of_its_own(M_w, c, lever):
     """What is added to a bearing's moment where its force has the lever 50 mm and the caster swings by another."""
-    return M_w * (passed - 1)
+    return M_w * (c / lever - 1)
 
 
 def test_a_caster_with_two_trails_is_found_out():

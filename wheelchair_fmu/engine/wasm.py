@@ -31,7 +31,7 @@ FLAGS = (
     "wasm32-wasi",
     "-mexec-model=reactor",
     "-std=c11",
-    "-O3",
+    "-Os",
     "-fno-unroll-loops",
     "-msimd128",
     "-g0",

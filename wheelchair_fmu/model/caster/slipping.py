@@ -132,10 +132,10 @@ DEFLECTED = State("deflection", RAD, "deflection of each caster's tyre over its 
 
 @stage(
     define("c", M, "caster trail, by which it swings and which is the lever of its lateral force", "+swap", FRONT),
-    define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT),
+    define("lever", M, "lever between a torque on each caster and its lateral force", "+swap", FRONT),
 )
 def one_trail(trail):
-    return per_wheel(trail), per_wheel(1.0)
+    return per_wheel(trail), per_wheel(trail)
 
 
 @stage(

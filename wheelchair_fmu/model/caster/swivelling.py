@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import casadi as cs
 
-from ...quantities import FRONT, M_S, N_M, ONE, RAD, RAD_S, M, N, Parameter, State
+from ...quantities import FRONT, M_S, N_M, RAD, RAD_S, M, N, Parameter, State
 from ..chassis import per_wheel
 from ..smooth import speed
 from ..stage import Alternative, Row, define, stage
@@ -78,12 +78,11 @@ def kinematic_trail(least_trail):
     return per_wheel(least_trail)
 
 
-@stage(define("passed", ONE, "share of a torque on each caster that its trail passes on", "+swap", FRONT))
+@stage(define("lever", M, "lever between a torque on each caster and its lateral force", "+swap", FRONT))
 def leverage(c, trail, least_trail):
-    """c over the lever: `caster.trail` at the least trail, c from the shortest real one on."""
-    shortest = SHORTEST * least_trail
-    gone = (c - least_trail) / (shortest - least_trail)
-    return c / cs.fmax(c, trail - gone * cs.fmax(trail - shortest, 0))
+    """`caster.trail` at the least trail, c from the shortest real one on."""
+    real = (c - least_trail) / ((SHORTEST - 1) * least_trail)  # 0 at the least trail, 1 at the shortest real one
+    return cs.fmax(c, trail + (SHORTEST * least_trail - trail) * real)
 
 
 @stage(
@@ -113,12 +112,12 @@ def turned(swivel):
     define("F_yf", N, "force of each caster on the chair along y_m", "-swap", FRONT),
     define("M_f", N_M, "moment of each caster's bearing on the chair", "-swap", FRONT),
 )
-def casters(delta, rolling, D_f, d_f, M_w, M_p, c, passed, drag_eps, v_onset):
-    """(6), (7) without the casters' mass: rolling resistance along the heading, torque / c across it."""
+def casters(delta, rolling, D_f, d_f, M_w, M_p, c, lever, drag_eps, v_onset):
+    """(6), (7) without the casters' mass: rolling resistance along the heading, torque / lever across it."""
     forward, right = cs.cos(delta), cs.sin(delta)
     drag = -(D_f / speed(rolling * rolling, drag_eps + v_onset) + d_f) * rolling
-    lateral = passed * (M_w + M_p) / c  # (8)
-    return drag * forward - lateral * right, drag * right + lateral * forward, -passed * M_w
+    lateral = (M_w + M_p) / lever  # (8)
+    return drag * forward - lateral * right, drag * right + lateral * forward, -(c / lever) * M_w
 
 
 def trailing(v_xf, v_yf, start_caster_l, start_caster_r):

@@ -50,9 +50,9 @@ def reaction(I, swivel_rate, psi_dot, smoothed_rate, T_filter):  # noqa: E741
     return -I * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter)
 
 
-def spun(I, swivel_rate, psi_dot, smoothed_rate, T_filter, passed):  # noqa: E741
+def spun(I, swivel_rate, psi_dot, smoothed_rate, T_filter, c, lever):  # noqa: E741
     """Of ½ I Ω², as far as the trail passes it on."""
-    return cs.sum1(passed * I * smoothed_rate * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter))
+    return cs.sum1(c / lever * I * smoothed_rate * acceleration(swivel_rate, psi_dot, smoothed_rate, T_filter))
 
 
 EFFECT = Effect(
