@@ -44,7 +44,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (M + "effects/relaxation_length.py", "slip = -v_yw / magnitude", "slip = v_yw / magnitude"),
     (M + "smooth.py", "(1 + bend) / 3) * z2", "(1 - bend) / 3) * z2"),
     (M + "caster/ideal.py", "lateral * v_xf, -M_w", "lateral * v_xf, M_w"),
-    (M + "caster/swivelling.py", "lateral * forward, -passed * M_w", "lateral * forward, passed * M_w"),
+    (M + "caster/swivelling.py", "lateral * forward, -(c / lever) * M_w", "lateral * forward, c / lever * M_w"),
     (M + "chassis.py", "F_rl + M_rl / R, F_rr + M_rr / R", "F_rr + M_rr / R, F_rl + M_rl / R"),
     (M + "chassis.py", "cs.vertcat(-t_r / 2, t_r / 2)", "cs.vertcat(t_r / 2, -t_r / 2)"),
     (L + "search/judge.py", "p=min(1.0, tests * p)", "p=min(1.0, p)"),
