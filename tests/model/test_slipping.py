@@ -50,9 +50,12 @@ def test_effects_of_casters_act_on_them_too():
     x = np.zeros(model.x.numel())
     names = [n for s in model.states for n in s.names]
     x[names.index("turning_rate.fl")] = 5.0
-    read = cs.Function("read", [model.x, model.w, model.p], [model.quantities["M_w"], model.quantities["c"]])
-    torque, trail = (r.full().ravel() for r in read(x, [i.start for i in model.inputs], p))
+    wanted = [model.quantities[name] for name in ("M_w", "c", "lever", "N_f")]
+    read = cs.Function("read", [model.x, model.w, model.p], wanted)
+    torque, trail, lever, load = (r.full().ravel() for r in read(x, [i.start for i in model.inputs], p))
     assert torque == pytest.approx([-0.4 - 0.002 * 5.0, 0.0]) and trail == pytest.approx([TRAIL + 0.02] * 2)
+    assert lever == pytest.approx(trail)
+    assert load.sum() == pytest.approx(MASS * G * B / (A + B - TRAIL - 0.02))
     assert Variant().with_effects(["caster_friction"]).choice.caster == "swivelling"
 
 

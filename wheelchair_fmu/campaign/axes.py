@@ -12,6 +12,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,13 +20,14 @@ from .channels import BY_NAME
 
 SAE, ISO = "SAE-J670", "ISO-8855"
 AXES = (SAE, ISO)
+Value = TypeVar("Value", float, np.ndarray)
 
 
-def to_sae(values: Mapping[str, np.ndarray], axes: str) -> dict[str, np.ndarray]:
-    """Series by channel name, (n,) each, from `axes` to SAE J670.
+def to_sae(values: Mapping[str, Value], axes: str) -> dict[str, Value]:
+    """Series by channel name, (n,) each, or constants, from `axes` to SAE J670.
 
-    From ISO 8855, a_y, y, v, yaw and yaw_rate change sign and nothing else does: what belongs to the left
-    wheel stays with the left wheel. Twice is the identity.
+    From ISO 8855, a_y, y, v, yaw, yaw_rate and floor.slope_y change sign and nothing else does: what belongs to the
+    left wheel stays with the left wheel. Twice is the identity.
     """
     if axes != ISO:
         return dict(values)

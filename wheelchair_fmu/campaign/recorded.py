@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .axes import ISO
+from .axes import to_sae
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
 from .devices import clock
 from .document import Document, Entry
@@ -52,8 +52,7 @@ class Recorded(Readings):
     @cached_property
     def constants(self) -> dict[str, float]:
         """Channels that were not logged but are known, in SI and SAE J670."""
-        known, axes = constants(self.entry), self.doc.axes
-        return {name: value * BY_NAME[name].iso_sign if axes == ISO else value for name, value in known.items()}
+        return to_sae(constants(self.entry), self.doc.axes)
 
     @cached_property
     def time(self) -> np.ndarray | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...faults import ERROR, WARNING, Fault, run_fault
-from ..channels import BODY_NAMES, BY_NAME, INPUT_NAMES
+from ..channels import BODY_NAMES, BY_NAME, INPUT_NAMES, Channel
 from ..draft import Draft
 from ..resampled import REPEATED
 
@@ -86,18 +86,18 @@ def implausible(draft: Draft) -> Iterator[Fault]:
         odd = np.flatnonzero((series < channel.low) | (series > channel.high))
         if odd.size:
             i = odd[np.argmax(np.abs(series[odd]))]
-            value, unit = series[i], channel.unit.name
-            bound = channel.high if value > channel.high else channel.low
-            side = "above" if value > channel.high else "below"
-            fact = f"{name} reaches {value:.4g} {unit}, {side} any plausible {bound:g} {unit}"
-            cure = f"check its unit (is it {channel.wrong_unit}?)"
-            severity = ERROR if np.isfinite(value) and abs(value) > absurd(name) * abs(bound or 1.0) else WARNING
+            fact, cure, absurd = beyond_plausible(channel, float(series[i]))
+            severity = ERROR if np.isfinite(series[i]) and absurd else WARNING
             yield run_fault(draft.file, fact, cure, draft.line(int(i)), draft.header(name), severity)
 
 
-def absurd(name: str) -> float:
-    """Times what is plausible of a channel or an input, above which it is an error."""
-    return PUSHED_HARD if name in INPUT_NAMES else ABSURD
+def beyond_plausible(channel: Channel, value: float) -> tuple[str, str, bool]:
+    """The fact and the cure for a value that is not within what is plausible of a channel or an input, and whether it is so far
+    from it that it is an error."""
+    bound, side = (channel.high, "above") if value > channel.high else (channel.low, "below")
+    times, unit = PUSHED_HARD if channel.name in INPUT_NAMES else ABSURD, channel.unit.behind
+    fact = f"{channel.name} reaches {value:.4g}{unit}, {side} any plausible {bound:g}{unit}"
+    return fact, f"check its unit (is it {channel.wrong_unit}?)", abs(value) > times * abs(bound or 1.0)
 
 
 def resampled(draft: Draft) -> Iterator[Fault]:

@@ -12,7 +12,7 @@ from ..channels import BY_NAME, MOMENTUM, PHASE, PHASE_RATE, POSITION, PUSHES, S
 from ..document import number
 from ..draft import Draft
 from ..recorded import Recorded
-from .file import FEWEST, absurd
+from .file import FEWEST, beyond_plausible
 
 SHORTEST = 0.5  # s of a run, or of it in which the rider's body is seen, at least
 GAINED = 0.5  # m/s that no floor in a laboratory gives a chair which nobody pushes
@@ -129,10 +129,8 @@ def implausible_constant(run: Recorded) -> Iterator[Fault]:
     for name, value in run.constants.items():
         channel = BY_NAME[name]
         if not channel.low <= value <= channel.high:
-            bound, side = (channel.high, "above") if value > channel.high else (channel.low, "below")
-            fact = f"{name} reaches {value:.4g} {channel.unit.name}, {side} any plausible {bound:g} {channel.unit.name}"
-            severity = ERROR if abs(value) > absurd(name) * abs(bound or 1.0) else WARNING
-            yield run_fault(run.file, fact, f"check its unit (is it {channel.wrong_unit}?)", severity=severity)
+            fact, cure, absurd = beyond_plausible(channel, value)
+            yield run_fault(run.file, fact, cure, severity=ERROR if absurd else WARNING)
 
 
 def measured_twice(run: Recorded) -> Iterator[Fault]:

@@ -25,11 +25,12 @@ from .inverse import inverse
 STRAIGHT = 1.0  # −2 log likelihood: a descent that falls by less has gone no further than a standard error, where slopes hold
 SLIGHT = 1e-4  # of what is left above the noise: a model that leaves much is wrong, and nobody needs its very best values
 MOST = 8  # linearisations
-FURTHER = 3  # times that a step is doubled
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
 NEAR = 2.0  # mean square innovation of a model that is about right: of one that is not, nobody needs the very best values
 WORTH_HALVING = 10.0  # fall of squares that slopes promise: a step of less that fails is not tried by halves
 PROMISED = 100.0  # fall of squares that slopes promise, and nobody finds
+GAINED = 100.0  # fall of −2 log likelihood in one step, from which on a longer one is tried,
+FURTHER = 3  # at most so many times, each twice as long
 AT_BOUND = 1e-3  # of a parameter's scale
 STEEPEST = 1e100  # slope in standard deviations per unit, of whose squares no computer loses count
 LEAST_SHARE = 0.2  # of a step that is tried
@@ -236,7 +237,7 @@ def fit(
         if further is None:
             break
         gained = problem.misfit(here, theta) - problem.misfit(further[1], further[0])
-        if likelihood.may_flip and gained > PROMISED:
+        if likelihood.may_flip and gained > GAINED:
             further = _beyond(problem, theta, *further)
         theta, here = further
     return _found(problem, theta, here)

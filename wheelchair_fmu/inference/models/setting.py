@@ -33,4 +33,5 @@ class Setting:
 
     def started_as(self, likelihood: Likelihood) -> Setting:
         """With the starts and paths that a likelihood has found."""
-        return replace(self, starts=dict(likelihood.starts), paths=dict(likelihood.paths))
+        starts, paths = likelihood.begun
+        return replace(self, starts=starts, paths=paths)

@@ -130,12 +130,14 @@ TURNING = State("turning_rate", RAD_S, "turning rate of each caster in the room"
 DEFLECTED = State("deflection", RAD, "deflection of each caster's tyre over its relaxation length", "-swap", FRONT, usual=0.01)
 
 
-@stage(
-    define("c", M, "caster trail, by which it swings and which is the lever of its lateral force", "+swap", FRONT),
-    define("lever", M, "lever between a torque on each caster and its lateral force", "+swap", FRONT),
-)
+@stage(define("c", M, "caster trail, by which it swings", "+swap", FRONT))
 def one_trail(trail):
-    return per_wheel(trail), per_wheel(trail)
+    return per_wheel(trail)
+
+
+@stage(define("lever", M, "lever between a torque on each caster and its lateral force", "+swap", FRONT))
+def leverage(c):
+    return c
 
 
 @stage(
@@ -204,7 +206,7 @@ def turned_and_wound(turning_rate, turning_torque, C_caster, deflection, mu_cast
 
 LAW = Alternative(
     "slipping",
-    (patches, swivelling.turned, tyres, torques, casters),
+    (leverage, patches, swivelling.turned, tyres, torques, casters),
     PARAMETERS,
     (
         Row(swivelling.SWIVEL, lambda: 1.0, lambda swivel_rate: swivel_rate, swivelling.trailing),

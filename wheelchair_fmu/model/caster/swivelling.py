@@ -27,7 +27,7 @@ from ..stage import Alternative, Row, define, stage
 from . import ideal
 
 SLOW = 0.05  # m/s of a pivot, above which its caster trails it as a chair starts
-SHORTEST = 20  # times the least trail, of the trails that casters have
+SHORTEST = 20  # least trails, that casters have in their shortest one
 ASIDE = 1e-3  # rad by which casters stand apart at rest, so that none is in line with its way exactly
 
 PARAMETERS: tuple[Parameter, ...] = (
@@ -73,7 +73,7 @@ PARAMETERS = (*PARAMETERS, *STARTS)
 SWIVEL = State("swivel", RAD, "caster angles", mirror="-swap", components=FRONT, usual=0.1)
 
 
-@stage(define("c", M, "caster trail, by which it swings and which is the lever of its lateral force", "+swap", FRONT))
+@stage(define("c", M, "caster trail, by which it swings", "+swap", FRONT))
 def kinematic_trail(least_trail):
     return per_wheel(least_trail)
 
