@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -42,6 +43,8 @@ GIVEN = {  # by the protocols; and where the sensor sits
 }
 AT = {"lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}
 GRAVITY = 9.81
+OF_THE_BODY = re.compile(r"^\[rider\]\n(?:.+\n)*|, sternum = [^}]*(?= \})", re.MULTILINE)  # lines and words of a campaign
+BODY, BODY_MOVES = "trunk_motion", "rider.force"
 # what a simulation may know of the rider's body, by its name in the answers, where all but the floor is known
 BODIES = {"true_rider": "with the body's motion known", "law_only_rider": "by a law of it"}
 
@@ -68,17 +71,22 @@ def drawn(out: Path, seed: int) -> Lab:
     return Lab(out, answer, {f"--{name}": size for name, size in answer["given"].items()})
 
 
-def imported(lab: Lab, out: Path) -> Path:
-    """The campaign of a lab's raw files, with what stands in its protocol."""
+def imported(lab: Lab, out: Path, filmed: bool = True) -> Path:
+    """The campaign of a lab's raw files, with what stands in its protocol; without markers of the rider's body, if it is not to
+    be `filmed`."""
     sizes = [word for size in lab.sizes.items() for word in size]
     runs = lab.answer["runs"].items()
     kept = [word for run, told in runs if told["role"] == "holdout" for word in ("--holdout", run)]
     done = CliRunner().invoke(app, [str(word) for word in ("import", lab.raw, "-o", out, *sizes, *kept)])
     if done.exit_code:
         raise RuntimeError(f"{lab.raw.name}: wheelchair import ended with {done.exit_code}: {done.output}")
+    told = out / "campaign.toml"
+    text = told.read_text(encoding="utf-8")
     if lab.at:
-        text = (out / "campaign.toml").read_text(encoding="utf-8")
-        (out / "campaign.toml").write_text(text.replace("# at = [0.0, 0.0]", f"at = {lab.at} #", 1), encoding="utf-8")
+        text = text.replace("# at = [0.0, 0.0]", f"at = {lab.at} #", 1)
+    if not filmed:
+        text = OF_THE_BODY.sub("", text)
+    told.write_text(text, encoding="utf-8")
     return out
 
 
@@ -119,7 +127,8 @@ def missed(parameters: list[Mapping[str, Any]], true: Mapping[str, float]) -> It
 
 def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """What was said of a lab, and how far off it is."""
-    d = diagnose(read(folder), generic=library())
+    d = diagnose(campaign := read(folder), generic=library())
+    filmed = all(BODY_MOVES in run.inputs for run in campaign.runs)
     told, hidden = as_json(d), answer["hidden"]
     parameters = final(d, {p.name: p for e in library().values() for p in e.owned})["parameters"]
     floors, last = answer["floor_of_the_held_out_runs"], told["physical"]
@@ -132,7 +141,7 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "verdict": told["verdict"],
         "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
         "hidden": answer["verdict"],
-        "unfair": unfair(told, answer),
+        "unfair": unfair(told, answer, filmed),
         "heldout": {"calibrated": told["ladder"][1]["heldout"], "last": told["ladder"][-1]["heldout"]},
         "hub_speed": {run: _speed(last, run) for run in floors},
         "yaw_rate": {run: last["yaw_rate"]["runs"][run] for run in floors if "yaw_rate" in last},
@@ -150,14 +159,15 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     }
 
 
-def unfair(told: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
+def unfair(told: Mapping[str, Any], answer: Mapping[str, Any], filmed: bool) -> str:
     """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing.
 
-    Casters trail and stick in every lab, and a patch that is turned has several laws.
+    Casters trail and stick in every lab, and a patch that is turned has several laws. A body whose motion was recorded is in
+    the model as it moved, and is not missing.
     """
     hidden = answer["verdict"]
     named = {*told["effects"], *(e for tie in told["ties"] for e in tie)}
-    true = {*hidden["missing"], *hidden.get("also", ())}
+    true = {*hidden["missing"], *hidden.get("also", ())} - ({BODY} if filmed else set())
     true |= {*TURNS_HARD} if answer["hidden"]["turn_slip"]["M_p"] else set()
     false = named - true - {*hidden.get("small", ()), *SLIGHT}
     if false:
@@ -208,20 +218,21 @@ def main() -> None:
         "--drawn", type=int, nargs="+", default=[], metavar="SEED", help="labs that are drawn, one for each seed"
     )
     parser.add_argument("--measurements", type=Path, default=MEASUREMENTS, help="the folder with the labs and their answers")
+    parser.add_argument("--unfilmed", action="store_true", help="leave out markers of the rider's body")
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
     for name in chosen.labs or ([] if chosen.drawn else GIVEN):
-        told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out)
+        told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out, not chosen.unfilmed)
     for seed in chosen.drawn:
-        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out)
+        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out, not chosen.unfilmed)
 
 
-def told(name: str, lab: Callable[[Path], Lab], out: Path) -> None:
+def told(name: str, lab: Callable[[Path], Lab], out: Path, filmed: bool) -> None:
     """Import and diagnose one lab, keep its figures and print them; `lab` may write its raw files into a folder."""
     with tempfile.TemporaryDirectory() as place:
         one = lab(Path(place) / "raw")
-        found = row(one.answer, imported(one, Path(place) / name))
+        found = row(one.answer, imported(one, Path(place) / name, filmed))
     (out / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     table = Table(title=f"{name}, {found['seconds']:.0f} s", show_header=False)
     for line in lines(found):

@@ -160,3 +160,20 @@ def test_what_uneven_floors_cover_is_found_beside_what_is_slight(tmp_path):
     hidden = lab.answer["hidden"]
     floor = 9.81 * hidden["floor_slope_rms"] * hidden["m"]
     assert 1 / 1.5 < diagnosis.unexplained.after.along / floor < 1.5
+
+
+@pytest.mark.nightly
+def test_a_body_that_nobody_filmed_is_missing(tmp_path):
+    """It moves by a law of the pushes, and by itself: with the law in the model, wheels are foretold as well as by the law that
+    fits it best, and the rest is a force that nobody recorded."""
+    measured("lab-00")
+    lab = recorded(MEASUREMENTS, "lab-00")
+    diagnosis = diagnose(read(imported(lab, tmp_path / "chair", filmed=False)))
+    named = {*diagnosis.effects, *(effect for group in diagnosis.ties for effect in group)}
+    assert diagnosis.verdict in ("missing", "tie") and "trunk_motion" in named <= {"trunk_motion", "stroke_motion"}
+    best = lab.answer["floor_of_the_held_out_runs"].values()
+    told = diagnosis.ladder[-1].physical
+    for side in "lr":
+        assert told[f"wheel_speed_{side}"]["heldout_rms"] < WITHIN * max(
+            floor["law_only_rider"]["hub_speed_rms"] for floor in best
+        )

@@ -12,6 +12,7 @@ from benchmarks.independent.hidden import usual
 from tests.inference.conftest import among, measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
+from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.inference.decision.bootstrap import bootstrap
 from wheelchair_fmu.inference.decision.verdict import Diagnosis, _structured, diagnose, insufficient, share_seen
 from wheelchair_fmu.inference.estimation.interval import half_width
@@ -194,6 +195,15 @@ def test_an_uneven_floor_is_nobodys_effect(tmp_path):
     found = diagnose(campaign, generic=library())
     assert found.verdict in ("adequate", "cannot_see") and not found.effects
     assert 1.5 < found.unexplained.after.along < 3.5  # N, as 80 kg feel it
+
+
+def test_forces_are_asked_for_once_most_is_left(tmp_path):
+    """On an uneven floor no effect explains much: nobody searches for the rest in a model that lacks what is mainly missing."""
+    few = {effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "aerodynamic_drag")}
+    campaign, said = read(make(tmp_path / "floor", {"uneven_floor": {"slope": 0.003}}, seed=1)), []
+    found = diagnose(campaign, Variant(catalogue=few), generic=library(), progress=said.append)
+    assert sum("nobody recorded" in words for words in said) == 1 and "looking for what no effect explains" not in said
+    assert found.verdict in ("adequate", "cannot_see") and FORCES in [step.name for step in found.ladder]
 
 
 def test_drag_hidden_in_straight_runs_is_named_or_tied(tmp_path):

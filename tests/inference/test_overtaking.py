@@ -12,6 +12,7 @@ from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.policy import DEFAULT
+from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import ties
 from wheelchair_fmu.inference.search.rounds import Belief
 from wheelchair_fmu.inference.search.selection import Selection
@@ -182,16 +183,41 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
 
     moved = Some()
     models = Some(settled=lambda effects, found: (moved, top(*effects, rms=rms)))
-    ladder = ("nominal", "calibrated", "+drag")
-    foot = Selection(models, top("drag", rms=1.15), ladder, 0.0, print, rounds=(Some(effects=("drag",)),))
-    helped = replace(foot, ladder=(*ladder, "+part"), helping=frozenset({"toe"}))
+    *ladder, part, toe = (Step(name, rms, rms) for name in ("nominal", "calibrated", "+drag", "+part", "+toe"))
+    foot = Selection(models, top("drag", rms=1.15), tuple(ladder), 0.0, print, rounds=(Some(effects=("drag",)),))
+    helped = replace(foot, ladder=(*ladder, part), helping=frozenset({"toe"}))
     found = iter([lambda now: (helped, Some(effect="toe", fit=None, afresh=False)), lambda now: (now, None)])
     monkeypatch.setattr(Selection, "_found", lambda self: next(found)(self))
     monkeypatch.setattr(Selection, "_looked_beside", lambda self: (self, False))
-    monkeypatch.setattr(Selection, "_step", lambda self: replace(self, ladder=(*self.ladder, "+toe")))
+    monkeypatch.setattr(Selection, "_step", lambda self: replace(self, ladder=(*self.ladder, toe)))
     monkeypatch.setattr(Selection, "_pruned", lambda self: self)
     now = foot.to_the_top()
     assert now.effects == (("drag", "toe") if stays else ("drag",))
-    assert now.ladder == ((*ladder, "+part", "+toe") if stays else ladder)
+    assert now.ladder == ((*ladder, part, toe) if stays else tuple(ladder))
     assert now.models is (moved if stays else models)
     assert now.helping == ({"toe"} if stays else set())
+
+
+@pytest.mark.parametrize(
+    ("rms", "far", "reached"),
+    [
+        ((5.0, 3.0, 2.9, 1.0), 1.3, 2),  # the second step leaves nearly all that the first one left
+        ((5.0, 4.0, 2.0, 1.0), 1.3, 1),  # and here the first leaves more than half
+        ((5.0, 3.0, 1.5, 1.0), 1.3, 3),  # here all do much
+        ((1.29, 1.28, 1.27, 1.0), 1.3, 3),  # what is left is little
+        ((5.0, 3.0, 2.9, 1.0), np.inf, 3),
+    ],
+)
+def test_a_search_pauses_where_a_step_does_little_and_much_is_left(monkeypatch, rms, far, reached):
+    """It goes on from there as if it had not."""
+    steps = [Step(f"+{i}", one, one) for i, one in enumerate(rms)]
+
+    def one_step(self):
+        ended = len(self.ladder) == len(steps) + 1
+        return replace(self, ended=ended, ladder=self.ladder if ended else (*self.ladder, steps[len(self.ladder) - 1]))
+
+    monkeypatch.setattr(Selection, "_one_step", one_step)
+    foot = Selection(None, Model((), fit(0.0), Evidence((), ())), (Step("nominal", 9.0, 9.0), steps[0]), 0.0, print)
+    now = foot.to_the_top(far)
+    assert len(now.ladder) == 2 + reached and now.ended == (reached == 3)
+    assert now.to_the_top().ladder == (foot.ladder[0], *steps) and now.to_the_top().ended

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from wheelchair_fmu.campaign.windows import PUSHED, between
 from wheelchair_fmu.inference.evidence.initial_state import START_SD, start_sd
 
 
@@ -21,3 +22,10 @@ def test_a_chair_that_stands_does_not_slide(sample, rolls, turns, share):
     found = start_sd(replace(run, channels=still, u0=rolls, set={}))
     assert found["start.v"] == pytest.approx(share * START_SD["start.v"], rel=0.05, abs=1e-3 * START_SD["start.v"])
     assert found["start.u"] == START_SD["start.u"] and found["start.psi_dot"] == START_SD["start.psi_dot"]
+
+
+def test_a_piece_begins_in_mid_stroke(sample):
+    """At a speed that its first samples say less surely, as hands change it meanwhile."""
+    run = sample.fit[0]
+    piece, start = between(run, run.time[0] + 1.0, run.time[-1]), between(run, run.time[0], run.time[0] + 3.0)
+    assert start_sd(piece)["start.u"] == PUSHED > 2 * START_SD["start.u"] == 2 * start_sd(start)["start.u"]

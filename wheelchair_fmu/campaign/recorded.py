@@ -17,10 +17,10 @@ from .devices import clock
 from .document import Document, Entry
 from .draft import Draft, Readings, constants
 from .records import Clock
+from .series import began
 
 PUSHES_CLOCK = "pushes"  # what `clocks` calls the record of pushes in a run of one file
 GRID = 1e-6  # s to which times of several devices are kept, so that two samples at one moment share a row
-_FIRST = 10  # samples from which the starting speed is taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,10 +173,8 @@ class Recorded(Readings):
             series = [self.values["wheel_speed_l"], self.values["wheel_speed_r"]]
         else:
             return None
-        firsts = [s[np.isfinite(s)][:_FIRST] for s in series]
-        if any(first.size == 0 for first in firsts):
-            return None
-        return float(np.mean([np.median(first) for first in firsts]))
+        firsts = [value for s in series if self.time is not None and (value := began(self.time, s)) is not None]
+        return float(np.mean(firsts)) if len(firsts) == len(series) else None
 
     @property
     def u0(self) -> float | None:

@@ -47,7 +47,8 @@ class Run:
 
     `time` is (n,), in s, strictly rising, with the file's own values. `inputs` are (n,) without gaps, by the name
     of the FMU input; `channels` are (n,) with NaN in gaps, by the names of `CHANNELS`. `u0` is the speed at the
-    first sample in m/s, from the file or else from the first wheel speeds, None where neither tells.
+    first sample in m/s, from the file or else from the first wheel speeds, None where neither tells; `u0_sd` how sure that is
+    (standard deviation), where it is less so than usual.
     `set` holds dotted parameters that differ from the campaign's in this run; where it says how the run starts
     (`start.psi`, ...), that is not estimated.
 
@@ -75,6 +76,7 @@ class Run:
     devices: int = 1
     noise_shares: Mapping[str, float] = field(default_factory=dict)
     way: float | None = None
+    u0_sd: float | None = None
 
     @cached_property
     def first(self) -> dict[str, float]:

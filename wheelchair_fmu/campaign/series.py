@@ -15,11 +15,10 @@ FAR = 12.0  # standard deviations of the noise from either neighbour,
 ALONE = 3.0  # and times what the four neighbours differ from one to the next
 RARE = 0.01  # of all samples, and
 FEW = 3  # of a run; what is more frequent is how this sensor reads
-FIRST, LINE = 0.2, 8  # s from which a series' first value is taken, by a line if that is so many samples; of fewer
+FIRST, LINE = 0.2, 3  # s from which a series' first value is taken, by a line if that is so many samples at least
 GLANCED = 10_000  # readings, which a converter that is finer than the noise shows itself in
 MULTIPLES, WHOLE = 50, 0.1  # of a converter's step, that are looked at; and how near to whole numbers they are read
 STRAIGHT = 1e-9  # of the steepest slope, by which a line may bend for rounding
-MEDIAN = 10  # samples the median says it better
 
 
 def estimate(series: Iterable[np.ndarray]) -> float | None:
@@ -139,16 +138,18 @@ def without(series: np.ndarray, places: Sequence[int] | np.ndarray) -> np.ndarra
 
 def began(time: np.ndarray, series: np.ndarray) -> float | None:
     """What a series (n,) at times (n,), with NaN in gaps, began with: the robust line of Theil and Sen through its first
-    samples, as a chair that is being pushed gains speed. None where it has no sample."""
+    samples, as a chair that is being pushed gains speed; the first one itself, where the next ones are too late to tell. None
+    where it has no sample."""
     there = np.isfinite(series)
     time, series = time[there] - time[0], series[there]
     first = time <= FIRST
     if first.sum() < LINE:
-        return float(np.median(series[:MEDIAN])) if series.size else None
+        return float(series[0]) if series.size else None
     time, series = time[first], series[first]
-    earlier, later = np.triu_indices(len(time), 1)
-    slope = np.median((series[later] - series[earlier]) / (time[later] - time[earlier]))
-    return float(np.median(series - slope * time))
+    pairs = np.stack(np.triu_indices(len(time), 1))
+    earlier, later = pairs[:, np.diff(time[pairs], axis=0)[0] > 0]  # a clock that stands is a fault, and said elsewhere
+    slopes = (series[later] - series[earlier]) / (time[later] - time[earlier])
+    return float(np.median(series - (np.median(slopes) if slopes.size else 0.0) * time))
 
 
 def integral(time: np.ndarray, series: np.ndarray, at: np.ndarray) -> np.ndarray:

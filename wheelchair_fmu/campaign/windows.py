@@ -21,6 +21,7 @@ LARGE = 36_000  # samples of a campaign, above which a search works on a choice 
 WINDOW = 10.0  # s
 NEAR = 2.0  # s by which the start of a window may move to where the chair hardly turns
 CALM = 0.5  # s over which that is judged
+PUSHED = 0.1  # m/s by which hands, or a body that swings, change a chair's speed within a tenth of a second
 LEAST_SAMPLES = 10  # of a piece
 STARTS = "start."  # parameters that say where a run starts
 HEADING = "start.psi"
@@ -110,6 +111,7 @@ def _cut(run: Run, start: int, stop: int) -> Run:
         run,
         name=f"{run.name}@{run.time[start]:.6g}s",
         u0=_speed(run.time[part], channels) if start else run.u0,
+        u0_sd=PUSHED if start else run.u0_sd,
         set=known,
         time=run.time[part],
         inputs=inputs,

@@ -14,7 +14,7 @@ from ..campaign.recorded import PUSHES_CLOCK
 from ..engine.innovations import steps
 from ..engine.tangent import EXTERNAL, differentiable, sensed
 from ..engine.wasm import evaluation, modules
-from ..inference.decision.verdict import FORCES as UNRECORDED
+from ..inference.decision.among_forces import FORCES as UNRECORDED
 from ..inference.estimation.statistics import finite
 from ..inference.evidence.initial_state import CASTERS, START, TUNING, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import erf, sqrt
 from typing import Any
 
-from ..inference.decision.verdict import FORCES
+from ..inference.decision.among_forces import FORCES
 from ..inference.policy import DEFAULT
 from ..quantities import Quantity
 from .advice import inspect, inspect_term

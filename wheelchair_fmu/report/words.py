@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..inference.decision.verdict import FORCES
+from ..inference.decision.among_forces import FORCES
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
 from ..model.generic import told_at

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..campaign import CHANNELS
-from ..inference.decision.verdict import FORCES
+from ..inference.decision.among_forces import FORCES
 from ..model.generic import library
 from ..model.stage import Effect
 from ..model.variant import Variant

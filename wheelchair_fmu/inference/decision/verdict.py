@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -23,21 +22,19 @@ from ..estimation.interval import interval_by_errors, profile_interval, widened
 from ..estimation.score import Score
 from ..estimation.statistics import correlation_time
 from ..estimation.unnamed import allowance
-from ..evidence.disturbance import Strength, acting, strength
+from ..evidence.disturbance import Strength
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import MASS
 from ..evidence.limits import beyond
-from ..evidence.noise_model import NoiseModel
 from ..models.factory import CALIBRATED, MEASURED, ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models, quiet
-from ..models.setting import Setting
 from ..policy import DEFAULT, SearchPolicy
 from ..preflight.slipping import slipped
 from ..preflight.timing import Late, clocks, unlike_the_others
 from ..residual.lead import lead
 from ..residual.staircase import Step
-from ..residual.unexplained import Unexplained, unexplained
+from ..residual.unexplained import Unexplained
 from ..search.beginning import Beginning, Clocks, begin, late_by_slopes
 from ..search.candidate import Candidate
 from ..search.probability import beliefs, shared
@@ -47,11 +44,10 @@ from ..search.screen import screen
 from ..search.selection import Selection, selection
 from ..search.ties import grouped, probable, tied
 from .ahead import Ahead, ahead, run_to_fit, which_to_fit
+from .among_forces import led, left, needed, staircase
 from .experiment import Experiment, reveal, separate
-from .foretold import on_led_runs, worse, worsened
+from .foretold import worsened
 from .leftover import leftover, prepare, settled
-
-FORCES = "unrecorded forces"  # the step of the staircase that has them among the noise
 
 
 @dataclass(frozen=True)
@@ -152,76 +148,96 @@ def diagnose(
     began = time.monotonic()
     campaign = windows(campaign)
 
+    def concluded(search: _Search, terms: Mapping[str, Effect], heard: tuple[str, ...] = ()) -> Diagnosis:
+        return _concluded(_to_the_top(search, stepped), terms, experiments, heard, stepped)
+
+    def among(now: Selection | Diagnosis, heard: tuple[str, ...]) -> _Among:
+        return _among_forces(now, lambda led: concluded(_begun(led, {}, stepped), {}, heard), progress)
+
     models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
-    found = _diagnosed(models, generic or {}, experiments, stepped)
-    found = _with_forces(found, lambda models: _diagnosed(models, {}, experiments, stepped, found.heard), progress)
+    search = _begun(models, generic or {}, stepped)
+    search = search._replace(found=search.found.to_the_top(policy.unexplained))
+    # Whoever searches on here looks for the rest in a model that lacks what is mainly missing: forces are asked for first.
+    tried = among(search.found, search.heard) if search.found.ladder[-1].left > policy.unexplained else None
+    found = tried.found if tried and tried.found else _with_forces(concluded(search, generic or {}), tried, among)
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     notes = (*found.notes, *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
-def _with_forces(found: Diagnosis, again: Callable[[Models], Diagnosis], say: Callable[[str], None]) -> Diagnosis:
-    """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search is made again
-    with such a force among the noise: if that is no more than a floor does, and nothing orders it, it is nobody's effect."""
-    before, along = _acting(found, (), found.rounds[0].fit)
-    if found.verdict != "outside" or found.ladder[-1].left < found.models.policy.a_little or not before.fall:
-        return replace(found, unexplained=Unexplained(before, _acting(found, found.included, found.top)[0], ()))
+class _Search(NamedTuple):
+    """Where a search began, and where it has come to."""
+
+    begun: Beginning
+    found: Selection
+
+    @property
+    def clocks(self) -> Clocks:
+        """What is known of time, by run and device."""
+        return clocks(self.found.top.fit.evidence, self.found.top.heldout)
+
+    @property
+    def heard(self) -> tuple[str, ...]:
+        """Sentences on columns and clocks."""
+        return self.begun.heard(self.clocks)
+
+
+class _Among(NamedTuple):
+    """A search among forces that nobody recorded: how strong these are beside the calibrated model, what was `found` if that
+    counts, and what is `left` to these forces, if such a search was made."""
+
+    before: Strength
+    found: Diagnosis | None = None
+    left: Unexplained | None = None
+
+
+def _among_forces(now: Selection | Diagnosis, again: Callable[[Models], Diagnosis], say: Callable[[str], None]) -> _Among:
+    """The search made `again` with the force among the noise that the calibrated model lacks: if that is no more than a floor
+    does, and nothing orders it, it is nobody's effect."""
+    calibrated = now.rounds[0].fit
+    before, along = needed(now.models, (), calibrated)
+    if not before.fall:
+        return _Among(before)
     say("searching again, with forces that nobody recorded")
     try:
-        second = again(_led(found, before, along))
+        second = again(led(now.models, calibrated, before, along))
     except SimulationError:  # forces so strong that they hide all that a model does
-        return replace(found, unexplained=_left(found, before))
-    left = _left(second, before)
-    if left.ordered or not left.like_a_floor:
-        return replace(found, unexplained=left)
-    nominal, calibrated = found.ladder[:2]
-    calibrated = on_led_runs(calibrated, found.rounds[0].fit.values, second.models)
-    # What foretells worse than values that were merely calibrated is a model that the forces hold up, and no chair on a floor.
-    if worse(calibrated, second.ladder[-1]):
-        return replace(found, unexplained=left)
-    with_forces = replace(second.ladder[1], name=FORCES)
-    return replace(second, ladder=(nominal, calibrated, with_forces, *second.ladder[2:]), unexplained=left)
+        return _Among(before)
+    rest = left(second.models, second.included, second.top, before)
+    ladder = (
+        None
+        if rest.ordered or not rest.like_a_floor
+        else staircase(now.ladder, calibrated.values, second.ladder, second.models)
+    )
+    return _Among(before, replace(second, ladder=ladder, unexplained=rest) if ladder else None, rest)
 
 
-def _led(found: Diagnosis, forces: Strength, along: Evidence) -> Models:
-    """The models of the same campaign, with its columns and clocks as they were found, along such forces, as they lead the
-    calibrated model's runs."""
-    w, values = found.models.factory, found.rounds[0].fit.values
-    mass = found.models.likelihood().chair(values)[MASS]
-    noise_model = forces.put_into(NoiseModel(w.campaign.noise), mass)
-    return replace(found.models, factory=w.led(), setting=Setting.led(noise_model, along, values))
+def _with_forces(found: Diagnosis, tried: _Among | None, among: Callable[[Diagnosis, tuple[str, ...]], _Among]) -> Diagnosis:
+    """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search `among` such
+    forces is what counts, if it does; `tried` is what came of it, where it was made."""
+    if found.verdict == "outside" and found.ladder[-1].left >= found.models.policy.a_little:
+        tried = tried or among(found, found.heard)
+        if tried.found:
+            return tried.found
+        if tried.before.fall:
+            rest = tried.left or left(found.models, found.included, found.top, tried.before)
+            return replace(found, unexplained=rest)
+    before = tried.before if tried else needed(found.models, (), found.rounds[0].fit)[0]
+    return replace(found, unexplained=Unexplained(before, needed(found.models, found.included, found.top)[0], ()))
 
 
-def _left(found: Diagnosis, before: Strength) -> Unexplained:
-    """The force that the last model of a search lacks, where it lacked so much `before`, and what orders it."""
-    after, evidence = _acting(found, found.included, found.top)
-    return unexplained(found.models.likelihood(found.included), found.top, before, after, evidence)
-
-
-def _acting(found: Diagnosis, effects: Sequence[str], at: Fit) -> tuple[Strength, Evidence]:
-    """How strong forces are that a fit with these effects needs, and the evidence for it; the fit's own where it has a generic
-    term, which no likelihood of the search knows, and where no force can lead the runs, as casters flip by chance."""
-    likelihood = found.models.likelihood(effects)
-    if set(at.names) <= set(likelihood.records):
-        with suppress(SimulationError):
-            return acting(likelihood, at.values)
-    chair = likelihood.chair(at.values)
-    return strength(at.evidence, chair["chair.t_r"], chair["chair.b"]), at.evidence
-
-
-def _diagnosed(
-    models: Models,
+def _concluded(
+    search: _Search,
     generic: Mapping[str, Effect],
     experiments: Sequence[Experiment],
+    heard: tuple[str, ...],
     stepped: Callable[[Sequence[Step]], None],
-    heard: tuple[str, ...] = (),
 ) -> Diagnosis:
-    """The search up the staircase, and the verdict on where it ends; `heard` are sentences on columns and clocks that there are
-    already."""
-    beginning, found = _climbed(models, generic, stepped)
+    """The verdict on where a search has ended; `heard` are sentences on columns and clocks that there are already."""
+    beginning, found = search
     models, rounds, base = found.models, found.rounds, found.top.fit
-    left, proposal = leftover(found, generic)
+    terms, proposal = leftover(found, generic)
     included, ladder = found.effects, found.ladder
     if proposal is not None:
         included, proposal, ladder = settled(found, generic, proposal)
@@ -231,7 +247,7 @@ def _diagnosed(
     judged = {e: decided[e] for e in found.named() if e in decided}
     effects = tuple(e for e, r in judged.items() if probable(r, e))  # what others made needless later only helps
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
-    ties, in_time = tuple(group for group, _ in groups), clocks(base.evidence, found.top.heldout)
+    ties = tuple(group for group, _ in groups)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
@@ -239,7 +255,7 @@ def _diagnosed(
     verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained, likely)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
-    heard = (*heard, *beginning.heard(in_time))
+    heard = (*heard, *search.heard)
     allowed = _allowance(found)
     return Diagnosis(
         campaign=models.campaign.name,
@@ -251,7 +267,7 @@ def _diagnosed(
         ladder=ladder,
         rounds=rounds,
         beside=tuple(beside.values()),
-        leftover=left,
+        leftover=terms,
         proposal=proposal,
         final=base,
         calibration=tuple(values),
@@ -259,7 +275,7 @@ def _diagnosed(
         allowance=allowed,
         models=models,
         retimed=beginning.retimed,
-        clocks=in_time,
+        clocks=search.clocks,
         heard=heard,
         notes=(*_notes(found, heard, verdict, proposal, values, likely), *which_to_fit(ladder, held, models.policy)),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
@@ -275,21 +291,24 @@ def _named(verdict: str, effects: Sequence[str], ties: Sequence[Sequence[str]], 
     return _slight(first) if verdict == "small" else ()
 
 
-def _climbed(
-    models: Models, generic: Mapping[str, Effect], stepped: Callable[[Sequence[Step]], None]
-) -> tuple[Beginning, Selection]:
-    """Where a search began, and how it ended; once again where its last model shows that pushes are a little early or late."""
+def _begun(models: Models, generic: Mapping[str, Effect], stepped: Callable[[Sequence[Step]], None]) -> _Search:
+    """A search at the foot of the staircase; what asks for generic terms is compiled beside it."""
     first = _where_wheels_roll(begin(models))
     prepare(first.models, generic)
-    found = selection(first, stepped).to_the_top()
+    return _Search(first, selection(first, stepped))
+
+
+def _to_the_top(search: _Search, stepped: Callable[[Sequence[Step]], None]) -> _Search:
+    """A search that has ended; once again where its last model shows that pushes are a little early or late."""
+    first, found = search.begun, search.found.to_the_top()
     named = (*found.named(), *found.already)
     late = late_by_slopes(found.models, found.effects, named, found.top.fit)
     if not late:
-        return first, found
+        return _Search(first, found)
     again = begin(replace(found.models, factory=found.models.factory.retimed(late)))
     notes = tuple(dict.fromkeys((*first.notes, *again.notes)))
     again = replace(again, notes=notes, retimed={**first.retimed, **late, **again.retimed})
-    return again, selection(again, stepped).to_the_top()
+    return _Search(again, selection(again, stepped).to_the_top())
 
 
 def _where_wheels_roll(first: Beginning) -> Beginning:

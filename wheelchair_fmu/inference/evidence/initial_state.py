@@ -67,11 +67,11 @@ def _point(channel: str, known: Mapping[str, float]) -> tuple[float, float]:
 
 def start_sd(run: Run, names: Sequence[str] = START) -> dict[str, float]:
     """Standard deviations of the above; what the run sets, and a pose that nobody measured, is as it is said to be. Casters may
-    stand as they like where the chair does, and there it does not slide."""
+    stand as they like where the chair does, and there it does not slide. A piece of a run starts in mid-stroke."""
     start = prior_start(run, {})
     rolled, moved = start["start.u"] / ROLLED, np.hypot(start["start.u"], DEFAULTS["chair.b"] * start["start.psi_dot"]) / ROLLED
     aside = 1 / (1 + rolled * rolled) if run.way is None else float(np.exp(-run.way / TRAIL))
-    sideways = {"start.v": START_SD["start.v"] * float(1 - 1 / (1 + moved * moved))}
+    speed = {"start.u": run.u0_sd or START_SD["start.u"], "start.v": START_SD["start.v"] * float(1 - 1 / (1 + moved * moved))}
     pose = {name: POSE_SD if TELLS[name].name in run.channels else 0.0 for name in POSE}
     casters = dict.fromkeys(CASTERS, CASTER_SD * aside)
-    return {name: 0.0 if name in run.set else {**pose, **START_SD, **sideways, **casters}[name] for name in names}
+    return {name: 0.0 if name in run.set else {**pose, **START_SD, **speed, **casters}[name] for name in names}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -25,6 +26,7 @@ from .ties import beside, overtaker
 
 MOST_EFFECTS = 4  # that are put in, beside what only helps: whoever lacks more needs another model
 MOST_STEPS = 8  # that put one in, or one in the place of another
+MOST = 0.5  # of the mean square above the noise: whoever leaves more of it does little
 MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 
@@ -35,7 +37,8 @@ class Selection:
 
     `already` are the effects that the chair came with; of others `helping` are in though they may be too small to be named, and
     `parts` as members of a group. `calibrated` is the misfit without any effect; so many rounds, `noisier`, were searched with
-    other noise than is known now. `stepped` is told the staircase whenever it has changed.
+    other noise than is known now. `stepped` is told the staircase whenever it has changed. A search that has `ended` finds no
+    more.
     """
 
     models: Models
@@ -50,6 +53,7 @@ class Selection:
     parts: frozenset[str] = frozenset()
     tried_together: bool = False
     noisier: int = 0
+    ended: bool = False
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -61,21 +65,31 @@ class Selection:
         """Those of them that the chair came without."""
         return self.effects[len(self.already) :]
 
-    def to_the_top(self) -> Selection:
+    def to_the_top(self, far: float = math.inf) -> Selection:
         """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
-        overtake, as long as anything is found."""
+        overtake, as long as anything is found; or until a step does little where an error of `far` and more is left."""
         now = self
         for _ in range(MOST_STEPS):
-            before = now
-            now, best = now._found() if len({*now.added} - now.helping) < MOST_EFFECTS else (now, None)
-            higher = now._with(best) if best else None
-            if higher is None:
-                now, overtaken = replace(now, ladder=before.ladder, helping=before.helping)._looked_beside()
-                if not overtaken:
-                    return now
-            else:
-                now = higher
-        return replace(now, beside={effect: now._beside(effect) for effect in now.added})
+            if now.ended:
+                return now
+            below, now = now, now._one_step()
+            if now.ladder[-1].left > far and now._did_little(below):
+                return now
+        return replace(now, beside={effect: now._beside(effect) for effect in now.added}, ended=True)
+
+    def _did_little(self, below: Selection) -> bool:
+        """Is most left of what there was a step `below`? What explains less is not what is mainly missing."""
+        before = self.ladder[min(len(below.ladder), len(self.ladder) - 1) - 1]  # by the noise that is known now
+        return not self.ended and self.ladder[-1].left ** 2 - 1 > MOST * (before.left**2 - 1)
+
+    def _one_step(self) -> Selection:
+        """The same until the model at the top is another one; or `ended`, where nothing is found."""
+        now, best = self._found() if len({*self.added} - self.helping) < MOST_EFFECTS else (self, None)
+        higher = now._with(best) if best else None
+        if higher is not None:
+            return higher
+        now, overtaken = replace(now, ladder=self.ladder, helping=self.helping)._looked_beside()
+        return replace(now, ended=not overtaken)
 
     def named(self) -> tuple[str, ...]:
         """The effects that were found, without those that only help: what is likelier slight, be it of a group, unless all of

@@ -10,7 +10,7 @@ from typing import Any
 
 from ...campaign import Campaign
 from ...errors import Failure
-from ...inference.decision.verdict import FORCES
+from ...inference.decision.among_forces import FORCES
 from ...model.generic import library
 from ...model.variant import Variant
 
