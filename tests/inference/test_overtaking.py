@@ -13,6 +13,7 @@ from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.residual.staircase import Step
+from wheelchair_fmu.inference.search import selection as selecting
 from wheelchair_fmu.inference.search import ties
 from wheelchair_fmu.inference.search.rounds import Belief
 from wheelchair_fmu.inference.search.selection import Selection
@@ -221,3 +222,15 @@ def test_a_search_pauses_where_a_step_does_little_and_much_is_left(monkeypatch, 
     now = foot.to_the_top(far)
     assert len(now.ladder) == 2 + reached and now.ended == (reached == 3)
     assert now.to_the_top().ladder == (foot.ladder[0], *steps) and now.to_the_top().ended
+
+
+@pytest.mark.parametrize(("searched", "effects"), [([(), ("toe",)], ("drag",)), ([(), ("toe",), ("drag",)], ("toe", "drag"))])
+def test_a_search_does_not_go_in_circles(monkeypatch, searched, effects):
+    """Each of two effects makes the other needless, and is found again beside it: a model that was searched from is not left
+    for another one and come back to."""
+    monkeypatch.setattr(selecting, "pruned", lambda models, every, found, keep: (("drag",), fit(1.0)))
+    monkeypatch.setattr(Selection, "_anew", lambda self, needed, fewer: replace(self, top=replace(self.top, effects=needed)))
+    both = Model(("toe", "drag"), fit(0.0), Evidence((), ()))
+    rounds = tuple(Some(effects=one) for one in searched)
+    now = Selection(Some(say=lambda words: None), both, (), 0.0, print, rounds=rounds)
+    assert now._pruned().effects == effects

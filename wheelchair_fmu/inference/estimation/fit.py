@@ -237,7 +237,7 @@ def fit(
         if further is None:
             break
         gained = problem.misfit(here, theta) - problem.misfit(further[1], further[0])
-        if likelihood.may_flip and gained > GAINED:
+        if likelihood.may_flip and gained > GAINED and most > 1:  # a single step only shows how much a start promises
             further = _beyond(problem, theta, *further)
         theta, here = further
     return _found(problem, theta, here)

@@ -112,9 +112,10 @@ class Selection:
         return replace(self, models=models, top=top)._step()._pruned()
 
     def _pruned(self) -> Selection:
-        """The model without what its last effect makes needless."""
+        """The model without what its last effect makes needless; but never one that was searched from before, as the search
+        would come back to here."""
         needed, fewer = pruned(self.models, self.effects, self.top.fit, self.already)
-        if needed == self.effects:
+        if needed == self.effects or any(set(r.effects) == set(needed) for r in self.rounds):
             return self
         self.models.say("starting again without what is needed no more")
         return self._anew(needed, fewer)
