@@ -19,7 +19,7 @@ from tests.flips import flipping
 from tests.kit import tracked, with_settings
 from wheelchair_fmu.campaign import Campaign, moving, read, windows
 from wheelchair_fmu.engine.simulate import Simulator
-from wheelchair_fmu.inference.decision.verdict import FORCES as UNRECORDED
+from wheelchair_fmu.inference.decision.among_forces import FORCES as UNRECORDED
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant

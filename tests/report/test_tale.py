@@ -9,7 +9,7 @@ import pytest
 
 from tests.kit import SAMPLE_DIAGNOSIS
 from wheelchair_fmu.campaign import CHANNELS
-from wheelchair_fmu.inference.decision.verdict import FORCES
+from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant

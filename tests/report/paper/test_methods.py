@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from wheelchair_fmu.inference.decision.verdict import FORCES
+from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.report.paper.folder import bibliography
 from wheelchair_fmu.report.paper.markup import cited
 from wheelchair_fmu.report.paper.methods import methods, tex
