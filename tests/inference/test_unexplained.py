@@ -88,7 +88,7 @@ def test_a_floor_is_ordered_by_nothing(sample, seed):
     found = left_of(ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 2.5), wandering(rng, run.time, 0.4))))
     assert found.orders == () and found.like_a_floor
     assert "no effect is behind them" in found.words[1]
-    shallow = [f"{found.after.along:.2g} N", f"{found.after.moment:.2g} N m"]
+    shallow = [f"{size:.2g} {unit}" for size, unit in zip(found.after.whole, ("N", "N m"), strict=True)]
     assert all(figure in found.words[0] for figure in shallow)
 
 

@@ -257,10 +257,18 @@ class Whitener:
 
     def response(self, change: np.ndarray) -> np.ndarray:
         """Readings (n, nz) that recorded pushes (n, nq) add if they are larger by `change`, to first order."""
-        pushed, out = np.zeros((len(change), self.size[1])), np.empty(self.present.shape)
+        return self._responses(change)[1]
+
+    def states(self, change: np.ndarray) -> np.ndarray:
+        """What such a `change` adds to the states (n, nx)."""
+        return self._responses(change)[0]
+
+    def _responses(self, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        n, (nx, nq, nz) = len(change), self.size
+        pushed, states, readings = np.zeros((n, nq)), np.empty((n, nx)), np.empty((n, nz))
         pushed[:, : self.recorded] = change
-        _library().wc_respond(ctypes.byref(self._filter), ctypes.c_long(len(out)), _of(pushed), _of(out))
-        return out
+        _library().wc_respond(ctypes.byref(self._filter), ctypes.c_long(n), *map(_of, (pushed, states, readings)))
+        return states, readings
 
     def smoothed(self, innovations: np.ndarray) -> np.ndarray:
         """A disturbance's forces (n, d), as all readings have them, from the innovations (n, nz) of residuals."""

@@ -102,7 +102,7 @@ def _forces(colour: NoiseModel) -> dict[str, Any] | None:
     floor's, which are forgotten sooner by as much as a run has `pace`."""
     if not colour.disturbed:
         return None
-    found = disturbance(colour, EXTERNAL, mass=colour.mass)
+    found = disturbance(colour, EXTERNAL)
     assert found.common is not None
     as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
     sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist()}

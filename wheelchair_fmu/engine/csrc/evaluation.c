@@ -13,8 +13,9 @@
 #define ARRIVED 0.03  /* and of a step that leads nowhere else */
 #define MOMENTS 8     /* up to which readings are asked where errors of the pushes led, */
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
-#define TURNING 1     /* of the forces that nobody recorded, the moment, */
-#define SWINGS 2      /* and the first of those by which a body swings */
+#define MOMENT 1      /* of the forces that nobody recorded, the moment, */
+#define TREMOR 2      /* that of bumps, */
+#define SWINGS 4      /* and the first of those by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
 static const double shares[] = {1.0, 0.5, 0.25, 0.1}; /* of a step that are tried */
@@ -158,7 +159,7 @@ static void as_push(const wc_recording *s, const wc_values *v, double *to) {
     for (int q = 0; q < s->noise.nq; q++) {
         for (int d = 0; d < s->noise.nd; d++) {
             double unit = s->noise.as_push[q * s->noise.nd + d];
-            to[q * s->noise.nd + d] = d == TURNING ? unit : unit * v->numbers[WC_ALONG];
+            to[q * s->noise.nd + d] = d == MOMENT || d == TREMOR ? unit : unit * v->numbers[WC_ALONG];
         }
     }
 }
@@ -253,7 +254,7 @@ static void slope_of_constant(const wc_recording *s, wc_evaluation *e, int const
             for (long i = 0; i < s->n; i++) change[i * nq + q] += side * e->busy[i] / (2 * STROKE);
         }
     }
-    wc_respond(&e->f, s->n, change, to);
+    wc_respond(&e->f, s->n, change, 0, to);
     for (int z = 0; clock && z < nz; z++) {
         if (!s->constant_readings[constant * nz + z]) continue;
         for (int side = -1; side <= 1; side += 2) {
@@ -407,7 +408,7 @@ static void add(const wc_recording *s, wc_evaluation *e, const double *by, doubl
     for (long i = 0; i < s->n; i++) {
         for (int q = 0; q < s->noise.nq; q++) e->noise[i * nq + q] = unrecorded(s, e, by, i, q);
     }
-    wc_respond(&e->f, s->n, e->noise, to);
+    wc_respond(&e->f, s->n, e->noise, 0, to);
 }
 
 /* Results and readings without forces and with pushes as recorded, from this start. */
@@ -600,7 +601,7 @@ static int slopes_hold(const wc_recording *s, wc_evaluation *e, const double *st
     for (long i = 0; i < s->n; i++) {
         for (int q = 0; q < nq; q++) e->noise[i * e->f.nq + q] = with->trial[i * nq + q];
     }
-    wc_respond(&e->f, s->n, e->noise, with->some);
+    wc_respond(&e->f, s->n, e->noise, 0, with->some);
     for (long at = 0; at < readings(s); at++) with->some[at] = with->driven[at] - with->some[at];
     innovate(s, e, e->measured, with->some, with->some);
     for (long at = 0; at < readings(s); at++) {

@@ -294,7 +294,7 @@ double wc_misfit(const filter *f, long n, const double *start_mean, const double
     return total;
 }
 
-void wc_respond(const filter *f, long n, const double *change, double *readings) {
+void wc_respond(const filter *f, long n, const double *change, double *states, double *readings) {
     int nx = f->nx, nq = f->nq;
     double e[WC_MOST] = {0}, next[WC_MOST];
     for (long i = 0; i < n; i++) {
@@ -306,6 +306,7 @@ void wc_respond(const filter *f, long n, const double *change, double *readings)
             for (int q = 0; q < nq; q++) next[r] += f->B[row * nq + q] * before[q] + f->C[row * nq + q] * now[q];
         }
         if (i) memcpy(e, next, sizeof(double) * (size_t)nx);
+        if (states) memcpy(states + i * nx, e, sizeof(double) * (size_t)nx);
         for (long at = i * f->nz; at < (i + 1) * f->nz; at++) {
             readings[at] = 0;
             for (int k = 0; k < nx; k++) readings[at] += f->H[at * nx + k] * e[k];

@@ -52,8 +52,8 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
  * NaN where there is no room. */
 double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual);
 
-/* readings: n x nz, what inputs that are larger by `change` (n x nq) add to them. */
-void wc_respond(const filter *f, long n, const double *change, double *readings);
+/* readings: n x nz, and states: n x nx, or 0: what inputs that are larger by `change` (n x nq) add to them. */
+void wc_respond(const filter *f, long n, const double *change, double *states, double *readings);
 
 /* noise: n x nq, that of the inputs as all readings have it, from their innovations (n x nz, 0 in gaps) by wc_design's gains. */
 void wc_smooth(const filter *f, long n, const double *gain, const double *scale, const double *innovations, double *noise);

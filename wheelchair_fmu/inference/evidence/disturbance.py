@@ -22,12 +22,21 @@ from .evidence import Evidence, RunEvidence
 from .likelihood import Likelihood
 from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke
 
-SIZES = ("force", "moment", "body")
-USUAL = np.array([5.0, 1.0, 5.0])  # N, N m and N s: a strength's prior falls by e over this
+SIZES = ("force", "moment", "body", "tremor")
+USUAL = np.array([5.0, 1.0, 5.0, 1.0])  # N, N m, N s and N m: a strength's prior falls by e over this
 NEAR = 0.02  # m: a CM that is nearer to the axle than that is no lever
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
 # times these, from where the search may start
-START = ((0.03,) * 3, (0.3, 0.03, 0.03), (0.03, 0.3, 0.03), (0.03, 0.03, 0.3), (0.6,) * 3, (0.3, 0.3, 2.0), (6.0,) * 3)
+START = (
+    (0.03,) * 4,
+    (0.3, 0.03, 0.03, 0.03),
+    (0.03, 0.3, 0.03, 0.03),
+    (0.03, 0.03, 0.3, 0.03),
+    (0.03, 0.03, 0.03, 3.0),
+    (0.6,) * 4,
+    (0.3, 0.3, 2.0, 0.03),
+    (6.0,) * 4,
+)
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-5  # and share of a strength over which its slope is taken: over more, a minimum's slope is not 0
@@ -38,8 +47,9 @@ CLOSE = 0.1  # of a strength, by which the last one may differ
 @dataclass(frozen=True)
 class Strength:
     """Standard deviations of the slow force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
-    needs, by how much −2 log posterior falls with them, the way (m) over which the moment is forgotten, the standard deviation
-    of the floor's force (N), and the RMS push (N) of the runs that all was found for."""
+    needs, by how much −2 log posterior falls with them, the way (m) over which the moment is forgotten, the standard deviations
+    of the floor's force (N), of what its bumps turn the chair with (N m) and push it along (N), and the RMS push (N) of the
+    runs that all was found for."""
 
     force: float
     moment: float
@@ -47,17 +57,25 @@ class Strength:
     fall: float
     lasting: float = FORGOTTEN
     floor: float = 0.0
+    tremor: float = 0.0
+    bumps: float = 0.0
     stroke: float = 0.0
 
     @property
     def along(self) -> float:
-        """Standard deviation (N) of the force along the heading, slow or a floor's."""
+        """Standard deviation (N) of the force along the heading, slow or a floor's, without bumps."""
         return float(np.hypot(self.force, self.floor))
+
+    @property
+    def whole(self) -> tuple[float, float]:
+        """Standard deviations of the force along the heading (N) and of the moment (N m), with bumps."""
+        return float(np.hypot(self.along, self.bumps)), float(np.hypot(self.moment, self.tremor))
 
     def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
         """Noise with forces of this strength, found for a chair of this mass (kg)."""
-        along = replace(noise_model, force=self.force, floor=self.floor, body=self.body, mass=mass, stroke=self.stroke)
-        return replace(along, moment=self.moment, lasting=self.lasting)
+        turning = replace(noise_model, moment=self.moment, lasting=self.lasting, tremor=self.tremor)
+        along = replace(turning, force=self.force, floor=self.floor, bumps=self.bumps, body=self.body)
+        return replace(along, mass=mass, stroke=self.stroke)
 
 
 def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = None) -> Strength:
@@ -65,7 +83,8 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
 
     What turns a chair says how uneven a floor is: `t_r` is the distance (m) between the wheels, `b` that from the axle to the
     CM, where a slope to the side pulls. Along the heading a body pushes as well, and readings hardly tell the two apart. So the
-    moment is found without a floor, and what there is along the heading beside a floor that is as steep along the way.
+    moment is found without a floor, and what there is along the heading beside a floor that is as steep along the way, and as
+    bumpy: what pushes one rear wheel turns the chair by half the distance between the two, and what pushes the other as well.
     The search begins `about` a strength, where one is known that is nearly it. Uncertain clocks and baselines of runs are taken
     as they are.
     """
@@ -80,13 +99,18 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
     if min(tried) > without:
         return none
     found, least = _likeliest(misfits, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
-    if found.moment > 2 * LEAST * USUAL[1]:
-        found, least = _likeliest(misfits, replace(found, floor=found.moment / max(b, NEAR)), ("force", "body"))
-    felt = {
-        name: size if (size := getattr(found, name)) > 2 * LEAST * usual else 0.0
-        for name, usual in zip(SIZES, USUAL, strict=True)
-    }
-    return replace(found, **felt, fall=float(without - least))
+    uneven = _felt(found)
+    if uneven.moment or uneven.tremor:
+        floor, bumps = uneven.moment / max(b, NEAR), uneven.tremor / (t_r / 2)
+        found, least = _likeliest(misfits, replace(found, floor=floor, bumps=bumps), ("force", "body"))
+    return replace(_felt(found), fall=float(without - least))
+
+
+def _felt(found: Strength) -> Strength:
+    """The same without what is next to nothing."""
+    sizes = {name: float(getattr(found, name)) for name in SIZES}
+    felt = {n: sizes[n] if sizes[n] > 2 * LEAST * usual else 0.0 for n, usual in zip(SIZES, USUAL, strict=True)}
+    return replace(found, **felt)
 
 
 def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
@@ -131,8 +155,8 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
     back. So forces are estimated, the model is led by them, and the strength is estimated anew from there.
     """
     likelihood, chair = likelihood.led(moving(likelihood.campaign)), likelihood.chair(values)
-    force, moment, body = USUAL
-    found = Strength(force, moment, body, 0.0)
+    force, moment, body, tremor = USUAL
+    found = Strength(force, moment, body, 0.0, tremor=tremor)
     likelihood.noise_model = found.put_into(likelihood.noise_model)
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
@@ -145,7 +169,7 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
 
 
 def _alike(one: Strength, other: Strength) -> bool:
-    pairs = ((one.force, other.force), (one.moment, other.moment), (one.floor, other.floor), (one.body, other.body))
+    pairs = [(getattr(one, name), getattr(other, name)) for name in (*SIZES, "floor")]
     return all(abs(a - b) <= CLOSE * max(a, b) for a, b in pairs)
 
 

@@ -25,12 +25,13 @@ from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence, followed
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
-from .noise_model import FORCED, NoiseModel, disturbance, noise_of, pushes_of
+from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_of, pushes_of
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 LONG = 30_000  # rows: five minutes at 100 Hz, some megabytes
-MASS, ALONG = "chair.m", [0, *range(2, FORCED)]  # and which of the forces that nobody recorded push along the heading
+MASS = "chair.m"
+INERT = (MASS, "chair.I_z", "chair.b")  # what resists forces and moments
 
 
 def driven(campaign: Campaign) -> frozenset[str]:
@@ -70,6 +71,7 @@ class Likelihood:
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
+        self._yawing = [s.name for s in self.sensitivities.model.states].index("psi_dot")
         self._recordings: dict[tuple[str, bool], tuple[Run, NoiseModel, Recording]] = {}
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
@@ -246,9 +248,8 @@ class Likelihood:
         given, chair = self._set(run, values), self.chair(values)
         offsets = [values.get(f"offset.{c}", 0.0) for c in self._channels(run)]
         delay = sum(given.get(d, 0.0) for d in self._delays)
-        along = chair[MASS] / self.noise_model.mass if self.noise_model.mass else 1.0
         p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
-        at = Values(p, np.array(offsets), delay, along, chair[MASS])
+        at = Values(p, np.array(offsets), delay, self.noise_model.along(chair[MASS]), chair[MASS])
         columns = [n for n in by if n not in self._delays and n not in self.offsets]
         return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed, follows)
 
@@ -289,8 +290,7 @@ class Likelihood:
 
     def _of_any_chair(self, run: Run) -> Disturbance:
         """The forces on a chair of the mass that they were found for."""
-        mass, swinging = self.noise_model.mass, self.noise_model.swinging(run)
-        return disturbance(self.noise_model, self._pushes(run), mass=mass, swinging=swinging, speed=pace(run))
+        return disturbance(self.noise_model, self._pushes(run), swinging=self.noise_model.swinging(run), speed=pace(run))
 
     def _told(
         self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]
@@ -323,7 +323,7 @@ class Likelihood:
         )
 
     def _unknown(self, run: Run, values: Mapping[str, float]) -> Disturbance:
-        return disturbance(self.noise_model, self._pushes(run), mass=self.chair(values)[MASS])
+        return disturbance(self.noise_model, self._pushes(run), along=self.noise_model.along(self.chair(values)[MASS]))
 
     def _driven(self, run: Run, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
         """Inputs (n, nw) with forces that nobody recorded."""
@@ -343,13 +343,23 @@ class Likelihood:
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
     def _as_before(self, run: Run, found: Evaluation, values: Mapping[str, float], by: tuple[str, ...]) -> np.ndarray:
-        """What has to be added to slopes (n, nz, k) along a path, as its forces do the same to a heavier chair: they grow with
-        its mass. The path is made of the very errors that slopes are held against, and with its forces in the slope by its
-        mass a chair would be found too light."""
+        """What has to be added to slopes (n, nz, k) along a path, so that they are those of the chair without it. The path is
+        made of the very errors that slopes are held against: with its forces in the slope by its mass, or its moments in that
+        by its inertia, a chair would be found too light. A force along the heading does to a heavier chair what a lesser one
+        does to a lighter; a moment turns it against its inertia about the rear axle, I_z + m b², and against a CM that is ahead
+        of that axle and is turned about with it, m b u."""
         out = np.zeros((*found.r.shape, len(by)))
-        if MASS in by:
-            pushed = found.path[:, ALONG] @ self._unknown(run, values).as_push[:, ALONG].T
-            out[:, :, by.index(MASS)] = found.whitener.response(pushed) / self.chair(values)[MASS]
+        if not {*INERT} & {*by}:
+            return out
+        chair, as_push = self.chair(values), self._unknown(run, values).as_push
+        m, b, pushed = chair[MASS], chair["chair.b"], found.path @ as_push.T
+        r = found.whitener.states(pushed)[:, self._yawing]
+        bends, u = np.gradient(r, run.time), found.results[:, self.sensitivities.results.index("chair.u")]
+        resists = {MASS: b * (b * bends + u * r), "chair.I_z": bends, "chair.b": m * (2 * b * bends + u * r)}
+        for name in {*INERT} & {*by}:
+            less = np.outer(resists[name], as_push[:, MOMENT])
+            less += found.path[:, ALONG] @ as_push[:, ALONG].T / m if name == MASS else 0.0
+            out[:, :, by.index(name)] = found.whitener.response(less)
         return out
 
     def _measured(self, run: Run, values: Mapping[str, float]) -> np.ndarray:

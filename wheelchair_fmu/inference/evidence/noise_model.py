@@ -26,10 +26,13 @@ FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, or m,
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
 # of the way over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
 RISES = (1 / 3, 2 / 3)
-# of the processes of `disturbance`, a force, a moment, those of the body and those of a floor, which are the body's,
-BODYS = np.repeat([False, True, False], [2, len(SWUNG), len(RISES)])
-PLACES = np.repeat([False, True, False, True], [1, 1, len(SWUNG), len(RISES)])  # those that a floor has in it,
-FORCED = len(BODYS)  # and how many there are
+PATCH = 0.05  # m over which a bump is forgotten that a wheel rolls over: as long as a tyre's contact patch
+# of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, those of the body and those of a
+# floor, which are the body's,
+BODYS = np.repeat([False, True, False], [4, len(SWUNG), len(RISES)])
+PLACES = np.repeat([False, True, False, True], [1, 3, len(SWUNG), len(RISES)])  # those that a floor has in it,
+FORCED = len(BODYS)  # how many there are, which of them is the moment, and which push along the heading
+MOMENT, ALONG = 1, (0, *range(3, FORCED))
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
 
@@ -44,7 +47,9 @@ class NoiseModel:
     force: float = 0.0  # N, standard deviation of what pushes the chair along its heading for long and nobody recorded,
     moment: float = 0.0  # N m, of what turns it,
     floor: float = 0.0  # N, of what a floor that rises and falls again pushes along the heading,
-    body: float = 0.0  # N s, and of the momentum that a rider's body has against the chair, beside what was recorded of it
+    body: float = 0.0  # N s, of the momentum that a rider's body has against the chair, beside what was recorded of it,
+    bumps: float = 0.0  # N, of what bumps push along the heading,
+    tremor: float = 0.0  # N m, and of what they turn the chair with
     lasting: float = FORGOTTEN  # m over which the moment is forgotten, and the floor's force, as the chair rolls
     mass: float = 0.0  # kg, of the chair that these forces were found for; 0: of any
     stroke: float = 0.0  # N, RMS push of the runs that they were found for; 0: of any
@@ -71,10 +76,16 @@ class NoiseModel:
         """The same (n,) from a run's `effort`, where that is known already."""
         return efforts / self.stroke if self.stroke else np.ones(len(efforts))
 
+    def along(self, mass: float) -> float:
+        """How many times as large forces along the heading are on a chair of this mass (kg) as on the one that they were found
+        for. What they do to a chair is known, and not how large they are: one of another mass needs others for the same, or a
+        heavier chair would be likelier for its quieter ride."""
+        return mass / self.mass if self.mass else 1.0
+
     @property
     def disturbed(self) -> bool:
         """Do forces act that nobody recorded?"""
-        return max(self.force, self.moment, self.floor, self.body) > 0
+        return max(self.force, self.moment, self.floor, self.body, self.bumps, self.tremor) > 0
 
     def differs(self, other: NoiseModel) -> bool:
         """Is some channel's noise of another size or noise_model, by more than estimates of either scatter?"""
@@ -99,6 +110,8 @@ class NoiseModel:
             (self.moment, other.moment, 0.1),
             (self.floor, other.floor, 0.5),
             (self.body, other.body, 0.5),
+            (self.bumps, other.bumps, 0.5),
+            (self.tremor, other.tremor, 0.1),
         )
         return any(abs(a - b) > max((SCATTER - 1) * max(a, b), felt) for a, b, felt in pairs)
 
@@ -121,34 +134,35 @@ def disturbance(
     noise_model: NoiseModel,
     inputs: Sequence[str],
     t_r: float = 1.0,
-    mass: float = 1.0,
+    along: float = 1.0,
     swinging: np.ndarray | float = 1.0,
     speed: np.ndarray | float = 1.0,
 ) -> Disturbance:
-    """A force along the heading, a moment, the processes by which a rider's body pushes, and those of a floor, as changes of
-    these inputs: of those from outside where they are among them, which no rider's body answers, or else of both hands', on
-    wheels `t_r` apart.
+    """A force along the heading, a moment, the moment and the force of bumps, the processes by which a rider's body pushes, and
+    those of a floor, as changes of these inputs: of those from outside where they are among them, which no rider's body
+    answers, or else of both hands', on wheels `t_r` apart.
 
-    What forces along the heading do to a chair is known, and not how large they are: one of another `mass` (kg) than that which
-    they were found for needs others for the same. Or else a heavier chair would be likelier for its quieter ride. `swinging` is
-    times how much the body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
+    `along` is how many times as large as in `noise_model` that is which acts along the heading, `swinging` times how much the
+    body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
 
     A body pushes by −p', with p its momentum against the chair: a sum of processes of first order that one noise drives, and a
     force without a mean. So does a floor, which rises and falls again: the slope along the way is what its height changes. The
     slope to the side, which turns a chair, is alike for as far as the height is, so that both are forgotten together. A floor
-    is as it is in each place: who rolls slowly stays longer on a slope, and gains or loses the more by it.
+    is as it is in each place: who rolls slowly stays longer on a slope, and gains or loses the more by it. Bumps are shorter
+    than a chair, and push one wheel and not the other, so that they turn it as well.
     """
     body, floor = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
-    lasting = np.array([FORGOTTEN, noise_model.lasting, *body.lasting, *floor.lasting])  # s, or m
+    lasting = np.array([FORGOTTEN, noise_model.lasting, PATCH, PATCH, *body.lasting, *floor.lasting])  # s, or m
     as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
     common[np.ix_(BODYS, BODYS)], common[-len(RISES) :, -len(RISES) :] = body.together, floor.together
-    along = mass / noise_model.mass if noise_model.mass else 1.0
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
     if not shares.keys() <= set(inputs):
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
-        as_push[inputs.index(name)] = [along * ahead, turning, *(-along * ahead * np.sign([*body.rates, *floor.rates]))]
-    sd = np.array([noise_model.force, noise_model.moment, *np.abs(body.rates), *np.abs(floor.rates)])
+        back = -along * ahead * np.sign([*body.rates, *floor.rates])
+        as_push[inputs.index(name)] = [along * ahead, turning, turning, along * ahead, *back]
+    rates = np.abs([*body.rates, *floor.rates])
+    sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *rates])
     seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
     return Disturbance(np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds, as_push, common)
 

@@ -76,7 +76,8 @@ class Unexplained:
     @property
     def like_a_floor(self) -> bool:
         """Is it no more than a floor that counts as flat does?"""
-        return self.after.along <= FLAT * self.weight and self.after.moment <= FLAT * self.weight * self.arm
+        force, moment = self.after.whole
+        return force <= FLAT * self.weight and moment <= FLAT * self.weight * self.arm
 
     @property
     def ordered(self) -> tuple[Order, ...]:
@@ -107,14 +108,15 @@ class Unexplained:
 
 
 def _figures(s: Strength) -> dict[str, float]:
-    return {"force": s.along, "moment": s.moment, "floor": s.floor, "body": s.body, "lasting": s.lasting}
+    whole = dict(zip(("force", "moment"), s.whole, strict=True))
+    return {**whole, "floor": s.floor, "body": s.body, "lasting": s.lasting, "bumps": s.bumps, "tremor": s.tremor}
 
 
 def _size(s: Strength) -> str:
     nothing = "no force and no moment"
     if not s.fall:
         return nothing
-    force, moment, body = (_told(*pair) for pair in zip((s.along, s.moment, s.body), USUAL * MOST, strict=True))
+    force, moment, body = (_told(*pair) for pair in zip((*s.whole, s.body), USUAL[:3] * MOST, strict=True))
     each = ((force, f"{force} N"), (moment, f"{moment} N m"), (body, f"a swing of the rider's body of {body} N s"))
     *most, last = [words for size, words in each if size != "0"] or [nothing]
     return f"{', '.join(most)} and {last}" if most else last
