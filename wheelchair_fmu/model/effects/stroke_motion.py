@@ -2,11 +2,10 @@
 
 With the phase θ of the strokes, 2π times their number since the first, the CM lies
 
-    s = c₁ (cos θ − 1) + d₁ sin θ + c₂ (cos 2θ − 1) + d₂ sin 2θ
+    s = c (cos θ − 1) + d sin θ
 
 ahead of where it is at a stroke's beginning and while nobody strokes. As with a body that was recorded, the frame recoils at
-s' = (ds/dθ) θ', and accelerometers feel s'' = (d²s/dθ²) θ'². A body goes forward sooner than it comes back, so that one wave is
-not enough. It may be ahead of the push, as a body is that reaches back for
+s' = (ds/dθ) θ', and accelerometers feel s'' = (d²s/dθ²) θ'². It may be ahead of the push, as a body is that reaches back for
 the rim; no law that the push drives can be. θ/2π and its rate are inputs; a campaign has them from its pushes, and a simulated
 pusher gives them.
 """
@@ -25,53 +24,35 @@ from ..stage import Effect, adds
 COMMON: dict[str, Any] = dict(
     off=0.0, smallest_interesting=0.005, lower=-0.3, upper=0.3, source="chosen, as for the swing of trunk_motion"
 )
-WAVES = (1, 2)  # per stroke
-COS, SIN, COS_2, SIN_2 = (
-    Parameter(
-        f"{wave}{k if k > 1 else ''}",
-        M,
-        f"motion of the CM against the frame with the {words}sine of {'the' if k == 1 else 'twice the'} strokes' phase",
-        symbol=f"sway_{letter}{k}",
-        **COMMON,
-    )
-    for k in WAVES
-    for wave, words, letter in (("cos", "co", "c"), ("sin", "", "d"))
-)
+COS = Parameter("cos", M, "motion of the CM against the frame with the cosine of the strokes' phase", symbol="sway_c", **COMMON)
+SIN = Parameter("sin", M, "motion of the CM against the frame with the sine of the strokes' phase", symbol="sway_d", **COMMON)
 
 
-def swayed(sway_c1, sway_d1, sway_c2, sway_d2, stroke_phase):
+def swayed(sway_c, sway_d, stroke_phase):
     """s, which is zero at the beginning of a stroke."""
     theta = 2 * cs.pi * stroke_phase
-    waves = ((1, sway_c1, sway_d1), (2, sway_c2, sway_d2))
-    return sum(c * (cs.cos(k * theta) - 1) + d * cs.sin(k * theta) for k, c, d in waves)
+    return sway_c * (cs.cos(theta) - 1) + sway_d * cs.sin(theta)
 
 
-def recoil(sway_c1, sway_d1, sway_c2, sway_d2, stroke_phase, stroke_rate):
+def recoil(sway_c, sway_d, stroke_phase, stroke_rate):
     """−s'"""
     theta, omega = 2 * cs.pi * stroke_phase, 2 * cs.pi * stroke_rate
-    waves = ((1, sway_c1, sway_d1), (2, sway_c2, sway_d2))
-    return omega * sum(k * (c * cs.sin(k * theta) - d * cs.cos(k * theta)) for k, c, d in waves)
+    return (sway_c * cs.sin(theta) - sway_d * cs.cos(theta)) * omega
 
 
-def recoil_rate(sway_c1, sway_d1, sway_c2, sway_d2, stroke_phase, stroke_rate):
+def recoil_rate(sway_c, sway_d, stroke_phase, stroke_rate):
     """−s'', at a rate that changes little within a stroke."""
     theta, omega = 2 * cs.pi * stroke_phase, 2 * cs.pi * stroke_rate
-    waves = ((1, sway_c1, sway_d1), (2, sway_c2, sway_d2))
-    return omega * omega * sum(k * k * (c * cs.cos(k * theta) + d * cs.sin(k * theta)) for k, c, d in waves)
+    return (sway_c * cs.cos(theta) + sway_d * cs.sin(theta)) * omega * omega
 
 
 EFFECT = Effect(
     "stroke_motion",
     "a body that moves with each stroke",
-    parameters=(COS, SIN, COS_2, SIN_2),
+    parameters=(COS, SIN),
     contributions=(adds("shift", swayed), adds("recoil", recoil), adds("recoil_rate", recoil_rate)),
     alike=(MOVING_BODY,),
-    signs=(
-        Shows("start-stop", "sensor.x", more=True),
-        Shows("start-stop", "sensor.x", more=False, seconds=0.5),
-        Shows("start-stop", "sensor.x", more=True, seconds=0.5),
-        Shows("start-stop", "sensor.x", more=False, seconds=0.25),
-    ),
+    signs=(Shows("start-stop", "sensor.x", more=True), Shows("start-stop", "sensor.x", more=False, seconds=0.5)),
     sketches=(
         graph(
             "time",
