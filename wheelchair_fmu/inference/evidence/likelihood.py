@@ -348,15 +348,15 @@ class Likelihood:
         by its inertia, a chair would be found too light. A force along the heading does to a heavier chair what a lesser one
         does to a lighter; a moment turns it against its inertia about the rear axle, I_z + m b², and against a CM that is ahead
         of that axle and is turned about with it, m b u."""
-        out = np.zeros((*found.r.shape, len(by)))
-        if not {*INERT} & {*by}:
+        out, asked = np.zeros((*found.r.shape, len(by))), [name for name in INERT if name in by]
+        if not asked:
             return out
         chair, as_push = self.chair(values), self._unknown(run, values).as_push
         m, b, pushed = chair[MASS], chair["chair.b"], found.path @ as_push.T
         r = found.whitener.states(pushed)[:, self._yawing]
         bends, u = np.gradient(r, run.time), found.results[:, self.sensitivities.results.index("chair.u")]
         resists = {MASS: b * (b * bends + u * r), "chair.I_z": bends, "chair.b": m * (2 * b * bends + u * r)}
-        for name in {*INERT} & {*by}:
+        for name in asked:
             less = np.outer(resists[name], as_push[:, MOMENT])
             less += found.path[:, ALONG] @ as_push[:, ALONG].T / m if name == MASS else 0.0
             out[:, :, by.index(name)] = found.whitener.response(less)
