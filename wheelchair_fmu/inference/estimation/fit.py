@@ -236,9 +236,10 @@ def fit(
         further = _taken(problem, theta, here, to, shrinks) or _by_likelihood(problem, theta, here)
         if further is None:
             break
-        gained = problem.misfit(here, theta) - problem.misfit(further[1], further[0])
+        before = problem.misfit(here, theta)
+        gained = before - problem.misfit(further[1], further[0])
         if likelihood.may_flip and gained > GAINED and most > 1:  # a single step only shows how much a start promises
-            further = _beyond(problem, theta, *further)
+            further = _beyond(problem, theta, *further, before)
         theta, here = further
     return _found(problem, theta, here)
 
@@ -294,28 +295,30 @@ def _taken(
     return None
 
 
-def _beyond(problem: Problem, theta: np.ndarray, to: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence]:
+def _beyond(problem: Problem, theta: np.ndarray, to: np.ndarray, here: Evidence, worst: float) -> tuple[np.ndarray, Evidence]:
     """A step that helped, or twice as far and so on while that is likelier, with runs that follow the errors of their pushes.
 
     Slopes are about the errors that a run had before the step. Where casters may flip these hold it on its way, so that a step
-    is much too short, however often it is taken.
+    is much too short, however often it is taken. One is too long, and not followed, that slopes about these errors have for
+    less likely than what the step came from, by the misfit `worst`.
     """
     likelihood = problem.likelihood
 
-    def followed(trial: np.ndarray) -> float:
+    def misfit(trial: np.ndarray, follows: int) -> float:
         try:
-            return problem.misfit(likelihood.evidence(likelihood.campaign.fit, problem.values(trial), tune_start=1), trial)
+            there = likelihood.evidence(likelihood.campaign.fit, problem.values(trial), tune_start=follows)
         except SimulationError:
             return math.inf
+        return problem.misfit(there, trial)
 
     before = likelihood.begun
-    far, best, kept = to, followed(to), likelihood.begun
+    far, best, kept = to, misfit(to, 1), likelihood.begun
     for _ in range(FURTHER):
         trial = np.clip(theta + 2 * (far - theta), problem.lower, problem.upper)
-        misfit = followed(trial)
-        if not misfit < best:
+        found = misfit(trial, 1) if misfit(trial, 0) < worst else math.inf
+        if not found < best:
             break
-        far, best, kept = trial, misfit, likelihood.begun
+        far, best, kept = trial, found, likelihood.begun
     better = best < problem.misfit(here, to)
     likelihood.begun = kept if better else before
     return (far, problem.linearised(far)) if better else (to, here)

@@ -26,15 +26,16 @@ SIZES = ("force", "moment", "body", "tremor")
 USUAL = np.array([5.0, 1.0, 5.0, 1.0])  # N, N m, N s and N m: a strength's prior falls by e over this
 NEAR = 0.02  # m: a CM that is nearer to the axle than that is no lever
 LEAST, MOST = 1e-2, 100.0  # times these, that are looked at
+LITTLE = 0.03  # times these: what no reading draws up from there is next to nothing
 # times these, from where the search may start
 START = (
-    (0.03,) * 4,
-    (0.3, 0.03, 0.03, 0.03),
-    (0.03, 0.3, 0.03, 0.03),
-    (0.03, 0.03, 0.3, 0.03),
-    (0.03, 0.03, 0.03, 3.0),
+    (LITTLE,) * 4,
+    (0.3, LITTLE, LITTLE, LITTLE),
+    (LITTLE, 0.3, LITTLE, LITTLE),
+    (LITTLE, LITTLE, 0.3, LITTLE),
+    (LITTLE, LITTLE, LITTLE, 3.0),
     (0.6,) * 4,
-    (0.3, 0.3, 2.0, 0.03),
+    (0.3, 0.3, 2.0, LITTLE),
     (6.0,) * 4,
 )
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
@@ -109,7 +110,7 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
 def _felt(found: Strength) -> Strength:
     """The same without what is next to nothing."""
     sizes = {name: float(getattr(found, name)) for name in SIZES}
-    felt = {n: sizes[n] if sizes[n] > 2 * LEAST * usual else 0.0 for n, usual in zip(SIZES, USUAL, strict=True)}
+    felt = {n: sizes[n] if sizes[n] > LITTLE * usual else 0.0 for n, usual in zip(SIZES, USUAL, strict=True)}
     return replace(found, **felt)
 
 
@@ -117,7 +118,7 @@ def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
     """From where a search may begin: what is known already, none of it so small that nothing draws it up, or else anywhere."""
     if about:
         known = [getattr(about, name) for name in SIZES]
-        at: Sequence[np.ndarray] = [np.maximum(known, START[0] * USUAL)]
+        at: Sequence[np.ndarray] = [np.maximum(known, LITTLE * USUAL)]
         none = replace(none, lasting=about.lasting)
     else:
         at = [sizes * USUAL for sizes in np.array(START)]
