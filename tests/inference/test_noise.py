@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from wheelchair_fmu.campaign import Run
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise import by_run, noise_model_of, shown
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
@@ -25,14 +27,16 @@ def ar1(sigma: float, phi: float, seed: int, n: int) -> np.ndarray:
     return noise
 
 
+def gyro(time: np.ndarray, yaw_rate: np.ndarray) -> Run:
+    return Run("turn", Path("turn.csv"), "turn", "fit", 1.0, {}, time, {}, {"yaw_rate": yaw_rate})
+
+
 def coloured(sigma: float, phi: float, stated: float, seed: int = 0, n: int = 4000, times: float = 1.0, hertz: float = 0.3):
     """`noise_model_of` one run whose only channel has AR(1) noise on a smooth error so many `times` as large, by a filter
     for white noise of the `stated` size."""
     noise = ar1(sigma, phi, seed, n)
     smooth = times * sigma * np.sin(2 * np.pi * hertz * np.arange(n) * 0.01)
-    run = SimpleNamespace(
-        time=0.01 * np.arange(n), channels={"yaw_rate": noise + smooth}, inputs={}, noise_shares={}, colours={}
-    )
+    run = gyro(0.01 * np.arange(n), noise + smooth)
     predicted = np.zeros((n, 1))
     r = (run.channels["yaw_rate"][:, None] - predicted) / stated
     evidence = SimpleNamespace(runs=[SimpleNamespace(run=run, channels=("yaw_rate",), followed=predicted, r=r, e=r)])
@@ -101,7 +105,7 @@ def test_a_slow_sensors_noise_is_told_by_its_own_readings(every, phi, stated):
     readings[places] = noise[places]
     r = readings[:, None] / stated
     time = 0.01 * np.arange(len(noise))
-    run = SimpleNamespace(time=time, channels={"yaw_rate": readings}, inputs={}, noise_shares={}, colours={})
+    run = gyro(time, readings)
     one = SimpleNamespace(run=run, channels=("yaw_rate",), followed=np.zeros(r.shape), r=r, e=r)
     noise_model, notes = noise_model_of(SimpleNamespace(runs=[one]), {"yaw_rate": stated}, NoiseModel({"yaw_rate": stated}))
     assert noise_model.sd["yaw_rate"] == pytest.approx(0.006, rel=0.1)

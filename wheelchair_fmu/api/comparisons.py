@@ -146,7 +146,7 @@ class Comparison:
             recorded.time,
             {ch: recorded.channels[ch] for ch in found.channels},
             {ch: found.predicted[:, i] for i, ch in enumerate(found.channels)},
-            {ch: measured.noise[ch] * recorded.noise_shares.get(ch, 1.0) for ch in found.channels},
+            {ch: measured.noise[ch] * recorded.noise_share(ch) for ch in found.channels},
             units=UNIT_OF,
             offsets=offsets,
         )

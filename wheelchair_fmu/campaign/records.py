@@ -84,6 +84,10 @@ class Run:
         found = {name: began(self.time, series) for name, series in self.channels.items()}
         return {name: value for name, value in found.items() if value is not None}
 
+    def noise_share(self, channel: str) -> float:
+        """What the samples of a channel have of its standard deviation: 1 where they are readings, and no means of several."""
+        return self.noise_shares.get(channel, 1.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Campaign:

@@ -78,7 +78,7 @@ def by_run(evidence: Evidence, taken: NoiseModel) -> dict[str, dict[str, float]]
         for i, channel in enumerate(e.channels):
             r = _there(e.r[:, i])
             if len(r) > ENOUGH:
-                usual = taken.sd[channel] * e.run.noise_shares.get(channel, 1.0)
+                usual = taken.sd[channel] * e.run.noise_share(channel)
                 times = float(np.sqrt(np.mean(np.diff(r) ** 2) / 2)) * taken.of(channel, e.run) / usual
                 found[e.run.name][channel] = times
     return found
@@ -92,9 +92,7 @@ def shown(evidence: Evidence, found: Mapping[str, Mapping[str, float]], taken: N
         known = [(times[channel], e) for e in evidence.runs if channel in (times := found[e.run.name])]
         usual = taken.sd[channel]
         pairs = [
-            (size * usual * e.run.noise_shares.get(channel, 1.0), by)
-            for size, e in known
-            if (by := estimate([e.run.channels[channel]]))
+            (size * usual * e.run.noise_share(channel), by) for size, e in known if (by := estimate([e.run.channels[channel]]))
         ]
         size, by = np.log(np.reshape(pairs, (-1, 2))).T
         if len(pairs) >= SEVERAL and np.std(size - by) < np.std(size):
@@ -134,7 +132,7 @@ def _residuals(evidence: Evidence, channel: str) -> list[tuple[np.ndarray, np.nd
     for e in (e for e in evidence.runs if channel in e.channels):
         d = e.run.channels[channel] - e.followed[:, e.channels.index(channel)]
         there = np.isfinite(d)
-        found.append((e.run.time[there], d[there] / e.run.noise_shares.get(channel, 1.0)))
+        found.append((e.run.time[there], d[there] / e.run.noise_share(channel)))
     return found
 
 

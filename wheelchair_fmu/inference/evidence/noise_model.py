@@ -66,7 +66,7 @@ class NoiseModel:
         others = [known[channel] ** 2 for known in self.by_run.values() if channel in known]
         if times is None:
             times = float(np.sqrt(np.mean(others))) if others else 1.0
-        return self.sd.get(channel, 0.0) * times * run.noise_shares.get(channel, 1.0)
+        return self.sd.get(channel, 0.0) * times * run.noise_share(channel)
 
     def swinging(self, run: Run) -> np.ndarray:
         """Times the usual (n,) that a rider's body swings at each moment of a run: who pushes moves, who rolls sits still."""

@@ -54,7 +54,7 @@ def slipping(run: Run, campaign: Campaign, variant: Variant) -> Slipping | None:
     grid = np.arange(run.time[0], run.time[-1], OVER / WITHIN)
     felt = _change(_read(run, "a_x", grid, summed=True))
     turned = _change(_read(run, "yaw_rate", grid)) if "yaw_rate" in run.channels else 0.0
-    noise = campaign.noise.get(SIDES[0], 0.0) * run.noise_shares.get(SIDES[0], 1.0) * np.sqrt(2) / OVER
+    noise = campaign.noise.get(SIDES[0], 0.0) * run.noise_share(SIDES[0]) * np.sqrt(2) / OVER
     slips, held = np.zeros(len(felt), bool), []
     for side, push, arm in zip(SIDES, HANDS, (0.5, -0.5), strict=True):
         gained = _change(_read(run, side, grid))
