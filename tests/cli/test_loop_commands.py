@@ -34,6 +34,11 @@ def test_compare_says_where_the_error_is():
         assert sum(b["share"] for b in bins) == pytest.approx(1.0)
 
 
+def test_json_is_all_that_compare_prints_whatever_it_writes(tmp_path):
+    told = json.loads(run("compare", SAMPLE, "--json", "-o", str(tmp_path)).stdout)
+    assert told["campaign"] == "sample-chair" and list(tmp_path.glob("*.csv"))
+
+
 @pytest.mark.parametrize("values", [{}, {"chair.m": 90.0, "effect.push_force_delay.tau": 0.02}])
 def test_compare_weighs_what_the_fmu_simulates(tmp_path, values):
     """By whatever a run sets, the FMU goes as the model does by which its errors are weighed."""

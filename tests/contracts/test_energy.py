@@ -27,6 +27,7 @@ CHOICES = [
     Choice("magic_formula"),
     Choice("linear", "slipping"),
     Choice("dugoff", "swivelling", "spinning"),
+    Choice("dugoff", "slipping", "spinning"),
 ]
 
 

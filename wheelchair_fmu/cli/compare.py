@@ -52,8 +52,8 @@ def compare(
         print_json(_content(measured, found, names))
     else:
         _show(measured, found, names)
-    if output:
-        for file in _files(comparisons.Comparison(found), output, table):
+    for file in _files(comparisons.Comparison(found), output, table) if output else []:
+        if not as_json:
             announce(file)
 
 
