@@ -71,7 +71,7 @@ typedef struct {
     wc_saved now;
     double y[WC_MAX_OUTPUTS], rate[WC_MAX_STATES], z[WC_MAX_CROSSINGS];
     int y_valid, rate_valid; /* rate and z */
-    unsigned warned;         /* bit i: watch i has spoken */
+    unsigned warned;         /* bit i: watch i has spoken, and after these each idle input */
     uint32_t clamped;        /* bit i: it has been said that input i was beyond a bound */
     unsigned categories;     /* of the log, switched on */
     const char *standard;    /* what the protocol's functions begin with */

@@ -44,6 +44,11 @@ typedef struct {
     const char *meaning; /* the rest of the sentence that begins with the variable's value */
 } wc_watch;
 
+/* An input that does nothing while a parameter is 0, by their value references. */
+typedef struct {
+    int input, parameter;
+} wc_idle;
+
 /* A state that is integrated, by the model itself in Co-Simulation, by the importer in Model Exchange. The other
  * states of a kernel are solutions of algebraic rows. */
 typedef struct {
@@ -63,6 +68,8 @@ typedef struct {
     const wc_jump *jump;
     int watches;
     const wc_watch *watch;
+    int idles;
+    const wc_idle *idle;
     double tolerance, grid; /* of the internal steps, unless the importer asks for another tolerance */
     int states; /* 0: this model is for Co-Simulation only */
     const wc_state *state;

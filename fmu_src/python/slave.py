@@ -89,7 +89,7 @@ class WheelchairPython(Fmi2Slave):
         self.restart, self.stale = True, False  # x follows from start values; a jump has moved algebraic rows
         self.values = {v["name"]: v["start"] for v in self.table if v["start"] is not None}
         self.x = self.y = None
-        self.warned: set[int] = set()
+        self.warned: set[int | str] = set()  # watches, and idle inputs
         self.clamped: set[str] = set()  # inputs of which it has been said that they are out of bounds
         self.law = 0  # of the model in use; 0: none yet
         for v in self.table:
@@ -260,6 +260,7 @@ class WheelchairPython(Fmi2Slave):
         self.lost = (elapsed - self.elapsed) - added
         self.elapsed, self.time = elapsed, current_time + step_size
         self._watch()
+        self._tell_idle()
         return True
 
     def _step_fault(self, point: float, h: float) -> str:
@@ -292,6 +293,19 @@ class WheelchairPython(Fmi2Slave):
                     f"t = {self.time:.9g} s: {beyond[0]} = {self.y[self.place[beyond[0]]]:.10g} "
                     f"is beyond {limit:g}: {watch['meaning']}",
                 )
+
+    def _tell_idle(self) -> None:
+        """Say, once, that an input is given and moves nothing."""
+        for idle in self.interface["idles"]:
+            name, of = idle["input"], idle["parameter"]
+            if name in self.warned or self.values[name] == 0 or self.values[of] != 0:
+                continue
+            self.warned.add(name)
+            given, none = (_shown(v, self.values[n]) for n in (name, of) for v in self.table if v["name"] == n)
+            self._say(
+                Fmi2Status.warning,
+                f"t = {self.time:.9g} s: {name} = {given} moves nothing while {of} is {none}; set {of} as well",
+            )
 
     # ---- saved states: pythonfmu would save no more than the registered variables
 

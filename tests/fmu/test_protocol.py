@@ -236,6 +236,16 @@ def test_a_push_that_would_spin_a_wheel_warns_once(native):
         )
 
 
+@pytest.mark.parametrize("archive", ["native", "native3", "in_python"])
+def test_a_body_that_moves_without_a_mass_is_told_once(archive, request):
+    with chair(request.getfixturevalue(archive), logging=True) as c:
+        c.start({"rider.s": 0.05}).step(0.01, 3)
+        assert c.sentences == ["t = 0.01 s: rider.s = 0.05 m moves nothing while rider.m is 0 kg; set rider.m as well"]
+    with chair(request.getfixturevalue(archive), logging=True) as c:
+        c.start({"rider.s": 0.05, "rider.m": 40.0}).step(0.01, 3)
+        assert c.sentences == []
+
+
 def test_a_gentle_ride_warns_of_nothing(native, in_python):
     for unpacked in (native, in_python):
         with chair(unpacked, logging=False) as c:

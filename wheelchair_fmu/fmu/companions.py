@@ -20,7 +20,7 @@ from ..quantities import S
 from ..resources import SYSTEMS
 from ..surroundings import floor, pusher
 from . import native, package, validate
-from .variables import Interface, Jump, Variable, Watch, input_variable, output_variable, parameter_variable
+from .variables import Idle, Interface, Jump, Variable, Watch, input_variable, output_variable, parameter_variable
 
 PAGES = SYSTEMS / "pages"
 REPLAY = SYSTEMS / "replay.c"
@@ -62,6 +62,10 @@ class Companion(Interface):
 
     @property
     def watches(self) -> tuple[Watch, ...]:
+        return ()
+
+    @property
+    def idles(self) -> tuple[Idle, ...]:
         return ()
 
     def c_source(self, law: str) -> str:

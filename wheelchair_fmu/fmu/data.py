@@ -83,6 +83,7 @@ def tables(face: Interface, name: str, token: str) -> str:
                     for i, w in enumerate(face.watches)
                 ),
             ),
+            *_array("wc_idle", "idles", (f"{{{i.input.reference}, {i.parameter.reference}}}" for i in face.idles)),
             *_array(
                 "wc_state", "states", (f"{{{place}, {v.reference}, {_number(v.nominal)}}}" for place, v in face.states.items())
             ),
@@ -92,7 +93,7 @@ def tables(face: Interface, name: str, token: str) -> str:
             "static const wc_model the_model = {",
             f"    {_string(name)}, {_string(token)}, {len(face.variables)}, variables, kernels,",
             f"    {chooser}, wc_start_forward, {len(face.jumps)}, jumps, {len(face.watches)}, "
-            f"watches, {_number(TOLERANCE)}, {_number(GRID)},",
+            f"watches, {len(face.idles)}, idles, {_number(TOLERANCE)}, {_number(GRID)},",
             f"    {len(face.states)}, states, {len(face.of('indicator'))}, crossings}};",
             "static const wc_model *const model = &the_model;",
             "",

@@ -55,9 +55,8 @@ BETWEEN = """#if defined(__GNUC__)
 
 def token_of(face: Interface, texts: dict[str, str]) -> str:
     """A guid that changes with everything that changes results or variables."""
-    content = "\0".join(
-        (repr(face.variables), repr(face.jumps), repr(face.watches), *sorted(texts), *(texts[name] for name in sorted(texts)))
-    )
+    said = map(repr, (face.variables, face.jumps, face.watches, face.idles))
+    content = "\0".join((*said, *sorted(texts), *(texts[name] for name in sorted(texts))))
     return "{" + str(UUID(bytes=hashlib.sha256(content.encode()).digest()[:16])) + "}"
 
 

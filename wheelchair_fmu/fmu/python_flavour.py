@@ -128,6 +128,7 @@ def _interface(face: Interface, token: str) -> dict[str, Any]:
             }
             for w in face.watches
         ],
+        "idles": [{"input": i.input.name, "parameter": i.parameter.name} for i in face.idles],
     }
 
 

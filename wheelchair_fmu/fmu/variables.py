@@ -23,6 +23,7 @@ from ..resources import FMU_SOURCES
 TOLERANCE = 1e-7  # of each internal step, unless the importer gives another
 GRID = 1e-3  # s; no internal step is longer, or crosses a multiple of it
 STOP, STEP = 10.0, 0.002  # s, of the default experiment: steps with which explicit Euler still integrates a turn
+IDLE = {"rider.s": "rider.m"}  # inputs that move nothing while a parameter is 0
 HELD = {"speed.u": ("speed.mode", "prescribed", "u")}  # a parameter that a state follows at once: in which mode, which
 
 
@@ -83,6 +84,14 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Idle:
+    """An input that moves nothing while a parameter is 0."""
+
+    input: Variable
+    parameter: Variable
+
+
+@dataclass(frozen=True)
 class Interface:
     """A variant seen through FMI: its variables, and a model of the same shape for each tyre law it can have."""
 
@@ -136,6 +145,10 @@ class Interface:
             Jump(self.by_name[name], modes[name], 1 + modes[name].choices.index(when), states.index(state))
             for name, (_, when, state) in HELD.items()
         )
+
+    @property
+    def idles(self) -> tuple[Idle, ...]:
+        return tuple(Idle(self.by_name[name], self.by_name[of]) for name, of in IDLE.items())
 
     @property
     def watches(self) -> tuple[Watch, ...]:
