@@ -22,7 +22,7 @@ help:
 	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
 	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
-	@echo "make nightly     what takes up to an hour: further cases, every platform, importers, fuzzing, kills and damage, a few hidden truths"
+	@echo "make nightly     what takes up to an hour: further cases, every platform, importers, fuzzing, kills and damage, a few hidden truths, some mutants"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready
@@ -111,6 +111,7 @@ matrix: setup
 # with its reason. Every part is done, and it fails if one has failed. NIGHTLY_SEED and TRIALS' --seeds choose other moments,
 # places and chairs.
 NIGHTLY_SEED ?= 1
+NIGHTLY_MUTANTS ?= 20
 nightly: TRIALS := --seeds $(NIGHTLY_SEED) --every 20 --out out/nightly-diagnosis
 nightly: setup $(VENV)-importers/.ready
 	@echo "seeds: NIGHTLY_SEED=$(NIGHTLY_SEED), trials $(TRIALS)"
@@ -118,6 +119,7 @@ nightly: setup $(VENV)-importers/.ready
 	NIGHTLY_SEED=$(NIGHTLY_SEED) IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python \
 		$(BIN)/python -m pytest -n 2 -m nightly --durations=30 || failed="$$failed tests"; \
 	$(BIN)/python -m benchmarks.diagnosis $(TRIALS) || failed="$$failed trials"; \
+	$(BIN)/python -m benchmarks.mutants --drawn --sample $(NIGHTLY_MUTANTS) --seed $(NIGHTLY_SEED) || failed="$$failed mutants"; \
 	if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi
 
 clean:

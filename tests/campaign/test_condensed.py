@@ -27,10 +27,10 @@ def a_run(rng, rate=RATE, late=0.0, seconds=6.0):
     wheel[np.isin(time, fast)] = motion(fast) + NOISE * rng.standard_normal(len(fast))
     camera[np.isin(time, slow)] = motion(slow)
     push = np.interp(time, fast, 40 * np.maximum(0, np.sin(2 * np.pi * fast)))
-    return Run(
-        "a", Path("a.csv"), "straight", "fit", 0.0, {}, time, {"push.F_rl": push}, {"wheel_speed_l": wheel, "u": camera},
-        baselines=(Baseline("push.F_rl", np.ones((len(time), 1)), np.eye(1)),), steps={"push.F_rl": 1 / rate}, devices=2,
-    )  # fmt: skip
+    inputs, channels = {"push.F_rl": push}, {"wheel_speed_l": wheel, "u": camera}
+    baseline = Baseline("push.F_rl", np.ones((len(time), 1)), np.eye(1))
+    of_devices = {"baselines": (baseline,), "steps": {"push.F_rl": 1 / rate}, "devices": 2}
+    return Run("a", Path("a.csv"), "straight", "fit", 0.0, {}, time, inputs, channels, **of_devices)
 
 
 def a_campaign(*runs):

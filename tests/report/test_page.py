@@ -96,6 +96,8 @@ def test_a_tie_names_what_is_sure_first(effects, ties, expected):
 def test_what_helps_is_named_with_its_ties():
     said = sentence(told("outside", ["drag", "slope", "toe"], [["slope", "toe"]]), TITLES)
     assert said.endswith("what helps but does not suffice: air that resists and a floor that slopes or toe.")
+    many = sentence(told("outside", ["drag", "slope", "toe", "trail"], [["drag", "slope"], ["toe", "trail"]]), TITLES)
+    assert many.endswith("what helps but does not suffice: air that resists or a floor that slopes and toe.")
 
 
 def test_an_error_that_only_bent_values_bring_down_is_said_so():

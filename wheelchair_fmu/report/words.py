@@ -12,7 +12,7 @@ from ..inference.search.ties import grouped
 from ..model.generic import told_at
 from ..quantities import DisplayUnit, Quantity, Unit
 
-HELPERS = 3  # that are named, and rivals of each
+HELPERS = 3  # that are named, rivals among them
 SEEN = 0.05  # a p below which the data show something like an effect that was not chosen
 # Chance of being large enough to matter, below which a cause is "probably" it: "very likely" of Mastrandrea et al. (2010).
 LIKELY = 0.9
@@ -178,9 +178,14 @@ def tied(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[
 
 
 def helpers(effects: Sequence[str], ties: Sequence[Sequence[str]], titles: Mapping[str, str]) -> str:
-    """Effects that help, each with those this campaign cannot tell it from; of many the first, as a long list says nothing."""
-    groups = [listed([title_of(e, titles) for e in group[:HELPERS]], "or") for group in grouped(effects, ties)]
-    return listed(groups[:HELPERS], "and")
+    """Effects that help, each with those this campaign cannot tell it from: three in all, as a long list says nothing."""
+    named: list[str] = []
+    room = HELPERS
+    for group in grouped(effects, ties):
+        some, room = group[:room], max(0, room - len(group))
+        if some:
+            named.append(listed([title_of(e, titles) for e in some], "or"))
+    return listed(named, "and")
 
 
 def in_full(words: str) -> str:

@@ -19,6 +19,7 @@ from ..residual.staircase import Step
 from ..search.beginning import begin
 from ..search.refitting import candidate
 from ..search.screen import screen
+from ..search.selection import selection
 from .verdict import Diagnosis
 
 
@@ -37,20 +38,19 @@ class Improved:
 def add(
     campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = quiet
 ) -> Improved:
-    """Refit the chair with one more effect; its own effects are estimated anew.
+    """Refit the chair with one more effect; its own effects are estimated anew, and the noise with each, as a search does.
 
     Raises Failure where the chair with the effect cannot be simulated on this campaign.
     """
     begun = begin(Models.of(ModelFactory(windows(campaign), chair, frozenset(fixed)), say=say))
-    models, now, ladder = begun.models, begun.calibrated, begun.ladder
-    for one in (*(e for e in chair.effects if e != effect and models.factory.parameters(e)), effect):
-        say(f"refitting with {one}")
-        on = (*now.effects, one)
-        models, now = models.with_given(on, now.fit) if one != effect else _with(models, now, one)
-        ladder = (*ladder, Step.of(f"+{one}", now.fit.evidence, now.heldout, now.fit.values))
-    notes = (*begun.heard(clocks(now.fit.evidence, now.heldout)), *models.setting.notes)
+    now = selection(begun, lambda ladder: None)
+    if effect not in now.effects:
+        say(f"refitting with {effect}")
+        now = now.up_to(*_with(now.models, now.top, effect))
+    models, fit = now.models, now.top.fit
+    notes = (*begun.heard(clocks(fit.evidence, now.top.heldout)), *models.setting.notes)
     records = models.likelihood(now.effects).records
-    return Improved(improved(chair, now.effects, now.fit, campaign), now.fit, records, ladder, notes)
+    return Improved(improved(chair, now.effects, fit, campaign), fit, records, now.ladder, notes)
 
 
 def _with(models: Models, base: Model, effect: str) -> tuple[Models, Model]:

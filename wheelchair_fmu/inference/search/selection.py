@@ -109,7 +109,7 @@ class Selection:
             return None
         if risen(self.top.fit, top.fit):
             return None
-        return replace(self, models=models, top=top)._step()._pruned()
+        return self.up_to(models, top)._pruned()
 
     def _pruned(self) -> Selection:
         """The model without what its last effect makes needless; but never one that was searched from before, as the search
@@ -190,13 +190,13 @@ class Selection:
         fitted, held = (likelihood.evidence(runs, fit.values, tune_start=TUNING) for runs in (campaign.fit, campaign.holdout))
         return Step.of(f"+{fewer[-1]}", fitted, held, fit.values)
 
-    def _step(self) -> Selection:
-        """A step up to the model at hand, by the noise that shows now that its last effect is in."""
-        models = self.models.with_noise_of(self.top.fit, again=True)
-        if models is None:
-            return self._told(self.ladder)
-        models.say("calibrating with the noise that is left")
-        return replace(self, models=models, noisier=len(self.rounds))._anew(self.effects, self.top.fit)
+    def up_to(self, models: Models, top: Model) -> Selection:
+        """A step up to another model, by the noise that shows now that its last effect is in."""
+        now, known = replace(self, models=models, top=top), models.with_noise_of(top.fit, again=True)
+        if known is None:
+            return now._told(self.ladder)
+        known.say("calibrating with the noise that is left")
+        return replace(now, models=known, noisier=len(self.rounds))._anew(top.effects, top.fit)
 
     def _anew(self, effects: tuple[str, ...], found: Fit) -> Selection:
         """The model with these effects, fitted about so, and its staircase, from the first step."""
@@ -224,7 +224,7 @@ def selection(beginning: Beginning, stepped: Callable[[Sequence[Step]], None]) -
     for effect in w.variant.effects:
         if w.parameters(effect):
             models, top = now.models.with_given((*now.effects, effect), now.top.fit)
-            now = replace(now, models=models, top=top)._step()
+            now = now.up_to(models, top)
     return replace(now, already=now.effects)
 
 
