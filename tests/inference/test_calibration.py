@@ -85,6 +85,26 @@ def test_a_tread_that_is_a_little_off_is_no_gyro(tmp_path):
     assert values["chair.t_r"].value == pytest.approx(0.55, abs=0.004)
 
 
+GIVEN_WRONG = {
+    "the centre of mass 15 mm to the rear": {"chair.a": +0.015, "chair.b": -0.015},
+    "the centre of mass 15 mm ahead": {"chair.a": -0.015, "chair.b": +0.015},
+    "5 % too heavy": {"chair.m": +4.0},
+    "5 % too light": {"chair.m": -4.0},
+}
+
+
+@pytest.mark.parametrize("off", GIVEN_WRONG.values(), ids=GIVEN_WRONG)
+def test_given_values_that_are_a_little_off_are_no_effect(tmp_path, off):
+    """What a tape and a scale err by is nobody's effect; the axle and the mass, of which these runs tell, come back."""
+    campaign = read(make(tmp_path / "c", {}, seed=1))
+    given = {name: campaign.known[name] + error for name, error in off.items()}
+    found = diagnose(replace(campaign, known={**campaign.known, **given}))
+    assert found.verdict in ("adequate", "cannot_see") and not found.effects
+    values = {c.record.name: c.value for c in found.calibration}
+    for name in {"chair.b", "chair.m"}.intersection(off):
+        assert abs(values[name] - campaign.known[name]) < 0.6 * abs(off[name])
+
+
 def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
     """In everyday turns another place of the CM does as well as patches that resist being turned. No tape is so far off, and
     what lets it back is named with its size."""
