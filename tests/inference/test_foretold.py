@@ -10,7 +10,7 @@ import pytest
 
 from tests.inference.linear import evidence
 from wheelchair_fmu.errors import SimulationError
-from wheelchair_fmu.inference.decision.foretold import on_led_runs, worse, worsened
+from wheelchair_fmu.inference.decision.foretold import on_led_runs, raised, worse, worsened
 from wheelchair_fmu.inference.residual.physical import ChannelError
 from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import selection
@@ -49,6 +49,24 @@ def test_a_position_that_is_further_off_by_chance_is_not_worse(after, said):
 def test_where_nothing_was_put_in_or_held_out_nothing_is_said():
     assert not worsened([step("nominal", u=0.01), step("calibrated", u=0.5)])
     assert not worsened([Step("nominal", 2.0, np.nan), Step("calibrated", 1.2, np.nan), Step("+drag", 1.0, np.nan)])
+
+
+@pytest.mark.parametrize(
+    ("fit", "heldout", "said"),
+    [
+        (4.2, 4.2, ["fitted runs from 3.80 to 4.20"]),
+        (4.2, 5.0, ["fitted runs from 3.80 to 4.20", "held-out runs from 4.30 to 5.00"]),
+        (3.0, 4.7, []),
+        (1.05, np.nan, []),
+    ],
+)
+def test_calibration_that_raises_errors_is_said(fit, heldout, said):
+    told = raised([Step("nominal", 3.8, 4.3), Step("calibrated", fit, heldout), Step("+drag", 1.0, 1.0)])
+    assert len(told) == bool(said) and all(part in told[0] for part in said)
+
+
+def test_calibration_that_leaves_noise_raises_nothing():
+    assert not raised([Step("nominal", 0.9, 0.9), Step("calibrated", 1.05, 1.05)])
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,19 @@ def worsened(ladder: Sequence[Step]) -> list[str]:
     ]
 
 
+def raised(ladder: Sequence[Step]) -> list[str]:
+    """A sentence where calibration leaves a clearly larger error than given values do, on fitted or on held-out runs."""
+    nominal, calibrated = ladder[:2]
+    sides = (("fitted", nominal.fit, calibrated.fit), ("held-out", nominal.heldout, calibrated.heldout))
+    told = [f"that of {which} runs from {a:.2f} to {b:.2f}" for which, a, b in sides if b > WORSE * max(a, 1.0)]
+    if not told:
+        return []
+    return [
+        f"calibration raises the error, {' and '.join(told)}: a fit weighs what each reading says beyond those before it, and "
+        "where something is missing that no calibrated value stands for, whole runs may go further off"
+    ]
+
+
 def worse(calibrated: Step, last: Step) -> bool:
     """Does a model foretell runs that were held out clearly worse than the calibrated one, over all channels: by the geometric
     mean of its errors over those?"""

@@ -46,7 +46,7 @@ from ..search.ties import grouped, probable, tied
 from .ahead import Ahead, ahead, run_to_fit, which_to_fit
 from .among_forces import led, left, needed, staircase
 from .experiment import Experiment, reveal, separate
-from .foretold import worsened
+from .foretold import raised, worsened
 from .leftover import leftover, prepare, settled
 
 
@@ -162,7 +162,7 @@ def diagnose(
     found = tried.found if tried and tried.found else _with_forces(concluded(search, generic or {}), tried, among)
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    notes = (*found.notes, *worsened(found.ladder))
+    notes = (*found.notes, *raised(found.ladder), *worsened(found.ladder))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 
