@@ -317,7 +317,10 @@ def test_a_tie_beside_other_effects_is_broken_with_these_in(tmp_path):
     found = diagnose(campaign, chair, experiments=experiments())
     assert found.verdict == "tie" and found.already == ("rolling_resistance_asymmetry",)
     assert set(found.next_experiment["separates"]) == {"aerodynamic_drag", "rolling_resistance_speed"}
-    sizes = {r["effect"]: r["parameters"]["k"] for r in as_json(found)["ranking"] if r["effect"] in found.effects}
+    rows = [r for r in as_json(found)["ranking"] if r["effect"] in found.effects]
+    one, other = (next(v["log_odds"] for v in r["rivals"] if v["effect"] in found.effects) for r in rows)
+    assert one == -other and abs(one) < np.log(DEFAULT.tie_odds)
+    sizes = {r["effect"]: r["parameters"]["k"] for r in rows}
     assert len(sizes) == 2, "each is told with an interval, which allows for what nobody named"
     for size in sizes.values():
         low, high = size["interval"]

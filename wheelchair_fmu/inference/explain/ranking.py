@@ -115,7 +115,7 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "hidden_in_fit": s.hidden,
         "heldout_before": finite(before),
         "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
-        "rivals": rivals,
+        "rivals": [{**rival, **_odds(c, rival["effect"], r)} for rival in rivals],
         "verdict": _row_verdict(d, s, c),
     }
 
@@ -135,6 +135,12 @@ def _rivals(scores: Sequence[Score]) -> dict[str, list[dict[str, Any]]]:
         most = [j for j in np.argsort(-row) if j != i and row[j] > ALIKE_AT_ALL][:RIVALS]
         found[scores[i].effect] = [{"effect": scores[j].effect, "cosine": round(float(row[j]), 4)} for j in most]
     return found
+
+
+def _odds(c: Candidate | None, rival: str, r: Round) -> dict[str, float]:
+    """Log odds (natural) of an effect against a rival that was refitted beside the same model, if one of them is missing."""
+    other = next((o for o in r.candidates if o.effect == rival), None)
+    return {"log_odds": round(c.support.large - other.support.large, 2)} if c and other else {}
 
 
 def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
