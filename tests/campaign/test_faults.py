@@ -7,6 +7,7 @@ import pytest
 
 from wheelchair_fmu.campaign import check, read
 from wheelchair_fmu.errors import CampaignError
+from wheelchair_fmu.inference.subject import known_parameters
 
 from .small import HEAD, NOISE, RUNS, SI, csv_text, motion, rows
 
@@ -304,6 +305,14 @@ def test_an_angle_of_a_caster_in_another_unit(campaign, said, told):
     """Half a turn and 0.5 rad are one number: what a share of a turn would be written as is said to be an angle in rad."""
     runs = RUNS.replace("u0 = 1.0\n", f"u0 = 1.0\nset = {{ start.caster_l = {said} }}\n", 1)
     assert lines(campaign(runs=runs), known_parameters=KNOWN | CASTERS) == told
+
+
+@pytest.mark.parametrize("effect", ["marker_offset", "accelerometer_offset"])
+def test_what_reads_is_on_the_chair(campaign, effect):
+    """The effects of where instruments sit go as far as a chair is long, as their places in [sensor] do."""
+    head = HEAD + f"[effect.{effect}]\nx = 1.8\n"
+    (line,) = (said for said in lines(campaign(head=head), known_parameters=known_parameters()) if "warning" not in said)
+    assert f"effect.{effect}.x = 1.8 is outside -1.2 to 1.2" in line
 
 
 def test_a_run_has_no_tyre_law_of_its_own_and_a_law_is_a_whole_number(campaign):

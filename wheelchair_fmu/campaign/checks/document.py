@@ -10,6 +10,7 @@ from typing import Any
 from ...faults import NOTE, SHOWN, WARNING, Fault, suggestion
 from ...given import what_is
 from ...model.former import clash, former, renamed
+from ...model.mounting import FARTHEST
 from ...units import UnitError, quantity
 from .. import body
 from ..axes import ISO, SAE
@@ -30,7 +31,6 @@ ROUNDED = 0.005  # by which a third may be
 PLACED = frozenset(name for names in MOUNTED.values() for name in names)  # channels for which it matters where they are read
 Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
-FARTHEST = 1.2  # m from the centre of mass, of anything on a chair: as long as a chair is in all
 OFF = f"is more than {FARTHEST:g} m from the centre of mass, off any chair"
 CURES_OF_KINDS = {"point": "give two numbers, [x, y] in m"}
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred

@@ -7,12 +7,14 @@ that is from the other.
 from typing import Any
 
 from ...quantities import M, Parameter
-from ..mounting import apart
+from ..mounting import FARTHEST, apart
 from ..signs import Shows
 from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.03, lower=-2.0, upper=2.0, source="rigid-body kinematics")
+COMMON: dict[str, Any] = dict(
+    off=0.0, smallest_interesting=0.03, lower=-FARTHEST, upper=FARTHEST, source="rigid-body kinematics"
+)
 X = Parameter("x", M, "how far the sensor lies before the CM", symbol="lever_x", **COMMON)
 Y = Parameter("y", M, "how far the sensor lies to the right of the CM", symbol="lever_y", mirror="-", **COMMON)
 

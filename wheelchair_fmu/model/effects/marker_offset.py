@@ -10,12 +10,14 @@ from typing import Any
 
 from ...quantities import ONE, M, Parameter
 from ..frames import to_room, velocity_at
-from ..mounting import apart
+from ..mounting import FARTHEST, apart
 from ..signs import Shows
 from ..sketch import Length, Spot, from_above
 from ..stage import Effect, adds
 
-COMMON: dict[str, Any] = dict(off=0.0, smallest_interesting=0.02, lower=-2.0, upper=2.0, source="rigid-body kinematics")
+COMMON: dict[str, Any] = dict(
+    off=0.0, smallest_interesting=0.02, lower=-FARTHEST, upper=FARTHEST, source="rigid-body kinematics"
+)
 X = Parameter("x", M, "how far the marker lies before the CM", symbol="point_x", **COMMON)
 Y = Parameter("y", M, "how far the marker lies to the right of the CM", symbol="point_y", mirror="-", **COMMON)
 FROM_AXLE = Parameter(
