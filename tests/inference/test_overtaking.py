@@ -190,7 +190,9 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
     found = iter([lambda now: (helped, Some(effect="toe", fit=None, afresh=False)), lambda now: (now, None)])
     monkeypatch.setattr(Selection, "_found", lambda self: next(found)(self))
     monkeypatch.setattr(Selection, "_looked_beside", lambda self: (self, False))
-    monkeypatch.setattr(Selection, "_step", lambda self: replace(self, ladder=(*self.ladder, toe)))
+    monkeypatch.setattr(
+        Selection, "up_to", lambda self, models, top: replace(self, models=models, top=top, ladder=(*self.ladder, toe))
+    )
     monkeypatch.setattr(Selection, "_pruned", lambda self: self)
     now = foot.to_the_top()
     assert now.effects == (("drag", "toe") if stays else ("drag",))
