@@ -22,7 +22,7 @@ help:
 	@echo "make mutants     whether the tests notice faults that are put into the code (hours; MUTANTS='--sample 12 --only wheelchair_fmu/model')"
 	@echo "make importers   FMUs and systems in other people's importers, as tables (ARGS=--write-docs puts them into docs); these go into $(VENV)-importers"
 	@echo "make matrix   the tests with each Python here, lowest and highest versions of what is needed; these go into $(VENV)-matrix"
-	@echo "make nightly     what takes up to an hour: further cases, every platform, importers, fuzzing, kills and damage, a few hidden truths, some mutants"
+	@echo "make nightly     what takes an hour or more: further cases, every platform, importers, fuzzing, kills and damage, a few hidden truths, some mutants"
 	@echo "make clean   remove what the others made, but for $(VENV)"
 
 setup: $(VENV)/.ready

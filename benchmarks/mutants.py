@@ -210,6 +210,8 @@ def main() -> None:
     )
     parser.add_argument("--tests", nargs="+", default=(), help="run these test files, not all that name a mutant's module")
     given = parser.parse_args()
+    if given.drawn and not given.sample:
+        parser.error("--drawn without --sample draws nothing; say how many, as in --sample 30")
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended"))  # and with it the tests that run, and the copy
     by_name = [] if given.drawn else [m for m in named() if m.path.startswith(given.only)]
     mutants = [*by_name, *sampled(given.sample, given.seed, given.only)]

@@ -91,8 +91,21 @@ wc_result wc_refresh_rates(wc_instance *c, const char *function) {
     return WC_DONE;
 }
 
-/* Says, once, where the model has left the range in which it holds. */
+/* Says, once, that an input is given and moves nothing. */
+static void tell_idle(wc_instance *c) {
+    for (int i = 0; i < model->idles; i++) {
+        const wc_variable *v = &model->variable[model->idle[i].input], *of = &model->variable[model->idle[i].parameter];
+        unsigned bit = 1u << (model->watches + i);
+        if (c->warned & bit || c->now.w[v->index] == 0 || c->now.p[of->index] != 0) continue;
+        c->warned |= bit;
+        wc_say(c, WC_LOG_WARNING, "t = %.9g s: %s = %s moves nothing while %s is %s; set %s as well", c->now.time, v->name,
+               wc_valued(v, c->now.w[v->index]).text, of->name, wc_valued(of, 0).text, of->name);
+    }
+}
+
+/* Says, once, where the model has left the range in which it holds, or an input does nothing. */
 static void watch(wc_instance *c) {
+    tell_idle(c);
     const int law = wc_law_of(c);
     for (int i = 0; i < model->watches; i++) {
         const wc_watch *m = &model->watch[i];
@@ -110,18 +123,6 @@ static void watch(wc_instance *c) {
             }
             break;
         }
-    }
-}
-
-/* Says, once, that an input is given and moves nothing. */
-static void tell_idle(wc_instance *c) {
-    for (int i = 0; i < model->idles; i++) {
-        const wc_variable *v = &model->variable[model->idle[i].input], *of = &model->variable[model->idle[i].parameter];
-        unsigned bit = 1u << (model->watches + i);
-        if (c->warned & bit || c->now.w[v->index] == 0 || c->now.p[of->index] != 0) continue;
-        c->warned |= bit;
-        wc_say(c, WC_LOG_WARNING, "t = %.9g s: %s = %s moves nothing while %s is %s; set %s as well", c->now.time, v->name,
-               wc_valued(v, c->now.w[v->index]).text, of->name, wc_valued(of, 0).text, of->name);
     }
 }
 
@@ -233,7 +234,6 @@ wc_result wc_do_step(wc_instance *c, const char *function, double point, double 
     memset(s->slope, 0, sizeof s->slope);
     result = wc_refresh_outputs(c, function);
     watch(c);
-    tell_idle(c);
     return result;
 }
 
@@ -317,10 +317,7 @@ wc_result wc_enter_continuous(wc_instance *c, const char *function) {
 
 wc_result wc_complete_step(wc_instance *c, const char *function) {
     wc_result result = wc_refresh_outputs(c, function);
-    if (result == WC_DONE) {
-        watch(c);
-        tell_idle(c);
-    }
+    if (result == WC_DONE) watch(c);
     return result;
 }
 

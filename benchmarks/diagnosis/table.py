@@ -37,6 +37,20 @@ def named(t: Trial) -> set[str]:
     return set(t["found"]) | {e for group in t["ties"] for e in group}
 
 
+def all_named(t: Trial) -> bool:
+    """Is all that is hidden named, alone or in a tie?"""
+    return set(t["effects"]) <= named(t)
+
+
+def by_size(trials: Sequence[Trial]) -> list[tuple[str, list[Trial]]]:
+    """The trials of each size and kind of noise, the largest and the white ones first, and what these are called."""
+    kinds = sorted({(-t["times"], t["noise"] != "white", t["noise"]) for t in trials})
+    return [
+        (f"{-times:g} δ, {noise} noise", [t for t in trials if (t["times"], t["noise"]) == (-times, noise)])
+        for times, _, noise in kinds
+    ]
+
+
 def share(trials: Sequence[Any], true: Callable[[Any], bool]) -> str:
     hits = sum(map(true, trials))
     return f"{hits} of {len(trials)} ({hits / len(trials):.0%})" if trials else "none run"
@@ -115,7 +129,8 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
     lines = [
         ("hidden effect first, of those the data can show", share(single, first), ""),
         ("  among the first three", share(single, lambda t: bool(set(order(t)[:3]) & set(t["effects"]))), ""),
-        ("  named, alone or in a tie", share(single, lambda t: set(t["effects"]) <= named(t)), ""),
+        ("  named, alone or in a tie", share(single, all_named), ""),
+        *((f"    {size}", share(some, all_named), "") for size, some in by_size(single)),
         ("  it or its known double named", share(single, alike), "99 %"),
         ("  verdict missing or tie", share(single, lambda t: t["verdict"] in ("missing", "tie")), ""),
         ("  wrongly outside", share(single, outside), "2 %"),
@@ -124,12 +139,13 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("outside found, truth left out of the catalogue", share(by.get("left-out", []), outside), "85 %"),
         ("  of those that leave more than noise", share([t for t in by.get("left-out", []) if remains(t, floor)], outside), ""),
         ("outside found, effect that no catalogue has", share(by.get("outside", []), outside), "85 %"),
+        *((f"  {size}", share(some, outside), "") for size, some in by_size(by.get("outside", []))),
         ("wheels that slip: said so, and nothing named", share(by.get("slipping", []), slipped), ""),
-        ("pairs: both found", share(by.get("pair", []), lambda t: set(t["effects"]) <= named(t)), ""),
+        ("pairs: both found", share(by.get("pair", []), all_named), ""),
         ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),
         ("casters that swing by law: nothing said to be missing", share(still, lambda t: t["verdict"] in QUIET), ""),
-        ("  hidden effect named", share(moved, lambda t: set(t["effects"]) <= named(t)), ""),
-        ("near-ties: hidden one in the tie", share(by.get("near-tie", []), lambda t: set(t["effects"]) <= named(t)), "99 %"),
+        ("  hidden effect named", share(moved, all_named), ""),
+        ("near-ties: hidden one in the tie", share(by.get("near-tie", []), all_named), "99 %"),
         ("held-out gain, median", f"{np.median(won):.2f} of {len(won)}" if won else "none run", ""),
         ("true value within the 95 % interval", f"{np.mean(inside):.0%} of {len(inside)}" if inside else "none run", "93–97 %"),
         *(

@@ -260,7 +260,6 @@ class WheelchairPython(Fmi2Slave):
         self.lost = (elapsed - self.elapsed) - added
         self.elapsed, self.time = elapsed, current_time + step_size
         self._watch()
-        self._tell_idle()
         return True
 
     def _step_fault(self, point: float, h: float) -> str:
@@ -279,7 +278,8 @@ class WheelchairPython(Fmi2Slave):
         return ""
 
     def _watch(self) -> None:
-        """Say, once, where the model has left the range in which it holds."""
+        """Say, once, where the model has left the range in which it holds, or an input does nothing."""
+        self._tell_idle()
         for i, watch in enumerate(self.interface["watches"]):
             guard = watch["guard"]
             if i in self.warned or (guard and not abs(self.y[self.place[guard]]) > watch["guard_limit"]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.diagnosis.cases import Case
-from benchmarks.diagnosis.table import covered_by, false_alarm, first, named
+from benchmarks.diagnosis.table import by_size, covered_by, false_alarm, first, named
 from benchmarks.diagnosis.trial import trial
 from benchmarks.independent.chair import Chair
 from benchmarks.independent.hidden import EFFECTS
@@ -51,3 +51,10 @@ def test_what_every_chair_has_is_part_of_the_truth():
     trial = {**said, "effects": ["caster_inertia"], "own": trail.own}
     assert first(trial) and not false_alarm(trial)
     assert false_alarm({**trial, "own": ()}) and false_alarm({**trial, "found": ["caster_trail", "gyro_bias"]})
+
+
+def test_trials_are_told_by_size_and_noise_each_once():
+    trials = [{"times": times, "noise": noise} for times in (1.0, 3.0, 1.0) for noise in ("ar1", "white")]
+    told = by_size(trials)
+    assert [size for size, _ in told] == [f"{times} δ, {noise} noise" for times in (3, 1) for noise in ("white", "ar1")]
+    assert [len(some) for _, some in told] == [1, 1, 2, 2]
