@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ Trial = dict[str, Any]
 SHOWS = 1.01  # ratio of the whitened RMS on fitted runs, calibrated, to that where nothing is hidden
 FLOOR = 0.995  # whitened RMS where nothing is hidden in white noise; coloured noise has one for each draw
 QUIET = ("adequate", "cannot_see", "small")
+OF_THE_CATALOGUE = ("null", "effect", "pair", "rider", "casters", "near-tie")  # kinds of trials of which all is in it
+SAID = (0.0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 1.0)  # edges of the bins in which probabilities are tallied
 ALIASES = (
     {"aerodynamic_drag", "rolling_resistance_speed"},
     {"push_force_gain", "wheel_radius_error"},
@@ -107,6 +110,31 @@ def covered_by(t: Trial, kind: str) -> list[bool]:
     return [low <= hidden[n] <= high for n, (low, high) in t["intervals"][kind].items() if n in hidden]
 
 
+def probabilities(trials: Sequence[Trial]) -> list[tuple[float, bool]]:
+    """Every probability that an effect is larger than δ, and whether it is. Effects that are hidden at δ itself are neither
+    larger nor smaller, and what every chair has in such runs is nobody's to hide."""
+    of_a_size = (t for t in trials if t["kind"] in OF_THE_CATALOGUE and t["times"] != 1)
+    return [
+        (p, e in t["effects"] and t["times"] > 1)
+        for t in of_a_size
+        for e, p in t.get("probabilities", {}).items()
+        if p is not None and (e in t["effects"] or e not in t["own"])
+    ]
+
+
+def calibration(told: Sequence[tuple[float, bool]]) -> list[tuple[str, str, str]]:
+    """By bin of what was said, how many there are, what was said of them on the mean, and how many of them are so."""
+    p, true = np.array([one for one, _ in told]), np.array([one for _, one in told], bool)
+    within = np.digitize(p, SAID[1:-1])
+    lines = []
+    for i, (low, high) in enumerate(pairwise(SAID)):
+        some = within == i
+        if some.any():
+            hits = f"{np.sum(true[some])} of {np.sum(some)} ({np.mean(true[some]):.1%})"
+            lines.append((f"  larger than δ with {low:g} to {high:g}", hits, f"{np.mean(p[some]):.1%} said"))
+    return lines
+
+
 def gains(trials: Sequence[Trial]) -> list[float]:
     """(E0 − E1)/(E0 − 1) of the held-out squared error, where there was something to gain."""
     out = []
@@ -152,6 +180,8 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
             ("  within the " + kind + " interval", share([c for t in missing for c in covered_by(t, kind)], bool), "93–97 %")
             for kind in ("profile", "bootstrap")
         ),
+        ("probabilities: effects that are larger than δ, of those said to be", "", ""),
+        *calibration(probabilities(trials)),
         ("processor seconds, median", f"{np.median([t['cpu'] for t in trials]):.1f}", ""),
     ]
     for method in next((t["baselines"] for t in trials if t["baselines"]), {}):

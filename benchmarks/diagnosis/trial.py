@@ -65,6 +65,7 @@ def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
         "leftover": said["leftover"],
         "notes": said["notes"],
         "rows": {e: rows[e] for e in case.effects if e in rows},
+        "probabilities": {e: row["probability"] for e, row in rows.items()},
         "cpu": seconds,
         "seconds": said["seconds"],
         "baselines": others,

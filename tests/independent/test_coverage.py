@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.diagnosis.cases import Case
-from benchmarks.diagnosis.table import by_size, covered_by, false_alarm, first, named
+from benchmarks.diagnosis.table import by_size, calibration, covered_by, false_alarm, first, named, probabilities
 from benchmarks.diagnosis.trial import trial
 from benchmarks.independent.chair import Chair
 from benchmarks.independent.hidden import EFFECTS
@@ -58,3 +58,17 @@ def test_trials_are_told_by_size_and_noise_each_once():
     told = by_size(trials)
     assert [size for size, _ in told] == [f"{times} δ, {noise} noise" for times in (3, 1) for noise in ("white", "ar1")]
     assert [len(some) for _, some in told] == [1, 1, 2, 2]
+
+
+def test_probabilities_are_tallied_against_what_was_hidden():
+    """Not of an effect of δ itself, which is neither larger nor smaller, nor of what every chair has, nor of no catalogue."""
+    hidden = {"kind": "effect", "effects": ["gyro_bias"], "times": 3.0, "own": ("caster_trail",)}
+    said = {"gyro_bias": 0.96, "gyro_scale": 0.04, "caster_trail": 0.99, "turn_slip": None}
+    quarter = {**hidden, "times": 0.25, "probabilities": {"gyro_bias": 0.02}}
+    others = [{**hidden, "times": 1.0, "probabilities": said}, {**hidden, "kind": "left-out", "probabilities": said}]
+    told = probabilities([{**hidden, "probabilities": said}, quarter, *others])
+    assert told == [(0.96, True), (0.04, False), (0.02, False)]
+    assert calibration(told) == [
+        ("  larger than δ with 0.01 to 0.1", "0 of 2 (0.0%)", "3.0% said"),
+        ("  larger than δ with 0.95 to 1", "1 of 1 (100.0%)", "96.0% said"),
+    ]

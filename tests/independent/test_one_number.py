@@ -1,4 +1,4 @@
-"""One model has one error, whichever command it comes from: a search and `add` judge it by the same noise."""
+"""One model has one error, whichever command it comes from: a search, `add` and `compare` judge it by the same noise."""
 
 from __future__ import annotations
 
@@ -6,19 +6,27 @@ import pytest
 
 from benchmarks.independent.campaigns import make
 from benchmarks.independent.hidden import usual
+from wheelchair_fmu.api.comparing import compared
 from wheelchair_fmu.campaign import read
-from wheelchair_fmu.inference.decision.improve import add
+from wheelchair_fmu.inference.decision.improve import add, after
 from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
 
-def test_what_a_search_puts_in_has_the_errors_that_add_says(tmp_path):
-    """A trunk that moves leaves the pushes' noise smaller than without it."""
+def test_what_a_search_puts_in_has_the_errors_that_add_and_compare_say(tmp_path):
+    """A trunk that moves leaves the pushes' noise smaller than without it. `compare` simulates with the FMU, to 1e-4."""
     campaign = read(make(tmp_path / "campaign", {"trunk_motion": usual("trunk_motion", 3.0)}, seed=5))
     chair = Variant(catalogue={effect: bundled()[effect] for effect in ("trunk_motion", "gyro_bias")})
     found = diagnose(campaign, chair)
     assert found.included == ("trunk_motion",) and found.models.setting.noise_model.differs(NoiseModel(campaign.noise))
     for here, there in zip(found.ladder, add(campaign, chair, "trunk_motion").ladder, strict=True):
         assert (here.name, here.fit, here.heldout) == (there.name, pytest.approx(there.fit), pytest.approx(there.heldout))
+    better = compared(campaign, after(found, chair, campaign), (), lambda words: None)
+    by_what_was_stated = Likelihood(campaign, chair.with_effects(found.included))
+    stated = by_what_was_stated.evidence(campaign.fit, found.final.values, tune_start=2)
+    assert better.errors.rms("fit") == pytest.approx(found.ladder[-1].fit, abs=0.003)
+    assert better.errors.rms("holdout") == pytest.approx(found.ladder[-1].heldout, abs=0.003)
+    assert abs(stated.rms - found.ladder[-1].fit) > 0.03, "the noise that was stated makes a difference here"

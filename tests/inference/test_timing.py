@@ -11,6 +11,7 @@ import pytest
 from benchmarks.independent.campaigns import make
 from benchmarks.shifts import NIGHT, Case, less, shifted, with_shift
 from tests.inference.conftest import among
+from wheelchair_fmu.api.comparing import compared
 from wheelchair_fmu.campaign import covered, read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.evidence.evidence import Evidence
@@ -33,6 +34,12 @@ def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     side = "early" if seconds > 0 else "late"
     assert [n for n in begun.heard(found) if n.startswith(f"{name}: ") and f"too {side}" in n]
     assert [r.name for r in begun.models.campaign.runs] == [r.name for r in sample.runs]
+
+
+def test_who_compares_reads_a_shifted_run_in_time(sample):
+    as_it_is, shifted = (compared(c, Variant(), (), lambda words: None) for c in (sample, with_shift(sample, Case(*NIGHT[0]))))
+    assert any(note.startswith(f"{NIGHT[0][0]}: its pushes were recorded") for note in shifted.notes)
+    assert shifted.errors.rms() == pytest.approx(as_it_is.errors.rms(), rel=0.02)
 
 
 def test_hands_that_push_against_each_other_tell_no_clock_by_what_their_sum_does(tmp_path):

@@ -9,10 +9,12 @@ import pytest
 
 from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.inference.decision.improve import add
+from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.preflight.wiring import SIDES, Wiring, wiring
 from wheelchair_fmu.inference.search.beginning import begin
+from wheelchair_fmu.inference.search.recordings import Taken, taken
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -96,3 +98,14 @@ def test_a_missing_effect_and_a_poor_guess_are_no_wrong_column(sample):
 def test_who_adds_an_effect_is_told_as_well(sample):
     better = add(wired(sample, yaw_rate=-1.0), Variant(), "rolling_resistance_asymmetry")
     assert [n for n in better.notes if n.startswith("yaw_rate has the other sign")]
+
+
+def test_who_compares_is_told_as_well(sample):
+    found = taken(wired(sample, yaw_rate=-1.0), Variant())
+    assert found.notes == ("yaw_rate has the other sign than the model's, and is left out; turn its column round",)
+    assert not any("yaw_rate" in run.channels for run in found.campaign.runs)
+
+
+def test_who_has_no_run_to_fit_takes_recordings_as_they_are(sample):
+    alone = replace(sample, runs=sample.holdout)
+    assert taken(alone, Variant()) == Taken(alone, NoiseModel(alone.noise))

@@ -16,6 +16,7 @@ from ..inference.estimation.fit import fit, start_value
 from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.residual.compare import Comparison, RunErrors, errors_of, together
+from ..inference.search.recordings import Taken, taken
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..studies import Fmu, fmu_of
@@ -29,41 +30,46 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Compared:
-    """Errors, the campaign as it was compared, the chair's values by FMI name (SI), and what became of those that were
-    fitted."""
+    """Errors, the campaign as it was compared, the chair's values by FMI name (SI), what became of those that were fitted,
+    sentences `heard` of recordings, and by channel the noise (SI) that errors are told in."""
 
     errors: Comparison
     campaign: Campaign
     values: Mapping[str, float]
+    noise: Mapping[str, float]
     calibration: tuple[Calibrated, ...] = ()
+    heard: tuple[str, ...] = ()
 
     @property
     def notes(self) -> list[str]:
-        """A sentence for each fitted value that nobody should believe, and for each run in which the model holds no longer."""
-        return [*doubts(self.calibration), *self.errors.limits]
+        """A sentence for each fault of the recordings, for each fitted value that nobody should believe, and for each run in
+        which the model holds no longer."""
+        return [*self.heard, *doubts(self.calibration), *self.errors.limits]
 
 
 def compared(
     measured: Campaign, chair: Variant, calibrate: Sequence[str], say: Callable[[str], None], *, brief: bool = False
 ) -> Compared:
-    """Errors of the chair, as a search has them, with the values of `calibrate` fitted; `brief` without what was simulated.
+    """Errors of the chair, by the columns, clocks and noise that a search of it finds, with the values of `calibrate` fitted;
+    `brief` without what was simulated.
 
     Raises UsageError for a name that cannot be calibrated.
     """
-    measured = condensed(measured)
     chair = chair.with_effects(measured.effects)  # for the FMU to have
-    fitted, told = _calibrated(measured, chair, calibrate)
+    recordings = taken(condensed(measured), chair, say)
+    fitted, told = _calibrated(recordings, chair, calibrate)
     values = {**chair.values, **fitted}
-    runs = tuple(r.summary() if brief else r for r in _through_fmu(measured, chair, values, say))
-    return Compared(Comparison(runs), measured, values, tuple(told))
+    runs = tuple(r.summary() if brief else r for r in _through_fmu(recordings, chair, values, say))
+    noise = recordings.noise_model.sd
+    return Compared(Comparison(runs), recordings.campaign, values, noise, tuple(told), recordings.notes)
 
 
-def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> tuple[Mapping[str, float], Sequence[Calibrated]]:
+def _calibrated(recordings: Taken, chair: Variant, names: Sequence[str]) -> tuple[Mapping[str, float], Sequence[Calibrated]]:
     """Fitted values of these parameters and of sensors' offsets, from windows of the campaign where it is large, and what there
     is to say of each parameter."""
-    if not names and not measured.nuisance:
+    if not names and not recordings.campaign.nuisance:
         return {}, ()
-    likelihood = Likelihood(windows(measured), chair)
+    likelihood = Likelihood(windows(recordings.campaign), chair, recordings.noise_model)
     records = {p.name: p for p in likelihood.variant.parameters()}
     for name in names:
         if name not in records:
@@ -78,11 +84,13 @@ def _calibrated(measured: Campaign, chair: Variant, names: Sequence[str]) -> tup
 
 
 def _through_fmu(
-    measured: Campaign, chair: Variant, values: dict[str, float], say: Callable[[str], None]
+    recordings: Taken, chair: Variant, values: dict[str, float], say: Callable[[str], None]
 ) -> Iterator[RunErrors]:
     """Each run driven through the FMU, a long one piece by piece, from the starts that its evidence finds."""
+    measured = recordings.campaign
     cut = {run.name: pieces(run, PIECE) for run in measured.runs}
-    likelihood = Likelihood(replace(measured, runs=tuple(piece for run in cut.values() for piece in run)), chair)
+    whole = replace(measured, runs=tuple(piece for run in cut.values() for piece in run))
+    likelihood = Likelihood(whole, chair, recordings.noise_model)
     outputs = chair.model().outputs
     batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
     batch_by_batch = _ahead(likelihood.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)

@@ -53,8 +53,9 @@ class Comparison:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """A sentence for each fitted value that ends at a bound, or far from what was given, and for each run in which the
-        model is beyond a limit of its own, as where a wheel leaves the ground.
+        """A sentence for each fault of the recordings, as of noise that is not as stated, for each fitted value that ends at a
+        bound, or far from what was given, and for each run in which the model is beyond a limit of its own, as where a wheel
+        leaves the ground.
 
         >>> compared.notes
         ()
@@ -146,7 +147,7 @@ class Comparison:
             recorded.time,
             {ch: recorded.channels[ch] for ch in found.channels},
             {ch: found.predicted[:, i] for i, ch in enumerate(found.channels)},
-            {ch: measured.noise[ch] * recorded.noise_share(ch) for ch in found.channels},
+            {ch: self._compared.noise.get(ch, 0.0) * recorded.noise_share(ch) for ch in found.channels},
             units=UNIT_OF,
             offsets=offsets,
         )

@@ -17,6 +17,7 @@ from ..chunks import bad, is_done
 from ..errors import UsageError, unknown
 from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
+from ..inference.search.recordings import taken
 from ..inference.subject import known_parameters
 from ..studies.sweep import ENGINES, INDICES, Job, Plan, prepare, read_plan
 from ..studies.sweep.indices import indices
@@ -102,8 +103,9 @@ def _job(plan: Plan, engine: str) -> Job:
     with console(stderr=True).status("reading the campaign"):
         for chair in plan.chairs:
             variant = chair.variant()
-            likelihood = Likelihood(measured, variant)
-            found = likelihood.evidence(measured.runs, variant.values, (), tune_start=TUNING)
+            recordings = taken(measured, variant)
+            likelihood = Likelihood(recordings.campaign, variant, recordings.noise_model)
+            found = likelihood.evidence(recordings.campaign.runs, variant.values, (), tune_start=TUNING)
             yardsticks[chair.label] = tuple(
                 Yardstick(
                     likelihood.on_time(e.run, variant.values, e.start),
