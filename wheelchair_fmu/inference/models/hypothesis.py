@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ..estimation.fit import Fit
 from ..evidence.evidence import Evidence
+from .factory import members_of
 
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """That a chair has these effects, in the order found, and does `without` these nuisances, as an effect does the same."""
+    """That a chair has these effects, in whatever order they were found, and does `without` these nuisances, as an effect does
+    the same."""
 
-    effects: tuple[str, ...]
+    effects: frozenset[str]
     without: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, effects: Iterable[str], without: frozenset[str] = frozenset()) -> Hypothesis:
+        """That it has these, of groups all members."""
+        return cls(frozenset(member for effect in effects for member in members_of(effect)), without)
 
 
 @dataclass(frozen=True)

@@ -40,13 +40,18 @@ def quiet(words: str) -> None:
 @dataclass(frozen=True)
 class Models:
     """A factory's models in one setting, and by which policy they are judged. `say` is told what is being done; `doubles` are
-    by effect the nuisances of the campaign that stand for the very same, without which the effect is fitted."""
+    by effect the nuisances of the campaign that stand for the very same, without which the effect is fitted.
+
+    Each hypothesis is fitted once in a setting, and in another one from where it ended in the first, which `_ended` holds for
+    the models of all settings that one comes from.
+    """
 
     factory: ModelFactory
     setting: Setting
     policy: SearchPolicy = DEFAULT
     say: Callable[[str], None] = quiet
     doubles: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    _ended: dict[Hypothesis, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
     _fits: dict[Hypothesis, Fit] = field(default_factory=dict, init=False, repr=False, compare=False)
     _heldout: dict[Hypothesis, Evidence] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -95,11 +100,18 @@ class Models:
 
     def fitted(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Fit:
         """The same followed to its end, once: who asks again gets what came of the first start."""
-        hypothesis = Hypothesis(tuple(effects), without)
+        hypothesis = Hypothesis.of(effects, without)
         if hypothesis not in self._fits:
-            found = fit(self.likelihood(effects), self.names(effects, without), start)
-            self._fits[hypothesis] = self.started(effects, found)
+            found = fit(self.likelihood(effects), self.names(effects, without), self._ended.get(hypothesis, start))
+            self._keep(hypothesis, self.started(effects, found))
         return self._fits[hypothesis]
+
+    def remember(self, effects: Sequence[str], found: Fit) -> None:
+        """That a fit with these effects was followed to its end, so that nobody does it again."""
+        self._keep(Hypothesis.of(effects), found)
+
+    def _keep(self, hypothesis: Hypothesis, found: Fit) -> None:
+        self._fits[hypothesis], self._ended[hypothesis] = found, found.values
 
     def started(self, effects: Sequence[str], found: Fit) -> Fit:
         """A fit of these effects; where it has states that no model of this setting had, again from where its runs start by it,
@@ -121,10 +133,10 @@ class Models:
 
     def model(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Model:
         """`fitted`, and held out."""
-        hypothesis, found = Hypothesis(tuple(effects), without), self.fitted(effects, start, without)
+        hypothesis, found = Hypothesis.of(effects, without), self.fitted(effects, start, without)
         if hypothesis not in self._heldout:
             self._heldout[hypothesis] = self.heldout(self.likelihood(effects), found)
-        return Model(hypothesis.effects, found, self._heldout[hypothesis])
+        return Model(tuple(effects), found, self._heldout[hypothesis])
 
     def afresh(self) -> Models:
         """The same models with runs that start where the campaign has them, and no errors of pushes known, as if no model had

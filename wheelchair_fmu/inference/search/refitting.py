@@ -53,7 +53,10 @@ def candidate(
         likelihood = models.likelihood(effects)
     if found is None:
         return None
-    found = models.compared(models.started(effects, found), effect, base.fit)
+    found = models.started(effects, found)
+    if found.misfit < rival and not models.factory.leads:  # who falls behind a rival was not followed to its end
+        models.remember(effects, found)
+    found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
     if risen(base.fit, found):
         return None  # no fit: the model without the effect is one with it
