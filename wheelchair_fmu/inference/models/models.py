@@ -42,8 +42,8 @@ class Models:
     """A factory's models in one setting, and by which policy they are judged. `say` is told what is being done; `doubles` are
     by effect the nuisances of the campaign that stand for the very same, without which the effect is fitted.
 
-    Each hypothesis is fitted once in a setting, and in another one from where it ended in the first, which `_ended` holds for
-    the models of all settings that one comes from.
+    Each hypothesis is fitted once in a setting. In another one, and where a fit was not followed to its end, it begins where
+    it was left, which `_left` holds for the models of all settings.
     """
 
     factory: ModelFactory
@@ -51,7 +51,7 @@ class Models:
     policy: SearchPolicy = DEFAULT
     say: Callable[[str], None] = quiet
     doubles: Mapping[str, frozenset[str]] = field(default_factory=dict)
-    _ended: dict[Hypothesis, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
+    _left: dict[Hypothesis, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
     _fits: dict[Hypothesis, Fit] = field(default_factory=dict, init=False, repr=False, compare=False)
     _heldout: dict[Hypothesis, Evidence] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -102,16 +102,19 @@ class Models:
         """The same followed to its end, once: who asks again gets what came of the first start."""
         hypothesis = Hypothesis.of(effects, without)
         if hypothesis not in self._fits:
-            found = fit(self.likelihood(effects), self.names(effects, without), self._ended.get(hypothesis, start))
+            found = fit(self.likelihood(effects), self.names(effects, without), self._left.get(hypothesis, start))
             self._keep(hypothesis, self.started(effects, found))
         return self._fits[hypothesis]
 
-    def remember(self, effects: Sequence[str], found: Fit) -> None:
-        """That a fit with these effects was followed to its end, so that nobody does it again."""
-        self._keep(Hypothesis.of(effects), found)
+    def remember(self, effects: Sequence[str], found: Fit, ended: bool) -> None:
+        """Where a fit with these effects was left; nobody makes one again that has `ended`."""
+        if ended:
+            self._keep(Hypothesis.of(effects), found)
+        else:
+            self._left[Hypothesis.of(effects)] = found.values
 
     def _keep(self, hypothesis: Hypothesis, found: Fit) -> None:
-        self._fits[hypothesis], self._ended[hypothesis] = found, found.values
+        self._fits[hypothesis], self._left[hypothesis] = found, found.values
 
     def started(self, effects: Sequence[str], found: Fit) -> Fit:
         """A fit of these effects; where it has states that no model of this setting had, again from where its runs start by it,

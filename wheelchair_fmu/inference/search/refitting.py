@@ -54,8 +54,8 @@ def candidate(
     if found is None:
         return None
     found = models.started(effects, found)
-    if found.misfit < rival and not models.factory.leads:  # who falls behind a rival was not followed to its end
-        models.remember(effects, found)
+    if not models.factory.leads:
+        models.remember(effects, found, ended=found.misfit < rival)  # who falls behind a rival may not have been followed
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
     if risen(base.fit, found):
