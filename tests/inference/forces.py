@@ -75,7 +75,7 @@ def ridden(
     likelihood, runs = Likelihood(campaign, chair), []
     names = likelihood.sensitivities.results
     for run in campaign.runs:
-        start = likelihood.starts[run.name]
+        start = likelihood.begins[run.name].start
         without = dict(zip(names, likelihood._simulated(run, values, start)[0].T, strict=True))
         F, M = forces(run, without)
         felt = dict(zip(EXTERNAL, (F, M), strict=True))

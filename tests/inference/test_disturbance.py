@@ -12,6 +12,7 @@ from wheelchair_fmu.campaign.windows import between
 from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
+from wheelchair_fmu.inference.evidence.evidence import Begin
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import ALONG, BODYS, FORCED, HANDS, PATCH, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
@@ -161,9 +162,8 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     noise = replace(NoiseModel(campaign.noise), force=8.0, moment=1.0)
     likelihood = Likelihood(campaign, Variant(), noise).led(campaign)
     first = likelihood.evidence(campaign.fit, {}, ())
-    for e in first.runs:  # from elsewhere
-        likelihood.paths[e.run.name] = 3.0 * rng.standard_normal(FORCED) * np.ones((len(e.run.time), FORCED))
-    again = likelihood.evidence(campaign.fit, {}, ())
+    elsewhere = {r.name: Begin(path=3.0 * rng.standard_normal(FORCED) * np.ones((len(r.time), FORCED))) for r in campaign.fit}
+    again = likelihood.begun(elsewhere).evidence(campaign.fit, {}, ())
     assert again.misfit == pytest.approx(first.misfit, abs=5.0)
     for e, other in zip(first.runs, again.runs, strict=True):
         np.testing.assert_allclose(e.path, other.path, atol=0.2 * max(noise.force, noise.moment))  # steps end at 0.03

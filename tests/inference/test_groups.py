@@ -54,7 +54,7 @@ def measured(sample, values, rubs: Effect = RUBS):
     given = replace(sample, known={**sample.known, "tyre.C_phi": 20.0, "tyre.C_m_phi": 0.0})
     likelihood = Likelihood(given, chair(rubs).with_effects(["lean", rubs.id]))
     for run in (*given.fit[:4], given.holdout[0]):
-        channels, _, true = likelihood.readings(run, values, likelihood.starts[run.name])
+        channels, _, true = likelihood.readings(run, values, likelihood.begins[run.name].start)
         read = {c: v + rng.normal(0, given.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
         runs.append(replace(run, channels=read))
     return replace(given, runs=tuple(runs))

@@ -27,7 +27,7 @@ def test_a_diagnosis_by_windows_finds_the_same_and_says_so(sample):
 def test_a_heading_that_a_run_states_is_where_it_starts(sample):
     run = replace(sample.runs[0], set={"start.psi": 0.7})
     likelihood = Likelihood(replace(sample, runs=(run,)), Variant())
-    assert likelihood.starts[run.name]["start.psi"] == 0.7
+    assert likelihood.begins[run.name].start["start.psi"] == 0.7
 
 
 def test_pieces_compared_are_the_run_compared(sample):

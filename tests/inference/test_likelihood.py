@@ -10,6 +10,7 @@ import pytest
 
 from wheelchair_fmu.inference.estimation.fit import fit, prior_of
 from wheelchair_fmu.inference.estimation.score import _long_run_variance
+from wheelchair_fmu.inference.evidence.evidence import Begin
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import pushes_of
 from wheelchair_fmu.inference.models.factory import ModelFactory
@@ -113,8 +114,7 @@ def test_errors_of_pushes_act_as_pushes_do_and_are_no_part_of_what_is_foretold(s
     pushed = 0.5 * np.sin(np.outer(run.time, 1 + np.arange(len(names))))
     likelihood = Likelihood(short, chair, columns=())
     (recorded,) = likelihood.evidence([run], {}).runs
-    likelihood.paths[run.name] = pushed
-    (e,) = likelihood.evidence([run], {}).runs
+    (e,) = likelihood.begun({run.name: Begin(path=pushed)}).evidence([run], {}).runs
     true = replace(run, inputs={**run.inputs, **{n: run.inputs[n] + pushed[:, i] for i, n in enumerate(names)}})
     (felt,) = Likelihood(replace(short, runs=(true,)), chair, columns=()).evidence([true], {}).runs
     assert np.abs(felt.predicted - recorded.predicted).max() > 0.01

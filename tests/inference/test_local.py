@@ -109,7 +109,7 @@ def test_a_run_whose_start_is_known_may_have_an_uncertain_clock(recorded):
     """Where nothing of the start is to be found, the clock is."""
     (run,) = recorded.runs
     likelihood = Likelihood(recorded, Variant())
-    known = {**run.set, **likelihood.starts[run.name]}
+    known = {**run.set, **likelihood.begins[run.name].start}
     moved = {**run.channels, "yaw_rate": later(run.channels["yaw_rate"], run.time, 0.03)}
     fixed = replace(run, set=known, channels=moved, clocks=(GYRO,))
     (e,) = likelihood.evidence([fixed], {}, (), tune_start=3).runs

@@ -60,7 +60,7 @@ def test_the_sample_is_off_by_what_its_channels_say(sample):
     run = replace(sample.fit[0], role="holdout")
     likelihood = Likelihood(sample, Variant())
     evidence = likelihood.evidence([run], {})
-    _, measured, predicted = likelihood.readings(run, {}, likelihood.starts[run.name])
+    _, measured, predicted = likelihood.readings(run, {}, likelihood.begins[run.name].start)
     at = evidence.runs[0].channels.index("yaw_rate")
     by_hand = np.degrees(np.sqrt(np.nanmean((measured - predicted)[:, at] ** 2)))
     step = Step.of("nominal", likelihood.evidence([], {}), evidence, {})

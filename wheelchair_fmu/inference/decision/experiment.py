@@ -14,6 +14,7 @@ from ...errors import SimulationError
 from ..estimation.fit import Fit, Problem, prior_of
 from ..estimation.inverse import inverse
 from ..estimation.statistics import decisive
+from ..evidence.evidence import Begin
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel
 from ..models.models import Models
@@ -168,5 +169,5 @@ def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tup
     simulated = likelihood.sensitivities.run(experiment.time, w, p)
     places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
     noise_model = NoiseModel({**experiment.sensors, **likelihood.noise_model.sd}, likelihood.noise_model.ar)
-    there = likelihood.started(noise_model, {blank.name: start}, {})
+    there = likelihood.with_noise_model(noise_model).begun({blank.name: Begin(start)})
     return there, replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})

@@ -122,6 +122,17 @@ class Problem:
             raise SimulationError("slopes by the parameters are beyond all numbers, as of casters that flip by chance")
         return found
 
+    def at(self, theta: np.ndarray, tune_start: int) -> Evidence | None:
+        """Evidence there without slopes; None where the model cannot run."""
+        try:
+            return self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta), tune_start=tune_start)
+        except SimulationError:
+            return None
+
+    def continued(self, found: Evidence) -> Problem:
+        """The same with runs that begin where evidence has found that they do."""
+        return Problem(self.likelihood.continued(found), self.names)
+
     def squares(self, here: Evidence, theta: np.ndarray) -> float:
         """What a descent makes small: squared innovations, and the prior's."""
         return float(here.r @ here.r + np.sum(self.prior.rows(theta) ** 2))
@@ -239,7 +250,7 @@ def fit(
         before = problem.misfit(here, theta)
         gained = before - problem.misfit(further[1], further[0])
         if likelihood.may_flip and gained > GAINED and most > 1:  # a single step only shows how much a start promises
-            further = _beyond(problem, theta, *further, before)
+            problem, further = _beyond(problem, theta, *further, before)
         theta, here = further
     return _found(problem, theta, here)
 
@@ -295,33 +306,33 @@ def _taken(
     return None
 
 
-def _beyond(problem: Problem, theta: np.ndarray, to: np.ndarray, here: Evidence, worst: float) -> tuple[np.ndarray, Evidence]:
-    """A step that helped, or twice as far and so on while that is likelier, with runs that follow the errors of their pushes.
+def _beyond(
+    problem: Problem, theta: np.ndarray, to: np.ndarray, here: Evidence, worst: float
+) -> tuple[Problem, tuple[np.ndarray, Evidence]]:
+    """A step that helped, or twice as far and so on while that is likelier, with runs that follow the errors of their pushes;
+    and the problem with runs that have these.
 
     Slopes are about the errors that a run had before the step. Where casters may flip these hold it on its way, so that a step
     is much too short, however often it is taken. One is too long, and not followed, that slopes about these errors have for
     less likely than what the step came from, by the misfit `worst`.
     """
-    likelihood = problem.likelihood
 
-    def misfit(trial: np.ndarray, follows: int) -> float:
-        try:
-            there = likelihood.evidence(likelihood.campaign.fit, problem.values(trial), tune_start=follows)
-        except SimulationError:
-            return math.inf
-        return problem.misfit(there, trial)
+    def followed(along: Problem, trial: np.ndarray) -> tuple[float, Problem]:
+        """The misfit there once runs follow, and the problem in which they do."""
+        there = along.at(trial, 1)
+        return (along.misfit(there, trial), along.continued(there)) if there else (math.inf, along)
 
-    before = likelihood.begun
-    far, best, kept = to, misfit(to, 1), likelihood.begun
+    far, (best, kept) = to, followed(problem, to)
     for _ in range(FURTHER):
         trial = np.clip(theta + 2 * (far - theta), problem.lower, problem.upper)
-        found = misfit(trial, 1) if misfit(trial, 0) < worst else math.inf
-        if not found < best:
+        unfollowed = kept.at(trial, 0)
+        if not unfollowed or problem.misfit(unfollowed, trial) >= worst:
             break
-        far, best, kept = trial, found, likelihood.begun
-    better = best < problem.misfit(here, to)
-    likelihood.begun = kept if better else before
-    return (far, problem.linearised(far)) if better else (to, here)
+        found, there = followed(kept, trial)
+        if found >= best:
+            break
+        far, best, kept = trial, found, there
+    return (kept, (far, kept.linearised(far))) if best < problem.misfit(here, to) else (problem, (to, here))
 
 
 def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence] | None:

@@ -158,14 +158,14 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
     likelihood, chair = likelihood.led(moving(likelihood.campaign)), likelihood.chair(values)
     force, moment, body, tremor = USUAL
     found = Strength(force, moment, body, 0.0, tremor=tremor)
-    likelihood.noise_model = found.put_into(likelihood.noise_model)
+    likelihood = likelihood.with_noise_model(found.put_into(likelihood.noise_model))
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
         known = found if found.fall else None
         before, found = found, strength(evidence, chair["chair.t_r"], chair["chair.b"], known)
         if not found.fall or _alike(before, found):
             break
-        likelihood.noise_model = found.put_into(likelihood.noise_model)
+        likelihood = likelihood.continued(evidence).with_noise_model(found.put_into(likelihood.noise_model))
     return found, evidence
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,15 @@ from .local import Marginal, read
 from .noise_model import effort
 
 BLOCK = 2.0  # s of data that a bootstrap resamples together
+
+
+@dataclass(frozen=True)
+class Begin:
+    """Where the next model of a run begins: from this start, if one is known, and linearised about this path of forces (n, nd),
+    or about these errors of the pushes (n, nq)."""
+
+    start: Mapping[str, float] = field(default_factory=dict)
+    path: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -46,6 +55,7 @@ class RunEvidence:
     driven: np.ndarray | None = None  # (n, nz) readings simulated with them
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
     foretelling: np.ndarray | None = None  # (m,) of a run that was held out, −2 log of how likely each block of it was
+    begins: Begin = Begin()
 
     @cached_property
     def finite(self) -> np.ndarray:
@@ -78,7 +88,7 @@ class RunEvidence:
 
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
-        brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)))
+        brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)), begins=Begin())
         return brief if self.driven is None else replace(brief, predicted=self.foretold, path=None, added=0.0, driven=None)
 
     @cached_property

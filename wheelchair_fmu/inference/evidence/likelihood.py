@@ -22,7 +22,7 @@ from ...errors import SimulationError
 from ...model.variant import Variant
 from ...quantities import Parameter
 from ..parallel import parallel_map
-from .evidence import Evidence, RunEvidence, followed
+from .evidence import Begin, Evidence, RunEvidence, followed
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
 from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_of, pushes_of
@@ -65,8 +65,7 @@ class Likelihood:
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign).union(EXTERNAL))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.leads = leads
-        self.starts: dict[str, dict[str, float]] = {r.name: self._prior(r) for r in campaign.runs}
-        self.paths: dict[str, np.ndarray] = {}
+        self.begins: Mapping[str, Begin] = {r.name: Begin(self._prior(r)) for r in campaign.runs}
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -75,15 +74,6 @@ class Likelihood:
         self._recordings: dict[tuple[str, bool], tuple[Run, NoiseModel, Recording]] = {}
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
-
-    @property
-    def begun(self) -> tuple[dict[str, dict[str, float]], dict[str, np.ndarray]]:
-        """Where runs start, and the paths about which they are linearised, by run."""
-        return dict(self.starts), dict(self.paths)
-
-    @begun.setter
-    def begun(self, known: tuple[dict[str, dict[str, float]], dict[str, np.ndarray]]) -> None:
-        self.starts, self.paths = dict(known[0]), dict(known[1])
 
     def _uncertain(self, run: Run) -> dict[str, float]:
         return uncertain(run, self.start_names)
@@ -105,7 +95,8 @@ class Likelihood:
     ) -> Evidence:
         """Evidence of these runs at parameter `values` (SI), with sensitivities `by` some of them.
 
-        `tune_start`: how often at most to move the simulated start to where the readings want it.
+        `tune_start`: how often at most to move the simulated start to where the readings want it. Whoever wants to go on from
+        there asks what is `continued`.
         """
 
         def one(run: Run) -> RunEvidence:
@@ -203,24 +194,29 @@ class Likelihood:
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
-        before, names = self.starts[run.name], tuple(self._uncertain(run))
-        start = {**self._prior(run), **{n: v for n, v in before.items() if n in self.start_names or n not in CASTERS}}
-        path = self.paths.get(run.name) if self.noise_model.disturbed else None
+        begins, names = self.begins[run.name], tuple(self._uncertain(run))
+        known = {n: v for n, v in begins.start.items() if n in self.start_names or n not in CASTERS}
+        start = {**self._prior(run), **known}
         at = np.array([start.get(n, 0.0) for n in names])
+
+        def tuned(found: Evaluation) -> dict[str, float]:
+            return dict(zip(names, found.start.tolist(), strict=True))
+
         if self.leads:
+            path = begins.path if self.noise_model.disturbed else None
             found = self._evaluated(run, values, (), at, path, int(self.noise_model.disturbed))
             if rounds:
-                self.starts[run.name] = {**start, **dict(zip(names, found.start.tolist(), strict=True))}
-                self.paths[run.name] = found.path if self.noise_model.disturbed else np.zeros((len(run.time), FORCED))
+                path = found.path if self.noise_model.disturbed else np.zeros((len(run.time), FORCED))
+                begins = Begin({**start, **tuned(found)}, path)
             found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
             pushed = self._errors_of_pushes(run)
             found = self._evaluated(run, values, by, at, None, rounds, pushed, self.may_flip and rounds > 0)
             if found.pushed is not None and found.pushed is not pushed:
-                self.paths[run.name] = found.pushed
+                begins = replace(begins, path=found.pushed)
             if not np.array_equal(found.start, at):
-                self.starts[run.name] = dict(zip(names, found.start.tolist(), strict=True))
-        return self._told(run, values, by, found, {**start, **dict(zip(names, found.start.tolist(), strict=True))})
+                begins = replace(begins, start=tuned(found))
+        return replace(self._told(run, values, by, found, {**start, **tuned(found)}), begins=begins)
 
     @property
     def may_flip(self) -> bool:
@@ -231,7 +227,7 @@ class Likelihood:
 
     def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
         """As they were found, (n, nq), for a model whose casters may flip."""
-        found = self.paths.get(run.name)
+        found = self.begins[run.name].path
         return found if self.may_flip and found is not None and len(found) == len(run.time) else None
 
     def _evaluated(
@@ -418,27 +414,27 @@ class Likelihood:
                 out[:, :, j] = found.whitener.response(-by_hands)
 
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
-        """The same likelihood with other noise; starts found so far are kept."""
+        """The same likelihood with other noise; runs begin where they did."""
         other = object.__new__(Likelihood)
         other.__dict__ = {**self.__dict__, "noise_model": noise_model}
         return other
 
-    def started(
-        self, noise_model: NoiseModel, starts: Mapping[str, Mapping[str, float]], paths: Mapping[str, np.ndarray]
-    ) -> Likelihood:
-        """The same likelihood with other noise, and with runs started and led from there; where it moves them is its own."""
-        other = self.with_noise_model(noise_model)
-        other.starts = {**self.starts, **{run: dict(start) for run, start in starts.items()}}
-        other.paths = {**self.paths, **paths}
+    def begun(self, begins: Mapping[str, Begin]) -> Likelihood:
+        """The same likelihood with these runs, by name, beginning there."""
+        other = object.__new__(Likelihood)
+        other.__dict__ = {**self.__dict__, "begins": {**self.begins, **begins}}
         return other
+
+    def continued(self, *found: Evidence) -> Likelihood:
+        """The same likelihood with runs that begin where evidence has found that they do."""
+        return self.begun({e.run.name: e.begins for evidence in found for e in evidence.runs})
 
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""
-        other = self.with_noise_model(self.noise_model)
-        other.campaign, other.leads, other.paths = campaign, True, {}
-        other.starts = {r.name: other._prior(r) for r in campaign.runs}
-        return other
+        other = object.__new__(Likelihood)
+        other.__dict__ = {**self.__dict__, "campaign": campaign, "leads": True}
+        return other.begun({r.name: Begin(other._prior(r)) for r in campaign.runs})
 
 
 def constant(local: Local, channels: Sequence[str], inputs: Sequence[str], n: int) -> Constant:

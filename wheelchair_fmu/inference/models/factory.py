@@ -138,9 +138,8 @@ class ModelFactory:
         return self._likelihood(self._members(effects), setting, derives=False)
 
     def _likelihood(self, effects: set[str], setting: Setting | None, derives: bool = True) -> Likelihood:
-        """One of its own for whoever asks: what it finds of starts is nobody else's."""
         here = setting or self.setting
-        return self._compiled(frozenset(effects), derives).started(here.noise_model, here.starts, here.paths)
+        return self._compiled(frozenset(effects), derives).with_noise_model(here.noise_model).begun(here.begins)
 
     @cached_property
     def _compiled(self) -> Callable[[frozenset[str], bool], Likelihood]:

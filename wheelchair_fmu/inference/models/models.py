@@ -131,7 +131,7 @@ class Models:
     def _unstarted(self, likelihood: Likelihood) -> bool:
         """Have the models of a likelihood casters that swing, and had none yet in this setting? Nobody asked then how these
         stand where runs start, and from elsewhere a chair may go another way altogether."""
-        asked = (name for start in self.setting.starts.values() for name in start)
+        asked = (name for begin in self.setting.begins.values() for name in begin.start)
         return not self.factory.leads and not set(CASTERS).intersection(likelihood.start_names) <= set(asked)
 
     def model(self, effects: Sequence[str], start: Mapping[str, float], without: frozenset[str] = frozenset()) -> Model:
@@ -144,7 +144,7 @@ class Models:
     def afresh(self) -> Models:
         """The same models with runs that start where the campaign has them, and no errors of pushes known, as if no model had
         been fitted yet: what a model found of either that lacks something large leads another one astray."""
-        return replace(self, setting=replace(self.setting, starts={}, paths={}))
+        return replace(self, setting=replace(self.setting, begins={}))
 
     def rival_of(self, effect: str, base: Model) -> Model:
         """The model that an effect is judged against: the one at hand, but never with a nuisance that does the same."""
@@ -181,29 +181,31 @@ class Models:
         """The calibrated model, with the models whose runs start where it wants them; and evidence of fitted and of held-out
         runs for the nominal one, of values as they are given."""
         likelihood, names = self.likelihood(), self.names(())
-        start = {n: self.setting.begun.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
+        start = {n: self.setting.values.get(n, start_value(likelihood, likelihood.records[n])) for n in names}
         nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=1)
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=1)
-        swinging = BEARING in names and not self.factory.leads
-        likelihood, found = self._loosely(names) if swinging else (likelihood, self._from(likelihood, names, start, nominal))
+        if BEARING in names and not self.factory.leads:
+            found = self._loosely(names)
+        else:
+            likelihood = likelihood.continued(nominal, nominal_held)
+            found = self._from(likelihood, names, start, nominal)
         held = self.heldout(likelihood, found)
-        setting = self.setting.started_as(likelihood)
+        setting = self.setting.continued(found.evidence, held)
         if self.factory.leads:
-            setting = replace(setting, begun=dict(found.values))
+            setting = replace(setting, values=dict(found.values))
         return replace(self, setting=setting), Model((), found, held), nominal, nominal_held
 
-    def _loosely(self, names: Sequence[str]) -> tuple[Likelihood, Fit]:
-        """The likeliest fit from where nothing is held, and its likelihood, with runs that start where it wants them."""
-        ends: list[tuple[Likelihood, Fit]] = []
+    def _loosely(self, names: Sequence[str]) -> Fit:
+        """The likeliest fit from where nothing is held."""
+        likelihood, ends = self.likelihood(), list[Fit]()
         for loose in LOOSE:
-            likelihood = self.likelihood()
             there = self._loosened(likelihood, names, loose)
             here = likelihood.evidence(self.campaign.fit, there, names, tune_start=1)
-            rival = min((found.misfit for _, found in ends), default=math.inf)
-            ends.append((likelihood, self._from(likelihood, names, there, here, rival)))
-            if ends[-1][1].evidence.rms < self.policy.a_little:
+            rival = min((found.misfit for found in ends), default=math.inf)
+            ends.append(self._from(likelihood.continued(here), names, there, here, rival))
+            if ends[-1].evidence.rms < self.policy.a_little:
                 break
-        return min(ends, key=lambda end: end[1].misfit)
+        return min(ends, key=lambda found: found.misfit)
 
     def _loosened(self, likelihood: Likelihood, names: Sequence[str], by: Mapping[str, float]) -> dict[str, float]:
         """What is usual, or given, with some values so many standard deviations of their priors from that, within bounds."""
@@ -217,7 +219,8 @@ class Models:
     ) -> Fit:
         """A fit from `start`, with the evidence `here`, and again from where its runs start by it; neither is followed to its
         end that falls too slowly to come up with a `rival`'s misfit."""
-        return self.restarted(likelihood, names, fit(likelihood, names, start, here, rival).values, 1, rival=rival)
+        first = fit(likelihood, names, start, here, rival)
+        return self.restarted(likelihood.continued(first.evidence), names, first.values, 1, rival=rival)
 
     def with_given(self, effects: Sequence[str], base: Fit) -> tuple[Models, Model]:
         """The model with these effects, which the variant has already, estimated anew."""
@@ -229,7 +232,7 @@ class Models:
         likelihood = self.likelihood(effects)
         again = self.restarted(likelihood, self.names(effects), found.values)
         held = self.heldout(likelihood, again, tune_start=TUNING)
-        return replace(self, setting=self.setting.started_as(likelihood)), Model(tuple(effects), again, held)
+        return replace(self, setting=self.setting.continued(again.evidence, held)), Model(tuple(effects), again, held)
 
     def restarted(
         self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], tune_start: int = TUNING, **how: Any
@@ -237,13 +240,13 @@ class Models:
         """A fit from `start`, with every run started where the readings want it there, in so many steps; one that forces lead
         also where they want it in the end, as these forces were others before."""
 
-        def started(values: Mapping[str, float]) -> Evidence:
-            return likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start)
+        def started(likelihood: Likelihood, values: Mapping[str, float], **how: Any) -> Fit:
+            here = likelihood.evidence(self.campaign.fit, values, names, tune_start=tune_start)
+            return fit(likelihood.continued(here), names, values, here, **how)
 
         problem = Problem(likelihood, names)
-        values = problem.values(problem.inside(start))
-        found = fit(likelihood, names, values, started(values), **how)
-        return fit(likelihood, names, found.values, started(found.values), most=0) if self.factory.leads else found
+        found = started(likelihood, problem.values(problem.inside(start)), **how)
+        return started(likelihood.continued(found.evidence), found.values, most=0) if self.factory.leads else found
 
     def with_noise_of(self, found: Fit, *, again: bool = False) -> Models | None:
         """The models with the noise that this fit's residuals show; None where it is no other than before. `again`: now that an
