@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ from wheelchair_fmu.campaign import read
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.inference.decision.bootstrap import bootstrap
-from wheelchair_fmu.inference.decision.verdict import Diagnosis, _structured, diagnose, insufficient, share_seen
+from wheelchair_fmu.inference.decision.decide import decide
+from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
 from wheelchair_fmu.inference.estimation.interval import half_width
 from wheelchair_fmu.inference.estimation.statistics import correlation_time, sandwich
 from wheelchair_fmu.inference.explain.ranking import as_json
@@ -22,7 +24,6 @@ from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.policy import DEFAULT
-from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import screen as screening
 from wheelchair_fmu.inference.search.beginning import begin
 from wheelchair_fmu.inference.search.rounds import Round
@@ -93,32 +94,12 @@ def test_lasting_structure_is_no_noise(sampled):
     """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
     before = ModelFactory(sampled.models.campaign, Variant()).likelihood()
     calibrated = before.evidence(sampled.models.campaign.fit, sampled.rounds[0].fit.values)
-    final = sampled.final.evidence
-    assert _structured(calibrated, DEFAULT) and correlation_time(calibrated) > DEFAULT.lasting
-    assert not _structured(final, DEFAULT) and correlation_time(final) < DEFAULT.lasting
-
-
-@pytest.mark.parametrize(
-    ("calibrated", "top", "expected"),
-    [
-        ((1.281, 1.219), (1.238, 1.184), True),  # a delay of the record, called caster inertia where the catalogue lacks it
-        ((1.1, 1.127), (1.082, 1.112), True),  # slip of the driven wheels, called a gyro's scale
-        (
-            (1.565, 1.565),
-            (1.064, 1.116),
-            False,
-        ),  # a trail that was hidden: another simulator's casters swing a little otherwise
-        ((1.08, 1.05), (1.05, 1.04), False),  # little was left to begin with
-        ((1.05, 1.09), (1.051, 1.088), True),  # an accelerometer off the middle, called load transfer: nothing fell
-        ((1.857, 2.252), (1.132, 1.391), True),  # drag beyond a speed, called drag by its square: held-out runs know better
-        ((1.02, 1.02), (1.019, 1.019), False),  # about all that was left is noise
-        ((9.0, 8.0), (1.4, 1.35), True),
-        ((9.0, float("nan")), (1.2, float("nan")), False),  # nothing held out
-    ],
-)
-def test_effects_that_leave_much_of_what_they_were_to_explain_do_not_suffice(calibrated, top, expected):
-    ladder = [Step("nominal", 10.0, 10.0), Step("calibrated", *calibrated), Step("+effect", *top)]
-    assert insufficient(ladder) == expected
+    nothing = replace(sampled.facts, effects=(), powers={"gyro_bias": 0.9}, causes={"gyro_bias": "sensors"})
+    nothing = replace(nothing, first=replace(sampled.rounds[0], candidates=(), groups=()))
+    assert sampled.facts.lasts < DEFAULT.lasting and decide(nothing) == "adequate"
+    lasting = replace(nothing, lasts=correlation_time(calibrated), rms=calibrated.rms)
+    assert lasting.lasts > DEFAULT.lasting and decide(lasting) == "outside"
+    assert decide(replace(lasting, lasts=1.0)) == "adequate", "what does not last is noise that was not stated"
 
 
 def test_an_effect_is_judged_from_its_own_starts(tmp_path):
@@ -325,13 +306,3 @@ def test_a_tie_beside_other_effects_is_broken_with_these_in(tmp_path):
     for size in sizes.values():
         low, high = size["interval"]
         assert low < size["estimate"] < high and high - low > 2 * 1.96 * size["se"]
-
-
-def test_another_form_of_a_cause_makes_no_catalogue_larger():
-    """Of four causes two are seen, and one in one of its four forms."""
-    forms = ("scrub_torque", "scrub_torque_viscous", "turn_slip", "pivot_torque")
-    seen = {"gyro_bias": True, "toe_misalignment": True, "wheel_inertia": False} | {
-        form: form == "scrub_torque" for form in forms
-    }
-    assert share_seen(seen, bundled()) == pytest.approx((1 + 1 + 0 + 1 / 4) / 4)
-    assert share_seen({}, bundled()) == 0

@@ -9,7 +9,7 @@ import pytest
 from scipy import special
 
 from tests.inference.linear import evidence
-from wheelchair_fmu.inference.decision.verdict import _instead_of_small, _slight
+from wheelchair_fmu.inference.decision import decide
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
@@ -158,7 +158,7 @@ def test_an_effect_is_found_from_where_it_is_likelier_large_than_slight(size, fo
     assert (r.winner is not None) == found
     assert (r.winner is not None) == (r.beliefs["a"].there > 0.5)
     assert r.slight == [known], "however small, it is surely there"
-    assert found or (_slight(r) == ("a",) and _instead_of_small(r) == ()), "one or the other, and never neither"
+    assert found or (decide.slight(r) == ("a",) and decide.instead_of_small(r) == ()), "one or the other, and never neither"
     assert replace(r, odds=1e-4).winner is None or size == 4.0
 
 
@@ -178,9 +178,9 @@ def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     r = Round((), NONE, Evidence((), ()), (None,) * 30, tuple(ranked([slight, large])))
     assert r.winner is None and r.slight[0].effect == "a"
     assert replace(r, candidates=(large,)).winner.effect == "b"
-    assert _instead_of_small(r) == ()
+    assert decide.instead_of_small(r) == ()
     near = replace(large, drop=98.0)
-    (said,) = _instead_of_small(replace(r, candidates=tuple(ranked([slight, near]))))
+    (said,) = decide.instead_of_small(replace(r, candidates=tuple(ranked([slight, near]))))
     assert said.words.startswith("b would do as well, and would not be small: 3.0 times what is of interest; the odds are ")
 
 

@@ -14,7 +14,8 @@ from ..api import diagnoses
 from ..api.diagnosing import searched
 from ..campaign import windows
 from ..inference.decision.bootstrap import Bootstrap, bootstrap
-from ..inference.decision.verdict import Diagnosis, insufficient
+from ..inference.decision.decide import insufficient
+from ..inference.decision.verdict import Diagnosis
 from ..model.effects import bundled
 from ..model.generic import terms, told_at
 from ..report.saving import save

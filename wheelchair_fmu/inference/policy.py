@@ -1,7 +1,7 @@
 """What the search for missing effects is free to choose: every number by which it decides, with its reason.
 
-All else follows from likelihoods. `python -m benchmarks.policy` decides the rounds of searches again with those numbers that
-rounds are decided by at both ends of their ranges, and counts the answers that change.
+All else follows from likelihoods. `python -m benchmarks.policy` decides searches again with each number at both ends of its
+range, and counts the rounds, ties, terms and verdicts that change.
 """
 
 from __future__ import annotations

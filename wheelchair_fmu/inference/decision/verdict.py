@@ -23,7 +23,6 @@ from ..estimation.score import Score
 from ..estimation.statistics import correlation_time
 from ..estimation.unnamed import allowance
 from ..evidence.disturbance import Strength
-from ..evidence.evidence import Evidence
 from ..evidence.likelihood import MASS
 from ..evidence.limits import beyond
 from ..models.factory import CALIBRATED, MEASURED, ModelFactory
@@ -45,6 +44,7 @@ from ..search.selection import Selection, selection
 from ..search.ties import grouped, probable, tied
 from .ahead import Ahead, ahead, run_to_fit, which_to_fit
 from .among_forces import led, left, needed, staircase
+from .decide import Facts, Larger, decide, instead_of_small, slight
 from .experiment import Experiment, reveal, separate
 from .foretold import raised, worsened
 from .leftover import leftover, prepare, settled
@@ -87,6 +87,7 @@ class Diagnosis:
     unexplained: Unexplained | None = None
     seen: float | None = None  # share of the catalogue's causes that would have been seen, where nothing was
     ahead: Ahead = Ahead()
+    facts: Facts | None = None  # that the verdict follows from
 
     @property
     def top(self) -> Fit:
@@ -112,7 +113,7 @@ class Diagnosis:
     @property
     def larger(self) -> tuple[Larger, ...]:
         """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
-        return _instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
+        return instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
 
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
@@ -252,7 +253,23 @@ def _concluded(
     strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
     likely = {} if effects else _likely(models.factory, decided, rounds[-1])
-    verdict, seen = _verdict(models, effects, ties, rounds, proposal, ladder, (base.evidence, held), strained, likely)
+    facts = Facts(
+        effects=effects,
+        ties=ties,
+        first=rounds[0],
+        ladder=ladder,
+        proposed=proposal is not None,
+        # Where forces lead the runs, what lasts is theirs: whether anything is behind it is asked of them (see `Unexplained`).
+        lasts=0.0 if models.factory.leads else correlation_time(base.evidence),
+        rms=base.evidence.rms,
+        worst=max((rms for row in base.evidence.table().values() for rms in row.values()), default=0.0),
+        ahead=held,
+        strained=tuple(strained),
+        likely=likely,
+        powers={} if effects or proposal is not None else _powers(models, rounds[0]),
+        causes={e: record.cause for e, record in models.factory.catalogue.items()},
+    )
+    verdict = decide(facts, models.policy)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *search.heard)
@@ -279,8 +296,9 @@ def _concluded(
         heard=heard,
         notes=(*_notes(found, heard, verdict, proposal, values, likely), *which_to_fit(ladder, held, models.policy)),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
-        seen=seen,
+        seen=facts.seen(models.policy) if verdict in ("adequate", "cannot_see") else None,
         ahead=held,
+        facts=facts,
     )
 
 
@@ -288,7 +306,7 @@ def _named(verdict: str, effects: Sequence[str], ties: Sequence[Sequence[str]], 
     """The effects that a verdict is on."""
     if verdict in ("missing", "tie", "outside"):
         return tuple(dict.fromkeys(chain.from_iterable(grouped(effects, ties))))
-    return _slight(first) if verdict == "small" else ()
+    return slight(first) if verdict == "small" else ()
 
 
 def _begun(models: Models, generic: Mapping[str, Effect], stepped: Callable[[Sequence[Step]], None]) -> _Search:
@@ -335,7 +353,7 @@ def _notes(
     odd = unlike_the_others(top.fit.evidence, top.heldout)
     doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
-    large = tuple(other.words for other in _instead_of_small(rounds[0])) if verdict == "small" else ()
+    large = tuple(other.words for other in instead_of_small(rounds[0])) if verdict == "small" else ()
     unsure = tuple(_unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
     return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large, *unsure)
 
@@ -443,97 +461,10 @@ def _of_another_chair(found: Selection, strained: Sequence[str]) -> Sequence[str
     return strained if held.misfit - fit.misfit > allowed else ()
 
 
-def _verdict(
-    models: Models,
-    effects: Sequence[str],
-    ties: Sequence[Sequence[str]],
-    rounds: Sequence[Round],
-    proposal: Candidate | None,
-    ladder: Sequence[Step],
-    left: tuple[Evidence, Ahead],
-    strained: Sequence[str],
-    likely: Mapping[str, float],
-) -> tuple[str, float | None]:
-    """The verdict, and the share of causes that would have been seen, where it rests on that. No model is adequate that is
-    `likely` to lack something."""
-    if proposal is not None or ladder[-1].left > models.policy.unexplained or strained:
-        return "outside", None
-    # Where forces lead the runs, what lasts is theirs: whether anything is behind that is asked of them (see `Unexplained`).
-    fitted, held = left
-    lasting = not models.factory.leads and correlation_time(fitted) > models.policy.lasting
-    if effects and ((lasting and insufficient(ladder, models.policy)) or held.unexplained(models.policy)):
-        return "outside", None
-    if effects:
-        return ("tie" if ties else "missing"), None
-    if (lasting and _structured(fitted, models.policy)) or held.unexplained(models.policy):
-        return "outside", None
-    if _slight(rounds[0]):
-        return "small", None
-    seen = share_seen(_seen(models, rounds[0]), models.factory.catalogue)
-    return ("adequate" if seen >= models.policy.library and not likely else "cannot_see"), seen
-
-
-def share_seen(seen: Mapping[str, bool], catalogue: Mapping[str, Effect]) -> float:
-    """Share of the causes that would have been seen; of one that has several forms, as large a part as of these."""
-    causes: dict[str, list[bool]] = {}
-    for effect, would in seen.items():
-        causes.setdefault(catalogue[effect].cause, []).append(would)
-    return float(np.mean([float(np.mean(forms)) for forms in causes.values()] or [0.0]))
-
-
-def _seen(models: Models, first: Round) -> dict[str, bool]:
-    """Which effects would have been seen if they were there, but for what mass and geometry could be instead within what is
-    known of them: in that case the model predicts as well without."""
+def _powers(models: Models, first: Round) -> dict[str, float]:
+    """With which power each effect would have been seen if it were there, but for what mass and geometry could be instead
+    within what is known of them: in that case the model predicts as well without."""
     weak = [s.effect for s in first.scores if s.power < models.policy.power]
     exact = replace(first.fit, names=tuple(n for n in first.fit.names if n not in MEASURED))
     again = screen(models, replace(first.model, fit=exact), weak) if weak else []
-    powers = {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}
-    return {effect: power >= models.policy.power for effect, power in powers.items()}
-
-
-def insufficient(ladder: Sequence[Step], policy: SearchPolicy = DEFAULT) -> bool:
-    """Does the model at the top of a staircase leave much, or, on fitted or on held-out runs, more than a little and too large
-    a share of what calibration left above the noise?"""
-    top, calibrated = ladder[-1], ladder[1]
-    sides = ((top.fit, calibrated.fit), (top.heldout, calibrated.heldout))
-    return top.left > policy.unexplained or any(policy.is_rest(after, before) for after, before in sides)
-
-
-def _structured(left: Evidence, policy: SearchPolicy) -> bool:
-    """Is there more left than noise accounts for, over all or in one channel of one run?"""
-    worst = max((rms for row in left.table().values() for rms in row.values()), default=0.0)
-    return policy.is_structured(left.rms, worst)
-
-
-def _slight(first: Round) -> tuple[str, ...]:
-    """Effects that are surely there and slight, and foretell what was held out better than by chance: the likeliest, and those
-    that data cannot tell from it."""
-    small = [c for c in first.slight if first.likelier_slight(c) and (c.gain is None or c.gain[1] > 0)]
-    return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
-
-
-class Larger(NamedTuple):
-    """An effect that would be large, `times` the size of interest, with the odds that are `against` it."""
-
-    effect: str
-    times: float
-    against: float
-
-    @property
-    def words(self) -> str:
-        return (
-            f"{self.effect} would do as well, and would not be small: {self.times:.1f} times what is of interest; the odds are "
-            f"{self.against:.0f} to 1 against it"
-        )
-
-
-def _instead_of_small(first: Round) -> tuple[Larger, ...]:
-    """Effects that would be large, and that data cannot tell from those that are slight."""
-    likeliest, small = max((c.support.slight for c in first.slight), default=0.0), _slight(first)
-    others = (c for c in first.candidates if c.matters and not c.worsens and c.effect not in small)
-    behind = ((c, likeliest - first.log_prior - c.support.large) for c in others)
-    return tuple(
-        Larger(c.effect, float(np.linalg.norm(c.size / c.delta)), float(np.exp(log_odds)))
-        for c, log_odds in behind
-        if 2 * log_odds < first.policy.tied
-    )
+    return {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}
