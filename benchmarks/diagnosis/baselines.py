@@ -44,7 +44,7 @@ def _refit(models: Models, base) -> str | None:
             found = fit(models.likelihood([effect]), models.names([effect]), start)
         except SimulationError:
             continue
-        change = found.misfit - base.misfit + len(own) * np.log(len(found.evidence.r))
+        change = found.deviance - base.deviance + len(own) * np.log(len(found.evidence.r))
         if change < lowest:
             best, lowest = effect, change
     return best

@@ -56,7 +56,7 @@ def test_its_fmu_comes_near_the_noise_with_the_values_that_were_found(problem, r
     inputs = pd.read_csv(problem / "inputs" / f"{run}.csv", index_col=0)
     pushes = {name.partition(" [")[0]: inputs[name].to_numpy() for name in inputs}
 
-    def misfit(values: dict[str, float]) -> float:
+    def deviance(values: dict[str, float]) -> float:
         given = {names[n]: v for n, v in values.items() if n in names}
         for r in rows(problem / "conditions.tsv"):
             if r["conditionId"] == run:
@@ -72,7 +72,7 @@ def test_its_fmu_comes_near_the_noise_with_the_values_that_were_found(problem, r
             squares.append(((here.measurement - predicted) / float(o["noiseFormula"])) ** 2)
         return float(np.sqrt(np.concatenate(squares).mean()))
 
-    assert misfit({**nominal, **FOUND}) < 2.0 < misfit(nominal) / 3
+    assert deviance({**nominal, **FOUND}) < 2.0 < deviance(nominal) / 3
 
 
 def test_a_sensor_s_open_offset_is_a_parameter_of_what_it_reads(tmp_path, monkeypatch):

@@ -89,7 +89,7 @@ def test_forces_that_nobody_recorded_are_part_of_the_covariance():
         assert white @ white == pytest.approx(signal.ravel() @ np.linalg.solve(V, signal.ravel()), rel=1e-8)
         assert filter_.logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
         assert filter_.response(np.ones((n, nq))).shape == (n, nz)
-        assert plain.misfit(unknown, signal[:, :, 0], mean) == pytest.approx(white @ white + filter_.logdet, rel=1e-12)
+        assert plain.deviance(unknown, signal[:, :, 0], mean) == pytest.approx(white @ white + filter_.logdet, rel=1e-12)
     assert plain.disturbed(replace(unknown, sd=np.zeros(2))).logdet == pytest.approx(plain.logdet, rel=1e-12)
 
 

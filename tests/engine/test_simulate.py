@@ -121,12 +121,12 @@ def test_a_wheel_that_turns_back_takes_few_steps():
     np.testing.assert_allclose(fine.states[::100], few.states, atol=1e-9)
     np.testing.assert_allclose(fine.states[:, :6], truth.states[:, :6], atol=1e-6)
     places = {state.name: -1 - i for i, state in enumerate(reversed(variant.model().states))}
-    foreseen = fine.states[:, places["foreseen.a_y"]]
-    np.testing.assert_allclose(foreseen[1:], fine["sensor.a_y"][1:], atol=1e-7)
+    algebraic = fine.states[:, places["algebraic.a_y"]]
+    np.testing.assert_allclose(algebraic[1:], fine["sensor.a_y"][1:], atol=1e-7)
 
 
 def test_algebraic_states_stay_in_place():
-    """With σ = 0 the lagged slip is the slip; with load transfer the foreseen a_y is a_y."""
+    """With σ = 0 the lagged slip is the slip; with load transfer the algebraic a_y is a_y."""
     variant = Variant().with_effects(bundled())
     simulator = Simulator(variant)
     t = np.linspace(0, 5, 501)
@@ -134,8 +134,8 @@ def test_algebraic_states_stay_in_place():
     run = simulator.run(t, w, variant.with_values({"effect.lateral_load_transfer.h": 0.5}).vector())
     np.testing.assert_allclose(run["effect.relaxation_length.lagged_slip.rl"], run["slip.rl"], atol=1e-6)
     places = {state.name: -1 - i for i, state in enumerate(reversed(simulator.model.states))}
-    foreseen = run.states[:, places["foreseen.a_y"]]
-    np.testing.assert_allclose(foreseen[1:], run["sensor.a_y"][1:], atol=1e-4)
+    algebraic = run.states[:, places["algebraic.a_y"]]
+    np.testing.assert_allclose(algebraic[1:], run["sensor.a_y"][1:], atol=1e-4)
 
 
 def test_all_effects_off_is_the_plain_chair():

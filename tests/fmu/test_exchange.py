@@ -76,7 +76,7 @@ def test_another_integrator_gets_it_too_with_pushes_that_vary(archive, request):
 
 
 def test_the_states_are_those_of_the_build(native, everything, lagged):
-    """What is algebraic in a build is no state: slip without relaxation, ideal casters, foreseen accelerations."""
+    """What is algebraic in a build is no state: slip without relaxation, ideal casters, algebraic accelerations."""
     assert [v.derivative.name for v in native.description.modelVariables if v.derivative] == STATES
     more = [v.derivative.name for v in everything.description.modelVariables if v.derivative][len(STATES) :]
     assert more and not [n for n in more if "relaxation_length" in n]  # σ = 0 in this build

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from wheelchair_fmu.campaign import Run
 from wheelchair_fmu.inference.estimation.fit import Fit
-from wheelchair_fmu.inference.evidence.evidence import Evidence, RunEvidence, Weighed
+from wheelchair_fmu.inference.evidence.evidence import Evidence, FilterSummary, RunEvidence
 
 STEP = 0.01  # s
 CHANNELS = ("yaw_rate", "a_y", "a_x")
@@ -50,7 +50,7 @@ def evidence(residuals: Sequence[np.ndarray], slopes: Sequence[np.ndarray], by: 
             dict(zip(channels, r.T, strict=True)),
         )
         none = np.zeros((*r.shape, 0))
-        whitener = Weighed(0.0, np.ones(r.shape))
+        whitener = FilterSummary(0.0, np.ones(r.shape))
         runs.append(RunEvidence(run, channels, r, S, none, {}, np.zeros((len(r), 0)), 0 * r, r, whitener, np.zeros(0)))
     return Evidence(tuple(runs), tuple(by))
 
@@ -78,8 +78,8 @@ def least_squares(
     found = evidence(left, slopes, by, step)
     whole = np.concatenate([s.reshape(-1, k) for s in slopes])
     covariance = np.linalg.pinv(whole.T @ whole + prior**2, hermitian=True)
-    misfit = found.misfit + float(np.sum((prior @ theta) ** 2))
-    return Fit(tuple(by), dict(zip(by, map(float, theta), strict=True)), covariance, found, misfit, prior)
+    deviance = found.deviance + float(np.sum((prior @ theta) ** 2))
+    return Fit(tuple(by), dict(zip(by, map(float, theta), strict=True)), covariance, found, deviance, prior)
 
 
 def values(found: Fit) -> np.ndarray:

@@ -104,7 +104,7 @@ def test_the_fall_of_an_effect_is_less_by_what_is_paid_for_its_constants(swingin
     paid = _paid(found.fit, names, usual(models, found, names).moved(found.fit.covariance))
     judged = judge(models, base, found, "trunk_motion", names, 1)
     assert paid > 2
-    assert judged.drop * judged.dispersion == pytest.approx(base.fit.misfit - found.fit.misfit - paid)
+    assert judged.likelihood_ratio * judged.dispersion == pytest.approx(base.fit.deviance - found.fit.deviance - paid)
 
 
 TORQUE, LENGTH = "effect.turn_slip.M", "effect.turn_slip.L"

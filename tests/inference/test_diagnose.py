@@ -118,7 +118,7 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
     in, it does less. Mass and geometry are known exactly here: else a gain is a mass that was weighed wrongly."""
     hidden = {"wheel_inertia": {"m": 3.0}, "lateral_load_transfer": {"h": 1.2}}
     found = diagnose(read(make(tmp_path / "campaign", hidden, seed=2, noise_scale=0.4)), fixed=MEASURED)
-    drops = {c.effect: c.drop for c in found.rounds[0].candidates}
+    drops = {c.effect: c.likelihood_ratio for c in found.rounds[0].candidates}
     assert drops["push_force_gain"] > 1.2 * drops["wheel_inertia"]
     assert found.effects == ("lateral_load_transfer", "wheel_inertia") and found.verdict == "missing"
     assert found.final.values["effect.wheel_inertia.m"] == pytest.approx(3.0, abs=0.3)

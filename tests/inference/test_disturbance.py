@@ -164,7 +164,7 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     first = likelihood.evidence(campaign.fit, {}, ())
     elsewhere = {r.name: Begin(path=3.0 * rng.standard_normal(FORCED) * np.ones((len(r.time), FORCED))) for r in campaign.fit}
     again = likelihood.begun(elsewhere).evidence(campaign.fit, {}, ())
-    assert again.misfit == pytest.approx(first.misfit, abs=5.0)
+    assert again.deviance == pytest.approx(first.deviance, abs=5.0)
     for e, other in zip(first.runs, again.runs, strict=True):
         np.testing.assert_allclose(e.path, other.path, atol=0.2 * max(noise.force, noise.moment))  # steps end at 0.03
     assert float(np.mean(first.r**2)) == pytest.approx(1, abs=0.03)

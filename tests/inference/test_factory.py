@@ -88,7 +88,7 @@ def test_no_model_is_compiled_with_derivatives_for_an_effect_that_promises_too_l
 
     monkeypatch.setattr(cache, "library", watched)
     refit = partial(candidate, begun.models, begun.calibrated, scored, 40)
-    assert refit(least=2 * BEYOND * scored.score.drop) is None and not asked
+    assert refit(least=2 * BEYOND * scored.score.likelihood_ratio) is None and not asked
     assert refit() is not None and asked
 
 

@@ -40,7 +40,7 @@ def test_the_whole_gradient_is_the_slope_of_the_misfit(likelihood):
     slopes = []
     for step in np.diag(0.1 * errors):
         there = [
-            problem.misfit(likelihood.evidence(likelihood.campaign.fit, problem.values(t)), t)
+            problem.deviance(likelihood.evidence(likelihood.campaign.fit, problem.values(t)), t)
             for t in (theta + step, theta - step)
         ]
         slopes.append((there[0] - there[1]) / (2 * step.sum()))
@@ -57,4 +57,4 @@ def test_a_fit_goes_on_where_slopes_of_the_residuals_lead_nowhere(likelihood, mo
     monkeypatch.setattr(fitting, "_by_likelihood", lambda problem, theta, here: None)
     partial = fit(likelihood, NAMES, FAR)
 
-    assert whole.misfit < partial.misfit - 20
+    assert whole.deviance < partial.deviance - 20

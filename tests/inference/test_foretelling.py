@@ -15,7 +15,7 @@ from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.estimation.foretelling import foretold_by
 from wheelchair_fmu.inference.estimation.statistics import difference_blocks, held_out_gain
-from wheelchair_fmu.inference.evidence.evidence import Evidence, Weighed
+from wheelchair_fmu.inference.evidence.evidence import Evidence, FilterSummary
 
 NAMES = ("a", "b", "c")
 LONG = 500  # samples of a run: two blocks and a half
@@ -59,7 +59,7 @@ def test_the_blocks_of_all_runs_add_up_to_a_normal_density(gaps, precision):
 def test_what_a_filter_expects_less_noise_by_is_shared_by_its_blocks():
     found, held = drawn(2)
     narrower = Evidence(
-        tuple(replace(e, whitener=Weighed(e.whitener.logdet - 30.0, e.whitener.spread)) for e in held.runs), NAMES
+        tuple(replace(e, whitener=FilterSummary(e.whitener.logdet - 30.0, e.whitener.spread)) for e in held.runs), NAMES
     )
     none = np.zeros(3)
     assert difference_blocks(foretold_by(found, held, none), foretold_by(found, narrower, none)) == pytest.approx(

@@ -114,7 +114,7 @@ def test_a_group_has_the_parameters_of_its_members(begun):
 @pytest.mark.nightly
 def test_a_group_promises_what_no_member_does(begun, first):
     alone, joined = screen_groups(begun.models, first.model)
-    promised = {s.score.effect: s.score.drop for s in (*alone, *joined)}
+    promised = {s.score.effect: s.score.likelihood_ratio for s in (*alone, *joined)}
     assert [s.score.effect for s in joined] == [TOGETHER]
     assert promised["rubs"] < 1e-6 and promised[TOGETHER] > 5 * promised["lean"]
     again, none = screen_groups(begun.models, replace(first.model, effects=("lean",)))

@@ -15,12 +15,12 @@ SE = 0.1
 
 @pytest.fixture
 def interval_of(monkeypatch):
-    """The interval of a parameter, 1.0 by a fit with standard error SE, where the misfit is so much higher at a distance."""
+    """The interval of a parameter, 1.0 by a fit with standard error SE, where the deviance is so much higher at a distance."""
     monkeypatch.setattr(interval, "half_width", lambda found, at: interval.NORMAL * SE)
 
     def call(higher, lower=-10.0, upper=10.0):
         monkeypatch.setattr(interval, "_profile", lambda likelihood, found, at: lambda value: higher(value - 1.0))
-        found = Some(names=("k",), values={"k": 1.0}, covariance=np.array([[SE**2]]), misfit=0.0)
+        found = Some(names=("k",), values={"k": 1.0}, covariance=np.array([[SE**2]]), deviance=0.0)
         return profile_interval(Some(records={"k": Some(lower=lower, upper=upper)}), found, "k")
 
     return call

@@ -167,7 +167,7 @@ def test_an_effect_is_never_tested_beside_the_offset_that_it_is(biased):
     assert models.doubles == {"gyro_bias": {"offset.yaw_rate"}} and "offset.yaw_rate" in base.fit.names
     screened = screen(models, base, ["gyro_bias", "gyro_scale"])
     by = {s.score.effect: s for s in screened}
-    assert by["gyro_bias"].score.drop > 100 > by["gyro_scale"].score.drop
+    assert by["gyro_bias"].score.likelihood_ratio > 100 > by["gyro_scale"].score.likelihood_ratio
     found = candidate(models, base, by["gyro_bias"], 2)
     assert found is not None and "offset.yaw_rate" not in found.fit.names
     assert found.estimate[0] == pytest.approx(BIAS, abs=0.004)

@@ -1,4 +1,4 @@
-"""Which effect takes the place of one that was found, by rounds and misfits as they might be."""
+"""Which effect takes the place of one that was found, by rounds and deviances as they might be."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from wheelchair_fmu.inference.search.rounds import Belief
 from wheelchair_fmu.inference.search.selection import Selection
 from wheelchair_fmu.inference.search.ties import beside, overtaker, probable, tied
 
-WITHOUT = 1000.0  # misfit of a model that lacks an effect; with it, 0
+WITHOUT = 1000.0  # deviance of a model that lacks an effect; with it, 0
 
 
-def fit(misfit):
-    return Fit((), {}, np.zeros((0, 0)), Evidence((), ()), misfit, np.zeros(0))
+def fit(deviance):
+    return Fit((), {}, np.zeros((0, 0)), Evidence((), ()), deviance, np.zeros(0))
 
 
 def readings(apart):
@@ -31,10 +31,12 @@ def readings(apart):
     return Evidence((Some(r=np.array([[np.sqrt(apart)]]), run=Some(time=np.arange(2.0))),), ())
 
 
-def one(effect, misfit, held=None):
-    support = Some(fitted=-misfit / 2, large=-misfit / 2)
+def one(effect, deviance, held=None):
+    support = Some(fitted=-deviance / 2, large=-deviance / 2)
     heldout = None if held is None else readings(held)
-    return Some(effect=effect, fit=fit(misfit), drop=WITHOUT - misfit, heldout=heldout, support=support, scale=1.0)
+    return Some(
+        effect=effect, fit=fit(deviance), likelihood_ratio=WITHOUT - deviance, heldout=heldout, support=support, scale=1.0
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,8 +57,8 @@ def test_who_explains_more_by_far_beside_all_others_takes_the_place(ahead, again
 class Known:
     """Models of which it is known what every one does; it is noted what refits are `asked` for."""
 
-    def __init__(self, misfits):
-        self.misfits, self.asked, self.policy = misfits, [], DEFAULT
+    def __init__(self, deviances):
+        self.deviances, self.asked, self.policy = deviances, [], DEFAULT
         self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"])
 
     def likelihood(self, effects):
@@ -74,21 +76,21 @@ class Known:
 
 
 def screen(models, base):
-    return [Some(score=Some(effect=e, drop=WITHOUT - m)) for e, m in models.misfits.items()]
+    return [Some(score=Some(effect=e, likelihood_ratio=WITHOUT - m)) for e, m in models.deviances.items()]
 
 
 def judge(models, base, found, effect, names, tests):
-    assert names == [f"effect.{effect}.size"] and tests == len(models.misfits)
-    return one(effect, found.fit.misfit)
+    assert names == [f"effect.{effect}.size"] and tests == len(models.deviances)
+    return one(effect, found.fit.deviance)
 
 
 def candidate(models, base, s, tests, least):
     models.asked.append((s.score.effect, least))
-    return one(s.score.effect, models.misfits[s.score.effect]) if s.score.drop >= least else None
+    return one(s.score.effect, models.deviances[s.score.effect]) if s.score.likelihood_ratio >= least else None
 
 
 def before(*others, alone=0.0, small=False):
-    """The round that found a gain of the force sensors, alone, and others with these misfits."""
+    """The round that found a gain of the force sensors, alone, and others with these deviances."""
     gain = Some(**vars(one("gain", alone)) | {"matters": not small})
     rest = (Some(**vars(one(e, m)), lawful=True, matters=False) for e, m in others)
     return Some(fit=fit(WITHOUT), candidates=(Some(**vars(gain), lawful=True), *rest), again=True, policy=DEFAULT)
@@ -104,7 +106,7 @@ def models(monkeypatch):
     for part in (screen, judge, candidate):
         monkeypatch.setattr(ties, part.__name__, part)
     monkeypatch.setattr(ties, "shortlist", lambda screened, most, alike: screened)
-    monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.drop))
+    monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.likelihood_ratio))
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 
 
@@ -125,9 +127,9 @@ def test_an_effect_is_searched_for_again_beside_all_others(models, found_in):
     r = beside(models, "gain", FINAL, found_in)
     assert r.again and r.effects == ("later",)
     # the effect is as it is in the model; others are refitted, where they promise half as much
-    assert [(c.effect, c.drop) for c in r.candidates] == [("inertia", 1050.0), ("gain", 1000.0), ("radius", 700.0)]
+    assert [(c.effect, c.likelihood_ratio) for c in r.candidates] == [("inertia", 1050.0), ("gain", 1000.0), ("radius", 700.0)]
     assert models.asked == [("inertia", 500.0), ("radius", 500.0), ("slope", 500.0)]
-    assert {s.effect for s in r.scores} == set(models.misfits)
+    assert {s.effect for s in r.scores} == set(models.deviances)
 
 
 def test_where_none_came_near_and_it_does_what_it_did_nobody_searches(models):

@@ -57,7 +57,7 @@ def test_odds_between_effects_of_one_and_of_two_parameters_are_right():
         first = ranked([one, two])[0]
         assert (first.effect == "b") == (said[-1] > 0.5)
         true.append(which)
-        larger_fall.append(two.drop > one.drop)
+        larger_fall.append(two.likelihood_ratio > one.likelihood_ratio)
     said, true, larger_fall = np.array(said), np.array(true), np.array(larger_fall)
     for low, high in ((0.02, 0.2), (0.2, 0.5), (0.5, 0.8), (0.8, 0.98)):
         among = (said > low) & (said < high)
@@ -121,7 +121,7 @@ def test_a_group_may_be_what_a_round_finds():
     evidence = Evidence((), ())
     r = Round((), NONE, evidence, (), (alone,), groups=(joined,))
     assert r.winner.effect == "a+b"
-    assert replace(r, groups=(replace(joined, drop=42.0),)).winner.effect == "a"
+    assert replace(r, groups=(replace(joined, likelihood_ratio=42.0),)).winner.effect == "a"
     slight = replace(joined, estimate=0.3 * joined.estimate, usual=(0.3 * joined.estimate, certain, certain))
     assert replace(r, groups=(slight,), candidates=()).winner is None
     assert replace(r, groups=(replace(joined, stretched=True),), candidates=()).winner is None
@@ -179,7 +179,7 @@ def test_what_another_effect_explains_by_being_slight_is_no_large_one():
     assert r.winner is None and r.slight[0].effect == "a"
     assert replace(r, candidates=(large,)).winner.effect == "b"
     assert decide.instead_of_small(r) == ()
-    near = replace(large, drop=98.0)
+    near = replace(large, likelihood_ratio=98.0)
     (said,) = decide.instead_of_small(replace(r, candidates=tuple(ranked([slight, near]))))
     assert said.words.startswith("b would do as well, and would not be small: 3.0 times what is of interest; the odds are ")
 

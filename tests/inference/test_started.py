@@ -36,7 +36,7 @@ def test_a_fit_with_new_states_starts_its_runs_where_these_were(aside):
     kept, found = models.refit(("caster_trail",), start), models.fitted(("caster_trail",), start)
     for ended in (kept, found):
         assert ended.values[TRAIL] == pytest.approx(TRUE, abs=0.005) and ended.evidence.rms < 1.05
-    assert found.misfit <= kept.misfit
+    assert found.deviance <= kept.deviance
     stood = [e.start["start.caster_l"] - e.start["start.caster_r"] for e in found.evidence.runs]
     assert all(apart > TURNED for apart in stood)
 

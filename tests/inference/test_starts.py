@@ -46,7 +46,7 @@ def test_a_step_leads_where_a_fit_of_a_linear_effect_ends(shop, calibrated):
     to = outlook(likelihood, known, names, [nearly[n] for n in names])
 
     assert to.reached[-1] == pytest.approx(whole.values[DRAG], abs=0.2 * standard_errors(whole)[DRAG])
-    assert to.misfit == pytest.approx(Problem(likelihood, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
+    assert to.deviance == pytest.approx(Problem(likelihood, names).squares(whole.evidence, np.array(to.reached)), rel=1e-3)
 
 
 def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkeypatch):
@@ -65,7 +65,7 @@ def test_a_glance_at_few_runs_picks_what_all_runs_would(shop, calibrated, monkey
     thorough = most_promising(likelihood, known, names, tries, 2, known.r)
 
     assert [o.theta for o in quick] == [o.theta for o in thorough]
-    assert quick[0].misfit <= quick[1].misfit < outlook(likelihood, known, names, [*tries[0][:-2], 0.0, 0.0]).misfit
+    assert quick[0].deviance <= quick[1].deviance < outlook(likelihood, known, names, [*tries[0][:-2], 0.0, 0.0]).deviance
     assert glances < 0.7 * sum(calls)
 
 
@@ -73,7 +73,7 @@ def test_where_the_model_cannot_run_nothing_is_promised(shop, calibrated):
     likelihood, sigma = shop.likelihood(["relaxation_length"]), "effect.relaxation_length.sigma"
     known = linearised(shop, calibrated, CALIBRATED)
     to = outlook(likelihood, known, (*CALIBRATED, sigma), [*(calibrated.values[n] for n in CALIBRATED), -0.05])
-    assert to.misfit == float("inf")
+    assert to.deviance == float("inf")
 
 
 def test_a_step_ends_where_a_fit_may(shop, calibrated):

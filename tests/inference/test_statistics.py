@@ -322,7 +322,7 @@ def test_a_strained_prior_speaks_for_what_would_relieve_it():
     off = Projector(bent.evidence.S[:, :1], bent.prior_slopes[:1, :1], rows)
     found = score(bent.evidence, off, "x", ["effect"], bent.evidence.S[:, 1:], np.ones(1), np.zeros(1, bool))
     assert found.estimate[0] == pytest.approx(whole.values["effect"], rel=1e-6)
-    assert found.drop == pytest.approx(bent.misfit - whole.misfit, rel=1e-6)
+    assert found.likelihood_ratio == pytest.approx(bent.deviance - whole.deviance, rel=1e-6)
 
 
 def test_noise_that_is_larger_than_stated_makes_nothing_surer(models):
@@ -331,11 +331,11 @@ def test_noise_that_is_larger_than_stated_makes_nothing_surer(models):
     slopes = signals(rng, 6, LONG, 3)
     measured = [s @ np.array([1.0, -1.0, 0.3]) + noise(rng, (LONG, 1)) for s in slopes]
     once, twice = (judged(models, "two-sided", [f * m for m in measured], slopes) for f in (1.0, 2.0))
-    assert twice.drop == pytest.approx(once.drop, rel=1e-9)
+    assert twice.likelihood_ratio == pytest.approx(once.likelihood_ratio, rel=1e-9)
     assert twice.p == pytest.approx(once.p, rel=1e-6)
     whole, y = (np.concatenate([a.reshape(LONG, -1) for a in arrays]) for arrays in (slopes, measured))
     left = [float(np.linalg.lstsq(whole[:, :k], y, rcond=None)[1][0]) for k in (2, 3)]
-    assert once.drop == pytest.approx((left[0] - left[1]) / (left[1] / len(y)), rel=1e-9)
+    assert once.likelihood_ratio == pytest.approx((left[0] - left[1]) / (left[1] / len(y)), rel=1e-9)
 
 
 def test_a_candidates_standard_error_allows_for_noise_that_lasts(models):

@@ -110,7 +110,7 @@ def _job(plan: Plan, engine: str) -> Job:
                 Yardstick(
                     likelihood.on_time(e.run, variant.values, e.start),
                     e.channels,
-                    e.ruler().errors,
+                    e.error_scale().errors,
                     measured.known,
                     {**e.run.set, **e.started},
                 )

@@ -87,7 +87,7 @@ class Disturbance:
 @cache
 def _library() -> ctypes.CDLL:
     library = helper("innovations", width())
-    library.wc_design.restype = library.wc_misfit.restype = ctypes.c_double
+    library.wc_design.restype = library.wc_deviance.restype = ctypes.c_double
     return library
 
 
@@ -205,12 +205,12 @@ class Whitener:
         other._design()
         return other
 
-    def misfit(self, disturbance: Disturbance, residual: np.ndarray, start_mean: np.ndarray) -> float:
+    def deviance(self, disturbance: Disturbance, residual: np.ndarray, start_mean: np.ndarray) -> float:
         """−2 log likelihood, but for a constant, of a residual (n, nz) where such forces act that nobody recorded; `start_mean`
         as in a call. To ask this needs no gains, which are most of what a filter is."""
         other = self._composed(disturbance)
         given = [np.ascontiguousarray(a, float) for a in (start_mean, residual)]
-        told = _library().wc_misfit(ctypes.byref(other._filter), ctypes.c_long(len(residual)), *map(_of, given))
+        told = _library().wc_deviance(ctypes.byref(other._filter), ctypes.c_long(len(residual)), *map(_of, given))
         return float(told) + self._of_kinks
 
     def _composed(self, disturbance: Disturbance) -> Whitener:

@@ -234,7 +234,7 @@ class _Assembly:
         self.parameters = base_parameters(choice)
         laws_with_states = (law("caster", choice), wheel_law(choice))
         self.rows: list[tuple[Row, Mapping[str, cs.SX]]] = []
-        self.foreseen: list[tuple[State, cs.SX]] = []
+        self.algebraic: list[tuple[State, cs.SX]] = []
         self.known = _symbols(self.parameters) | _symbols(chassis.INPUTS)
         self.own = {e.id: _symbols((*e.parameters, *e.constants)) for e in effects}
         for row in (*chassis.ROWS, *(row for each in laws_with_states for row in each.rows)):
@@ -259,14 +259,14 @@ class _Assembly:
         named = replace(row, state=replace(row.state, name=f"effect.{owner}.{row.state.name}")) if owner else row
         self.rows.append((named, scope))
 
-    def _foresee(self, symbol: str) -> cs.SX:
+    def _algebraic_variable(self, symbol: str) -> cs.SX:
         """An unknown for a quantity that is read before it is defined, with a row 0 = value − unknown."""
         defined = {q.symbol: q for s in line(self.choice) for q in s.defines}
         unit, mirror = defined[symbol].unit, defined[symbol].mirror
-        guess = cs.SX.sym(f"foreseen_{symbol}")
-        state = State(f"foreseen.{symbol}", unit, f"{symbol} as the loads use it", mirror, nominal=10.0)
-        self.foreseen.append((state, guess))
-        self.known[f"foreseen {symbol}"] = guess
+        guess = cs.SX.sym(f"algebraic_{symbol}")
+        state = State(f"algebraic.{symbol}", unit, f"{symbol} as the loads use it", mirror, nominal=10.0)
+        self.algebraic.append((state, guess))
+        self.known[f"algebraic {symbol}"] = guess
         return guess
 
     def _value(self, symbol: str, own: Mapping[str, cs.SX], reader: str) -> cs.SX:
@@ -274,8 +274,8 @@ class _Assembly:
             if symbol in place:
                 return place[symbol]
         if symbol in FORESEEN:
-            foreseen = self.known.get(f"foreseen {symbol}")
-            return self._foresee(symbol) if foreseen is None else foreseen
+            algebraic = self.known.get(f"algebraic {symbol}")
+            return self._algebraic_variable(symbol) if algebraic is None else algebraic
         later = any(symbol == q.symbol for s in line(self.choice) for q in s.defines)
         why = "is only known further down the line of stages" if later else "is no quantity of this model"
         raise ModelError(f"{reader} reads {symbol!r}, which {why}; known here: {', '.join(sorted(self.known))}")
@@ -351,14 +351,14 @@ class _Assembly:
             *(self.known[q.symbol] for q in self.parameters),
             *(s for e in self.effects for s in (self.own[e.id][q.symbol] for q in (*e.parameters, *e.constants))),
         )
-        x = cs.vertcat(*(scope[row.state.symbol] for row, scope in self.rows), *(g for _, g in self.foreseen))
+        x = cs.vertcat(*(scope[row.state.symbol] for row, scope in self.rows), *(g for _, g in self.algebraic))
         w = cs.vertcat(*(self.known[q.symbol] for q in chassis.INPUTS))
-        rows = [*map(self._row, self.rows), *map(self._foreseen_row, self.foreseen)]
+        rows = [*map(self._row, self.rows), *map(self._algebraic_row, self.algebraic)]
         mass, f, start = (cs.vertcat(*column) for column in zip(*rows, strict=True))
         start = _at_the_start(x, start)
         if cs.depends_on(mass, cs.vertcat(x, w)):
             raise ModelError("the mass matrix depends on states or inputs; write the law's mass with parameters only")
-        states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.foreseen))
+        states = (*(row.state for row, _ in self.rows), *(state for state, _ in self.algebraic))
         into = [(law("caster", self.choice).absorbs, self.known, "caster law")]
         into += [(wheel_law(self.choice).absorbs, self.known, "wheel law")]
         into += [(e.absorbs, self.own[e.id], f"effect {e.id}") for e in self.effects]
@@ -399,7 +399,7 @@ class _Assembly:
         mass, rate = (cs.SX(self.call(law, scope, f"state {row.state.name}")) for law in (row.mass, row.rate))
         return mass, rate
 
-    def _foreseen_row(self, entry: tuple[State, cs.SX]) -> tuple[cs.SX, cs.SX, cs.SX]:
+    def _algebraic_row(self, entry: tuple[State, cs.SX]) -> tuple[cs.SX, cs.SX, cs.SX]:
         state, guess = entry
         return cs.SX(0), self.known[state.symbol] - guess, cs.SX(0)
 

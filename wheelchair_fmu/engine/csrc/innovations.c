@@ -268,7 +268,7 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
     }
 }
 
-double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual) {
+double wc_deviance(const filter *f, long n, const double *start_mean, const double *residual) {
     int nz = f->nz;
     double Ph[WC_MOST], one[WC_MOST] = {0}, other[WC_MOST], *s = one, *next = other, total = 0;
     covariance c;

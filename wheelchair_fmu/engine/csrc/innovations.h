@@ -50,7 +50,7 @@ void wc_whiten(const filter *f, long n, const double *gain, const double *scale,
 
 /* −2 log likelihood, but for a constant, of one signal (n x nz): Σ of squares of its innovations, and of log of their variances.
  * NaN where there is no room. */
-double wc_misfit(const filter *f, long n, const double *start_mean, const double *residual);
+double wc_deviance(const filter *f, long n, const double *start_mean, const double *residual);
 
 /* readings: n x nz, and states: n x nx, or 0: what inputs that are larger by `change` (n x nq) add to them. */
 void wc_respond(const filter *f, long n, const double *change, double *states, double *readings);

@@ -42,8 +42,10 @@ def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | N
     models.say("looking for what no effect explains")
     first, later = rounds[0], found.effects[len(rounds[0].effects) :]
     if len(later) > 1 or (later and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
-        promised = max((s.drop for s in first.scores if s.effect in later), default=0.0)  # by slopes, like the terms'
-        alone = _terms(terms, generic, first.model, HOPELESS * promised, base.misfit)
+        promised = max(
+            (s.likelihood_ratio for s in first.scores if s.effect in later), default=0.0
+        )  # by slopes, like the terms'
+        alone = _terms(terms, generic, first.model, HOPELESS * promised, base.deviance)
         names = [n for e in later for n in models.factory.parameters(e)]
         joint = judge(models, first.model, top, TOGETHER.join(later), names, len(first.scores))
         if alone.winner is not None and _likelier(alone.winner, joint, models.policy, len(first.scores)):
@@ -52,7 +54,7 @@ def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | N
         scores = (s.score for s in screen(terms, top, list(generic)))
         return Round(top.effects, base, top.heldout, tuple(scores), ()), None  # too little is left to call what was found wrong
     known = [c for r in rounds if r.effects == top.effects for c in r.every if c.possible]
-    left = _terms(terms, generic, top, HALFWAY * max((c.drop for c in known), default=0.0))
+    left = _terms(terms, generic, top, HALFWAY * max((c.likelihood_ratio for c in known), default=0.0))
     best = left.winner
     if best is not None and not all(_likelier(best, c, models.policy, len(first.scores)) for c in known):
         best = None  # an effect of the catalogue does so, be it too small to be named

@@ -454,11 +454,11 @@ def _of_another_chair(found: Selection, strained: Sequence[str]) -> Sequence[str
     """Those of such values that the data insist on: no law is exact, and with effects that explain much, what held at its prior
     would cost no more than their laws may get wrong proves nothing of the chair."""
     models, fit = found.models, found.top.fit
-    allowed = models.policy.inexact**2 * (found.calibrated - fit.misfit)
+    allowed = models.policy.inexact**2 * (found.calibrated - fit.deviance)
     if not strained or allowed <= 0 or models.factory.leads:
         return strained
     held = models.refit(found.effects, fit.values, without=frozenset(strained))
-    return strained if held.misfit - fit.misfit > allowed else ()
+    return strained if held.deviance - fit.deviance > allowed else ()
 
 
 def _powers(models: Models, first: Round) -> dict[str, float]:

@@ -39,14 +39,15 @@ REACH = 4.0  # standard deviations of the prior; a value further off is no calib
 
 @dataclass(frozen=True)
 class Fit:
-    """Values by name (SI), their covariance (k, k) before any allowance for misfit, and the evidence at them; `lower` and
-    `upper` (k,) are how far the fit might go, where it was not free to go anywhere."""
+    """Values by name (SI), their covariance (k, k) before any allowance for laws that are not exact, and the evidence at them;
+    `lower` and `upper` (k,) are how far the fit might go, where it was not free to go anywhere. The deviance is −2 log
+    posterior, but for a constant."""
 
     names: tuple[str, ...]
     values: Mapping[str, float]
     covariance: np.ndarray
     evidence: Evidence
-    misfit: float  # −2 log likelihood and prior
+    deviance: float
     prior_slopes: np.ndarray
     lower: np.ndarray | None = None
     upper: np.ndarray | None = None
@@ -137,9 +138,9 @@ class Problem:
         """What a descent makes small: squared innovations, and the prior's."""
         return float(here.r @ here.r + np.sum(self.prior.rows(theta) ** 2))
 
-    def misfit(self, here: Evidence, theta: np.ndarray) -> float:
+    def deviance(self, here: Evidence, theta: np.ndarray) -> float:
         """−2 log likelihood, with the prior."""
-        return here.misfit + float(np.sum(self.prior.rows(theta) ** 2))
+        return here.deviance + float(np.sum(self.prior.rows(theta) ** 2))
 
     def information(self, here: Evidence) -> np.ndarray:
         """Sᵀ S (k, k), and the prior's."""
@@ -150,14 +151,14 @@ class Problem:
         return S.T @ r + self.prior.slopes @ self.prior.rows(theta)
 
     def whole_gradient(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
-        """−½ the slope of the misfit (k,), by differences of a standard error: `gradient`, and what the filters' own change
+        """−½ the slope of the deviance (k,), by differences of a standard error: `gradient`, and what the filters' own change
         does."""
-        before, found = self.misfit(here, theta), np.zeros(len(theta))
+        before, found = self.deviance(here, theta), np.zeros(len(theta))
         for j, curvature in enumerate(np.diag(self.information(here))):
             by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
             trial = theta + by * (np.arange(len(theta)) == j)
             there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
-            found[j] = (curvature * by - (self.misfit(there, trial) - before) / by) / 2
+            found[j] = (curvature * by - (self.deviance(there, trial) - before) / by) / 2
         return found
 
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
@@ -224,7 +225,7 @@ def fit(
 ) -> Fit:
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
-    `rival` is the misfit of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
+    `rival` is the deviance of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
     how often all is linearised anew.
     Raises SimulationError where the model cannot be simulated at the start.
     """
@@ -235,11 +236,11 @@ def fit(
         return _fit_led(problem, theta, here, most if names else 0)
     for _ in range(most if names else 0):
         enough = max(STRAIGHT, SLIGHT * (problem.squares(here, theta) - len(here.r)))
-        if problem.expected(here, theta) < max(enough, (problem.misfit(here, theta) - rival) / MOST):
+        if problem.expected(here, theta) < max(enough, (problem.deviance(here, theta) - rival) / MOST):
             break
         to, there = problem.descend(here, theta)
         fall = problem.squares(here, theta) - problem.squares(there, to)
-        behind = problem.misfit(there, to) - rival
+        behind = problem.deviance(there, to) - rival
         if fall < max(enough, behind / MOST):
             theta, here = to, there
             break
@@ -247,8 +248,8 @@ def fit(
         further = _taken(problem, theta, here, to, shrinks) or _by_likelihood(problem, theta, here)
         if further is None:
             break
-        before = problem.misfit(here, theta)
-        gained = before - problem.misfit(further[1], further[0])
+        before = problem.deviance(here, theta)
+        gained = before - problem.deviance(further[1], further[0])
         if likelihood.may_flip and gained > GAINED and most > 1:  # a single step only shows how much a start promises
             problem, further = _beyond(problem, theta, *further, before)
         theta, here = further
@@ -257,8 +258,8 @@ def fit(
 
 def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
     covariance = inverse(problem.information(here)) if len(theta) else np.zeros((0, 0))
-    values, misfit, prior = problem.values(theta), problem.misfit(here, theta), problem.prior.slopes
-    return Fit(problem.names, values, covariance, here, misfit, prior, problem.lower, problem.upper)
+    values, deviance, prior = problem.values(theta), problem.deviance(here, theta), problem.prior.slopes
+    return Fit(problem.names, values, covariance, here, deviance, prior, problem.lower, problem.upper)
 
 
 def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int) -> Fit:
@@ -292,16 +293,16 @@ def _taken(
 ) -> tuple[np.ndarray, Evidence] | None:
     """The step from `theta`, or as much of it, the first of `shrinks`, that is more likely once all is linearised anew.
 
-    A filter that expects less noise makes squares larger and the model more likely: only the misfit compares two filters.
+    A filter that expects less noise makes squares larger and the model more likely: only the deviance compares two filters.
     """
-    before = problem.misfit(here, theta)
+    before = problem.deviance(here, theta)
     for shrink in shrinks:
         trial = theta + shrink * (to - theta)
         try:
             found = problem.linearised(trial)
         except SimulationError:
             continue
-        if problem.misfit(found, trial) < before:
+        if problem.deviance(found, trial) < before:
             return trial, found
     return None
 
@@ -314,25 +315,25 @@ def _beyond(
 
     Slopes are about the errors that a run had before the step. Where casters may flip these hold it on its way, so that a step
     is much too short, however often it is taken. One is too long, and not followed, that slopes about these errors have for
-    less likely than what the step came from, by the misfit `worst`.
+    less likely than what the step came from, by the deviance `worst`.
     """
 
     def followed(along: Problem, trial: np.ndarray) -> tuple[float, Problem]:
-        """The misfit there once runs follow, and the problem in which they do."""
+        """The deviance there once runs follow, and the problem in which they do."""
         there = along.at(trial, 1)
-        return (along.misfit(there, trial), along.continued(there)) if there else (math.inf, along)
+        return (along.deviance(there, trial), along.continued(there)) if there else (math.inf, along)
 
     far, (best, kept) = to, followed(problem, to)
     for _ in range(FURTHER):
         trial = np.clip(theta + 2 * (far - theta), problem.lower, problem.upper)
         unfollowed = kept.at(trial, 0)
-        if not unfollowed or problem.misfit(unfollowed, trial) >= worst:
+        if not unfollowed or problem.deviance(unfollowed, trial) >= worst:
             break
         found, there = followed(kept, trial)
         if found >= best:
             break
         far, best, kept = trial, found, there
-    return (kept, (far, kept.linearised(far))) if best < problem.misfit(here, to) else (problem, (to, here))
+    return (kept, (far, kept.linearised(far))) if best < problem.deviance(here, to) else (problem, (to, here))
 
 
 def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple[np.ndarray, Evidence] | None:
@@ -345,4 +346,4 @@ def _by_likelihood(problem: Problem, theta: np.ndarray, here: Evidence) -> tuple
         return None
     step = inverse(problem.information(here)) @ gradient
     found = _taken(problem, theta, here, np.clip(theta + step, problem.lower, problem.upper))
-    return found if found and problem.misfit(here, theta) - problem.misfit(found[1], found[0]) > STRAIGHT else None
+    return found if found and problem.deviance(here, theta) - problem.deviance(found[1], found[0]) > STRAIGHT else None

@@ -40,12 +40,12 @@ def profile_interval(likelihood: Likelihood, found: Fit, name: str) -> tuple[flo
     at = found.names.index(name)
     half = half_width(found, at)
     threshold, se = half**2 / found.covariance[at, at], half / NORMAL
-    record, best, misfit = likelihood.records[name], found.values[name], _profile(likelihood, found, at)
+    record, best, deviance = likelihood.records[name], found.values[name], _profile(likelihood, found, at)
 
     @cache
     def beyond(off: float) -> float:
         """Above 0 where the interval has ended. The root makes of a parabola a straight line, on which ends are soon found."""
-        return float(np.sqrt(max(0.0, misfit(best + off) - found.misfit) / threshold)) - 1
+        return float(np.sqrt(max(0.0, deviance(best + off) - found.deviance) / threshold)) - 1
 
     def end(side: float) -> float:
         bound = record.upper if side > 0 else record.lower
@@ -86,22 +86,22 @@ def widened(ends: tuple[float, float], value: float, allowed: float, record: Par
 
 
 def _profile(likelihood: Likelihood, found: Fit, at: int) -> Callable[[float], float]:
-    """The misfit by one parameter, the others where that lets them be."""
-    misfit = profile(likelihood, found, (at,))
-    return lambda value: misfit((value,))
+    """The deviance by one parameter, the others where that lets them be."""
+    deviance = profile(likelihood, found, (at,))
+    return lambda value: deviance((value,))
 
 
 def profile(
     likelihood: Likelihood, found: Fit, at: Sequence[int], corrections: int = CORRECTIONS
 ) -> Callable[[Sequence[float] | np.ndarray], float]:
-    """The misfit (−2 log likelihood and prior) by some parameters of a fit, the others where these let them be; infinity where
-    the model cannot be simulated. The others follow by slopes, which `corrections` - 1 further steps improve."""
+    """The deviance by some parameters of a fit, the others where these let them be; infinity where the model cannot be
+    simulated. The others follow by slopes, which `corrections` - 1 further steps improve."""
     problem, S = Problem(likelihood, found.names), found.evidence.S
     chosen = np.isin(np.arange(len(found.names)), at)
     A, best = problem.information(found.evidence), np.array([found.values[n] for n in found.names])
     known, where = inverse(A[np.ix_(~chosen, ~chosen)]), np.array(at)
 
-    def misfit(values: Sequence[float] | np.ndarray) -> float:
+    def deviance(values: Sequence[float] | np.ndarray) -> float:
         theta, lowest = best.copy(), np.inf
         theta[where] = values
         theta[~chosen] -= known @ A[np.ix_(~chosen, where)] @ (np.asarray(values) - best[where])
@@ -111,8 +111,8 @@ def profile(
                 there = likelihood.resimulated(found.evidence, problem.values(theta))
             except SimulationError:
                 break
-            lowest = min(lowest, problem.misfit(there, theta))
+            lowest = min(lowest, problem.deviance(there, theta))
             theta[~chosen] += known @ problem.gradient(S, there.r, theta)[~chosen]
         return lowest
 
-    return misfit
+    return deviance

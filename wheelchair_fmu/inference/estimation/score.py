@@ -1,7 +1,7 @@
 """Which effects would help, from one linearisation: score tests with a robust variance.
 
 For an effect with sensitivities S_j (N, k) the calibrated directions are projected off, s_j = P S_j; score
-U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected drop Uᵀ I⁻¹ U. The variance of U is
+U = s_jᵀ r, information I = s_jᵀ s_j, expected change I⁻¹ U, expected fall Uᵀ I⁻¹ U. The variance of U is
 estimated with heteroscedasticity and autocorrelation (Bartlett's kernel within each run, prewhitened), so that
 coloured residuals are not taken for evidence.
 """
@@ -34,9 +34,9 @@ class Score:
     estimate: np.ndarray
     se: np.ndarray
     p: float
-    drop: float  # expected fall of −2 log likelihood
+    likelihood_ratio: float  # expected fall of −2 log likelihood
     power: float
-    hidden: float  # share of its signature that calibration can imitate
+    collinearity: float  # R²: share of its signature that calibration can imitate
     signature: np.ndarray  # (N,) unit vector of the projected expected change
     delta: np.ndarray
     covariance: np.ndarray  # (k, k) of the estimate, in units of δ; where the data see nothing as large as BLIND
@@ -126,11 +126,11 @@ def score(
     size, axes = np.linalg.eigh(I)
     seen = size > max(SEEN, 1e-9 * size.max(initial=0))
     whole = float(np.einsum("ij,ij->", scaled, scaled))
-    hidden = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
+    collinearity = 1 - float(np.trace(I)) / whole if whole > 0 else 1.0
     if not seen.any():
         nothing = np.zeros(len(delta))
         unknown, blind = np.full(len(delta), np.inf), BLIND * np.eye(len(delta))
-        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, hidden, nothing[:0], delta, blind, imitated)
+        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, collinearity, nothing[:0], delta, blind, imitated)
     V = axes[:, seen]
     s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
     U = s_V.T @ r + strained_V.T @ off.rows
@@ -145,9 +145,9 @@ def score(
         p = p / 2 if estimate[0] > 0 else 1 - p / 2
     noncentral = 1 / np.diag(spread).mean()
     seen_at_delta = power(min(noncentral, 1e6), int(seen.sum()), LEVEL)
-    drop = float(U @ change)
+    ratio = float(U @ change)
     if one_sided.all() and (estimate <= 0).all():
-        drop = 0.0  # the data ask for the unlawful sign
+        ratio = 0.0  # the data ask for the unlawful sign
     direction = s_V @ change
     length = np.linalg.norm(direction)
     return Score(
@@ -156,9 +156,9 @@ def score(
         estimate,
         se,
         p,
-        drop,
+        ratio,
         seen_at_delta,
-        hidden,
+        collinearity,
         direction / length if length > 0 else direction,
         delta,
         V @ _spread(evidence, s_V, strained_V, I_V, r - direction, off.rows - strained_V @ change) @ V.T

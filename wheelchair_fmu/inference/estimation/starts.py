@@ -23,13 +23,13 @@ LOOKED_AT = 2  # times as many as are wanted on every run
 class Outlook:
     """Where one linear step from `theta` leads, within bounds, and the squares that slopes promise, with the prior's."""
 
-    misfit: float
+    deviance: float
     theta: tuple[float, ...]
     reached: tuple[float, ...]
 
 
 def outlook(likelihood: Likelihood, known: Evidence, names: Sequence[str], theta: Iterable[float]) -> Outlook:
-    """The step goes by those of `names`, the first, that `known` has slopes by; the misfit is infinite where the model cannot
+    """The step goes by those of `names`, the first, that `known` has slopes by; the deviance is infinite where the model cannot
     run."""
     at = tuple(map(float, theta))
     try:
@@ -68,8 +68,8 @@ def most_promising(
     near = _ranked(likelihood, known, names, thetas)[: LOOKED_AT * wanted]
     if kind is None:
         return near[:wanted]
-    further = _ranked(likelihood, known, names, (o.reached for o in near if np.isfinite(o.misfit)))
-    return _of_each(sorted([*near, *further], key=_misfit), lambda o: kind(o.theta[len(known.by) :]), 1)[:wanted]
+    further = _ranked(likelihood, known, names, (o.reached for o in near if np.isfinite(o.deviance)))
+    return _of_each(sorted([*near, *further], key=_deviance), lambda o: kind(o.theta[len(known.by) :]), 1)[:wanted]
 
 
 def _of_each(ranked: Iterable[Outlook], kind: Callable[[Outlook], object], most: int) -> list[Outlook]:
@@ -84,8 +84,8 @@ def _of_each(ranked: Iterable[Outlook], kind: Callable[[Outlook], object], most:
 
 
 def _ranked(likelihood: Likelihood, known: Evidence, names: Sequence[str], thetas: Iterable[Sequence[float]]) -> list[Outlook]:
-    return sorted(parallel_map(lambda theta: outlook(likelihood, known, names, theta), thetas), key=_misfit)
+    return sorted(parallel_map(lambda theta: outlook(likelihood, known, names, theta), thetas), key=_deviance)
 
 
-def _misfit(o: Outlook) -> tuple[float, tuple[float, ...]]:
-    return o.misfit, o.theta
+def _deviance(o: Outlook) -> tuple[float, tuple[float, ...]]:
+    return o.deviance, o.theta

@@ -90,20 +90,20 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
     as they are.
     """
 
-    def misfits(strengths: Sequence[Strength]) -> np.ndarray:
+    def deviances(strengths: Sequence[Strength]) -> np.ndarray:
         ratios = np.array([[getattr(s, name) for name in SIZES] for s in strengths]) / USUAL
-        return _misfits(evidence, [s.put_into(NoiseModel({})) for s in strengths], t_r) + 2 * np.sum(ratios, axis=1)
+        return _deviances(evidence, [s.put_into(NoiseModel({})) for s in strengths], t_r) + 2 * np.sum(ratios, axis=1)
 
     none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
     starts = [*_starts(none, about)]
-    without, *tried = misfits([none, *starts])
+    without, *tried = deviances([none, *starts])
     if min(tried) > without:
         return none
-    found, least = _likeliest(misfits, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
+    found, least = _likeliest(deviances, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
     uneven = _felt(found)
     if uneven.moment or uneven.tremor:
         floor, bumps = uneven.moment / max(b, NEAR), uneven.tremor / (t_r / 2)
-        found, least = _likeliest(misfits, replace(found, floor=floor, bumps=bumps), ("force", "body"))
+        found, least = _likeliest(deviances, replace(found, floor=floor, bumps=bumps), ("force", "body"))
     return replace(_felt(found), fall=float(without - least))
 
 
@@ -127,9 +127,9 @@ def _starts(none: Strength, about: Strength | None) -> Iterator[Strength]:
 
 
 def _likeliest(
-    misfits: Callable[[Sequence[Strength]], np.ndarray], begun: Strength, by: Sequence[str]
+    deviances: Callable[[Sequence[Strength]], np.ndarray], begun: Strength, by: Sequence[str]
 ) -> tuple[Strength, float]:
-    """The strength with the least misfit, as those of its figures change that are named, and that misfit."""
+    """The strength with the least deviance, as those of its figures change that are named, and that deviance."""
     limits = {**{name: (LEAST * usual, MOST * usual) for name, usual in zip(SIZES, USUAL, strict=True)}, "lasting": LASTING}
 
     def at(logs: np.ndarray) -> Strength:
@@ -138,9 +138,9 @@ def _likeliest(
     bounds = np.log([limits[name] for name in by])
 
     def with_slopes(logs: np.ndarray) -> tuple[float, np.ndarray]:
-        """The misfit, and its slopes, away from bounds, all of which are found side by side."""
+        """The deviance, and its slopes, away from bounds, all of which are found side by side."""
         beside = np.where(logs + NEARBY < bounds[:, 1], NEARBY, -NEARBY)
-        here, *there = misfits([at(logs), *(at(one) for one in logs + np.diag(beside))])
+        here, *there = deviances([at(logs), *(at(one) for one in logs + np.diag(beside))])
         return float(here), (np.array(there) - here) / beside
 
     begun_at = [np.log(getattr(begun, name)) for name in by]
@@ -188,13 +188,13 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     return disturbance(noise_model, inputs, t_r, swinging=noise_model.swung(e.effort), speed=e.pace)
 
 
-def _misfits(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:
+def _deviances(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:
     """−2 log likelihood with forces as strong as each of `noise_models` has them (k,), but for a constant."""
 
     def one(asked: tuple[NoiseModel, RunEvidence]) -> float:
         noise_model, e = asked
         filter_ = e.filter.whitener
-        return filter_.misfit(_forces(e, noise_model, t_r), e.measured - e.foretold, e.offset[: filter_.size[0]])
+        return filter_.deviance(_forces(e, noise_model, t_r), e.measured - e.foretold, e.offset[: filter_.size[0]])
 
     told = parallel_map(one, product(noise_models, evidence.runs))
     return np.sum(np.reshape(told, (len(noise_models), -1)), axis=1)

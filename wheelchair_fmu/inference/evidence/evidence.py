@@ -27,7 +27,7 @@ class Begin:
 
 
 @dataclass(frozen=True)
-class Weighed:
+class FilterSummary:
     """What is kept of a `Whitener` that whitens no more."""
 
     logdet: float
@@ -48,7 +48,7 @@ class RunEvidence:
     results: np.ndarray  # (n, ny) all outputs of the simulation
     predicted: np.ndarray  # (n, nz) simulated readings
     measured: np.ndarray  # (n, nz), less offsets
-    whitener: Marginal | Weighed
+    whitener: Marginal | FilterSummary
     offset: np.ndarray  # (nx + l,) where the true start and constants are expected, less the simulated ones
     path: np.ndarray | None = None  # (n, nd) forces that nobody recorded (see `disturbance`), about which all is linearised
     added: np.ndarray | float = 0.0  # (n, nz) what these add to the readings
@@ -80,9 +80,9 @@ class RunEvidence:
 
     def summary(self) -> RunEvidence:
         """The same without sensitivities, filter and results, which are most of its memory: for a model that is only judged."""
-        return replace(self._bare(), whitener=Weighed(self.whitener.logdet, self.whitener.spread))
+        return replace(self._bare(), whitener=FilterSummary(self.whitener.logdet, self.whitener.spread))
 
-    def ruler(self) -> RunEvidence:
+    def error_scale(self) -> RunEvidence:
         """What `errors` of another model's predictions needs, and no more: the filter only where a channel drifts."""
         return self._bare() if self._drift else self.summary()
 
@@ -102,7 +102,7 @@ class RunEvidence:
         return effort(self.run)
 
     @property
-    def misfit(self) -> float:
+    def deviance(self) -> float:
         """−2 log likelihood, but for a constant."""
         return float(np.nansum(self.r**2)) + self.whitener.logdet
 
@@ -174,7 +174,7 @@ class Evidence:
         return np.concatenate([e.S[e.finite] for e in self.runs] or [np.empty((0, len(self.by)))])
 
     @cached_property
-    def misfit(self) -> float:
+    def deviance(self) -> float:
         """−2 log likelihood, but for a constant."""
         return float(self.r @ self.r + sum(e.whitener.logdet for e in self.runs))
 

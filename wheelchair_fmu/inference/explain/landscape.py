@@ -65,11 +65,11 @@ def _interval(told: Mapping[str, Any], name: str) -> Sequence[float] | None:
 
 def _profile(likelihood: Likelihood, found: Fit, name: str, interval: Sequence[float] | None) -> dict[str, Any]:
     at, record = found.names.index(name), likelihood.records[name]
-    half, misfit = (interval[1] - interval[0]) / 2 if interval else half_width(found, at), profile(likelihood, found, (at,))
+    half, deviance = (interval[1] - interval[0]) / 2 if interval else half_width(found, at), profile(likelihood, found, (at,))
     values = np.unique(np.clip(found.values[name] + half * ALONG, record.lower, record.upper))
-    heights = np.array(parallel_map(lambda v: misfit((v,)), values)) - found.misfit
+    heights = np.array(parallel_map(lambda v: deviance((v,)), values)) - found.deviance
     ends = [v for v in interval or () if record.lower < v < record.upper]
-    shrunk = _above(heights * (_to_level([misfit((v,)) - found.misfit for v in ends]) or _robust(found, at)))
+    shrunk = _above(heights * (_to_level([deviance((v,)) - found.deviance for v in ends]) or _robust(found, at)))
     return {
         "parameter": name,
         "estimate": found.values[name],
@@ -111,12 +111,12 @@ def _pair(models: Models, told: Mapping[str, Any], effects: Sequence[str], base:
     shrunk = min(_robust(found, i) for i in at)
     size, axes = np.linalg.eigh(found.covariance[np.ix_(at, at)] / np.outer(scale, scale) / shrunk)
     axes = scale[:, None] * axes * np.sqrt(size)
-    misfit = profile(likelihood, found, at, corrections=1)
+    deviance = profile(likelihood, found, at, corrections=1)
     grid = [best + axes @ (u, v) for v in ABOUT for u in ABOUT]
 
     def height(point: np.ndarray) -> float:
         inside = all(r.lower <= v <= r.upper for r, v in zip(records, point, strict=True))
-        return (misfit(point) - found.misfit) * shrunk if inside else np.inf
+        return (deviance(point) - found.deviance) * shrunk if inside else np.inf
 
     alone, heights = np.split(_above(np.array(parallel_map(height, [*_alone(told, pair), *grid]))), [len(pair)])
     level = models.policy.tied if any({one, other} <= set(group) for group in told["ties"]) else value_beyond(1 - LEVEL, 2)

@@ -63,7 +63,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
         key=lambda e: (
             e not in d.effects,
             e not in candidates,
-            -(candidates[e][0].support.large if e in candidates else scores[e].drop),
+            -(candidates[e][0].support.large if e in candidates else scores[e].likelihood_ratio),
         ),
     )
     rivals = _rivals(first.scores)
@@ -81,7 +81,7 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
             "beside": list(r.effects),
             "parameters": {n: {"estimate": float(v), "se": finite(e)} for n, v, e in zip(names, c.estimate, c.se, strict=True)},
             "p": c.p,
-            "lr": c.drop,
+            "lr": c.likelihood_ratio,
             "found": c.effect == (r.winner.effect if r.winner else None),
         }
         for r in d.rounds
@@ -111,8 +111,8 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "probability_there": belief.there if belief else None,
         "p": c.p if c else min(1.0, s.p * len(r.scores)),
         "power": s.power,
-        "lr": c.drop if c else s.drop,
-        "hidden_in_fit": s.hidden,
+        "lr": c.likelihood_ratio if c else s.likelihood_ratio,
+        "hidden_in_fit": s.collinearity,
         "heldout_before": finite(before),
         "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
         "rivals": [{**rival, **_odds(c, rival["effect"], r)} for rival in rivals],

@@ -126,7 +126,7 @@ class Models:
             again = self.restarted(likelihood, found.names, found.values)
         except SimulationError:
             return found
-        return min(found, again, key=lambda f: f.misfit)
+        return min(found, again, key=lambda f: f.deviance)
 
     def _unstarted(self, likelihood: Likelihood) -> bool:
         """Have the models of a likelihood casters that swing, and had none yet in this setting? Nobody asked then how these
@@ -174,8 +174,8 @@ class Models:
 
     def compared(self, found: Fit, effect: str, base: Fit) -> Fit:
         """A fit as it compares with one that lacks an effect of it. Where forces lead the runs, how likely these are is no
-        measure: there the misfit is less by as much as the effect's estimate is from zero."""
-        return replace(found, misfit=base.misfit - self.weight(found, effect)) if self.factory.leads else found
+        measure: there the deviance is less by as much as the effect's estimate is from zero."""
+        return replace(found, deviance=base.deviance - self.weight(found, effect)) if self.factory.leads else found
 
     def calibrated(self) -> tuple[Models, Model, Evidence, Evidence]:
         """The calibrated model, with the models whose runs start where it wants them; and evidence of fitted and of held-out
@@ -201,11 +201,11 @@ class Models:
         for loose in LOOSE:
             there = self._loosened(likelihood, names, loose)
             here = likelihood.evidence(self.campaign.fit, there, names, tune_start=1)
-            rival = min((found.misfit for found in ends), default=math.inf)
+            rival = min((found.deviance for found in ends), default=math.inf)
             ends.append(self._from(likelihood.continued(here), names, there, here, rival))
             if ends[-1].evidence.rms < self.policy.a_little:
                 break
-        return min(ends, key=lambda found: found.misfit)
+        return min(ends, key=lambda found: found.deviance)
 
     def _loosened(self, likelihood: Likelihood, names: Sequence[str], by: Mapping[str, float]) -> dict[str, float]:
         """What is usual, or given, with some values so many standard deviations of their priors from that, within bounds."""
@@ -218,7 +218,7 @@ class Models:
         self, likelihood: Likelihood, names: Sequence[str], start: Mapping[str, float], here: Evidence, rival: float = math.inf
     ) -> Fit:
         """A fit from `start`, with the evidence `here`, and again from where its runs start by it; neither is followed to its
-        end that falls too slowly to come up with a `rival`'s misfit."""
+        end that falls too slowly to come up with a `rival`'s deviance."""
         first = fit(likelihood, names, start, here, rival)
         return self.restarted(likelihood.continued(first.evidence), names, first.values, 1, rival=rival)
 

@@ -21,7 +21,7 @@ class Candidate:
 
     effect: str  # or the group's name
     fit: Fit
-    drop: float  # fall of −2 log likelihood, divided by the residuals' dispersion
+    likelihood_ratio: float  # fall of −2 log likelihood, divided by the residuals' dispersion
     estimate: np.ndarray
     without: np.ndarray  # the same in a model that lacks it: zero, or what the campaign says
     covariance: np.ndarray  # (k, k) of the estimate
@@ -55,14 +55,14 @@ class Candidate:
 
     @property
     def unit(self) -> float:
-        """What counts as one of a misfit's fall: `scale`, but of one by standard errors."""
+        """What counts as one of a deviance's fall: `scale`, but of one by standard errors."""
         return 1.0 if self.by_errors else self.scale
 
     @property
     def fall(self) -> float:
         """Of −2 log likelihood, in `unit`s; by standard errors no more than the widest of them have it: runs that would have an
         effect apart say less of it than their moments do."""
-        whole = max(self.drop, 0.0) * self.dispersion / self.unit
+        whole = max(self.likelihood_ratio, 0.0) * self.dispersion / self.unit
         return min(whole, *self._away) if self.by_errors else whole
 
     @cached_property
@@ -113,7 +113,7 @@ class Candidate:
 def ranked(candidates: Iterable[Candidate]) -> list[Candidate]:
     """Candidates of one model, best first: by marginal likelihood, with residuals as the likeliest leaves them."""
     found = list(candidates)
-    likeliest = max(found, key=lambda c: c.drop * c.dispersion, default=None)
+    likeliest = max(found, key=lambda c: c.likelihood_ratio * c.dispersion, default=None)
     if likeliest is None:
         return []
     beside = likeliest.dispersion, likeliest.correlation

@@ -56,10 +56,10 @@ def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
     whole = models.fitted((*known, *group.members), group.fit.values)
     order = sorted(group.members, key=lambda e: models.weight(whole, e))
     every, found = pruned(models, (*known, *order), whole, known)
-    near = (c for c in now.candidates if c.lawful and c.drop >= HALFWAY * group.drop)
+    near = (c for c in now.candidates if c.lawful and c.likelihood_ratio >= HALFWAY * group.likelihood_ratio)
     contested = bool({c.effect for c in near}.difference(every))
     lacking = {e: _without(models, now, every, e, found) for e in every[len(known) :]}
-    needed = sorted(lacking, key=lambda e: -lacking[e].misfit)
+    needed = sorted(lacking, key=lambda e: -lacking[e].deviance)
     top, rounds = _held_out(models, (*known, *needed), found), []
     for effect in needed:
         others, fewer = tuple(e for e in top.effects if e != effect), lacking[effect]
@@ -116,11 +116,11 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
             return None
 
     promising = most_promising(likelihood, known, names, thetas, BEGUN, known.r)
-    begun = sorted((fit for fit in parallel_map(one_step, promising) if fit), key=_misfit)
+    begun = sorted((fit for fit in parallel_map(one_step, promising) if fit), key=_deviance)
     ended = parallel_map(lambda fit: models.refit(every, fit.values, fit.evidence), begun[:ENDED])
-    best = min(ended, key=_misfit, default=None)
+    best = min(ended, key=_deviance, default=None)
     return best and models.started(every, best)
 
 
-def _misfit(fit: Fit) -> float:
-    return fit.misfit
+def _deviance(fit: Fit) -> float:
+    return fit.deviance

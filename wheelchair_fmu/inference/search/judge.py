@@ -30,15 +30,15 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
     one_sided, near, without = w.one_sided(names), 1e-6 * delta, w.unfitted(names)
     along, spread = seen_directions((estimate - without) / delta, covariance / np.outer(delta, delta))
     dispersion = float(np.mean(fit.evidence.r**2))
-    fall = base.fit.misfit - fit.misfit - _paid(fit, names, at_usual.moved(fit.covariance))
-    drop, correlation = fall / dispersion, correlation_time(fit.evidence)
-    p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(drop / correlation, len(spread)))
+    fall = base.fit.deviance - fit.deviance - _paid(fit, names, at_usual.moved(fit.covariance))
+    ratio, correlation = fall / dispersion, correlation_time(fit.evidence)
+    p = max(chance_beyond(float(np.sum(along**2 / spread)), len(spread)), chance_beyond(ratio / correlation, len(spread)))
     if len(names) == 1 and one_sided[0]:
         p /= 2
     return Candidate(
         effect=effect,
         fit=replace(fit, evidence=fit.evidence.summary()),
-        drop=drop,
+        likelihood_ratio=ratio,
         estimate=estimate,
         without=without,
         covariance=covariance,

@@ -21,6 +21,6 @@ def pruned(models: Models, effects: tuple[str, ...], found: Fit, keep: Container
             continue  # by its standard errors it is so far from zero that nobody needs to try without
         fewer = tuple(e for e in effects if e != effect)
         without = models.fitted(fewer, found.values)
-        if leads or without.misfit - found.misfit < margin(found.evidence, models.policy):
+        if leads or without.deviance - found.deviance < margin(found.evidence, models.policy):
             return pruned(models, fewer, without, keep)
     return effects, found

@@ -38,16 +38,16 @@ def candidate(
     models: Models, base: Model, s: Screened, tests: int, rival: float = math.inf, least: float = -math.inf
 ) -> Candidate | None:
     """Refit with one more effect, from the expected change and from sizes of interest, if −2 log likelihood may fall by
-    `least`; `rival` is the best misfit yet."""
+    `least`; `rival` is the best deviance yet."""
     effect = s.score.effect
     effects, base = (*base.effects, effect), models.rival_of(effect, base)
     likelihood = models.likelihood(effects)
     starts = _starts(models, base.fit, s, least)
     if starts:
         models.say(f"refitting {effect}")
-    rival = min(rival, base.fit.misfit)  # which it has as a special case
+    rival = min(rival, base.fit.deviance)  # which it has as a special case
     found, anew = _best_of(models, effects, starts, rival), _afresh(models, base, s, least, rival)
-    afresh = anew is not None and (found is None or anew.misfit < found.misfit)
+    afresh = anew is not None and (found is None or anew.deviance < found.deviance)
     if afresh:
         found, models = anew, models.afresh()
         likelihood = models.likelihood(effects)
@@ -55,7 +55,7 @@ def candidate(
         return None
     found = models.started(effects, found)
     if not models.factory.leads:
-        models.remember(effects, found, ended=found.misfit < rival)  # who falls behind a rival may not have been followed
+        models.remember(effects, found, ended=found.deviance < rival)  # who falls behind a rival may not have been followed
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
     if risen(base.fit, found):
@@ -89,12 +89,12 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
 
     begun = [f for f in parallel_map(one_step, starts) if f]
     own, ended = models.factory.parameters(effects[-1]), list[Fit]()
-    for ahead in sorted(begun, key=lambda f: f.misfit)[: ENDED if len(own) > 1 else 1]:
+    for ahead in sorted(begun, key=lambda f: f.deviance)[: ENDED if len(own) > 1 else 1]:
         signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
         if signs not in others:
             ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival))
-            rival = min(rival, ended[-1].misfit)
-    best = min(ended, key=lambda f: f.misfit, default=None)
+            rival = min(rival, ended[-1].deviance)
+    best = min(ended, key=lambda f: f.deviance, default=None)
     try:
         return models.refit(effects, best.values) if best and constants else best
     except SimulationError:
@@ -108,20 +108,22 @@ def _afresh(models: Models, base: Model, s: Screened, least: float, rival: float
     w, effects = models.factory, (*base.effects, s.score.effect)
     fresh = models.afresh()
     likelihood = fresh.likelihood(effects)
-    unbent = at_prior_mean(likelihood, base.fit, BENT) if likelihood.may_flip and s.score.drop >= least / BEYOND else []
-    if not unbent or s.score.effect in w.groups:
+    at_mean = (
+        at_prior_mean(likelihood, base.fit, BENT) if likelihood.may_flip and s.score.likelihood_ratio >= least / BEYOND else []
+    )
+    if not at_mean or s.score.effect in w.groups:
         return None
     own = w.parameters(s.score.effect)
     sizes = sizes_to_try(s, [w.records[n] for n in own], w.unfitted(own))
-    tries = [{**unbent[0], **dict(zip(own, map(float, size), strict=True))} for size in sizes]
+    tries = [{**at_mean[0], **dict(zip(own, map(float, size), strict=True))} for size in sizes]
 
-    def misfit(values: dict[str, float]) -> float:
+    def deviance(values: dict[str, float]) -> float:
         try:
-            return likelihood.evidence(w.campaign.fit, values).misfit
+            return likelihood.evidence(w.campaign.fit, values).deviance
         except SimulationError:
             return math.inf
 
-    start = tries[int(np.argmin(parallel_map(misfit, tries)))]
+    start = tries[int(np.argmin(parallel_map(deviance, tries)))]
     try:
         return fresh.restarted(likelihood, fresh.names(effects), start, rival=rival)
     except SimulationError:
@@ -133,15 +135,17 @@ def _starts(models: Models, base: Fit, s: Screened, least: float) -> list[Start]
     others from the most promising of several sizes: the expected change, both signs of δ, and larger ones."""
     w, likelihood = models.factory, s.likelihood
     group = s.score.effect in w.groups
-    if s.score.drop < (least if s.linear or group else least / BEYOND):  # secants of a group are taken where it acts
+    if s.score.likelihood_ratio < (
+        least if s.linear or group else least / BEYOND
+    ):  # secants of a group are taken where it acts
         return []
     names = [*base.names, *w.parameters(s.score.effect)]
     if w.leads:  # where forces make up for what is missing, slopes say about how much that is,
         of_interest = dict(zip(s.score.names, map(float, s.delta), strict=True))
         sizes = [_expected(models, s), *([of_interest] if group else [])]  # but where a member seems to be nothing
         return [({**base.values, **size}, None) for size in sizes]
-    unbent = at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
-    calibrations = [[values[n] for n in base.names] for values in (base.values, *unbent)]
+    at_mean = at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
+    calibrations = [[values[n] for n in base.names] for values in (base.values, *at_mean)]
     if s.linear and len(calibrations) == 1:
         off = _without(w, base, names)
         known = s.evidence.only(names) if set(names) <= set(s.evidence.by) else None
@@ -171,15 +175,15 @@ def _sizes(
     wanted = 1 if s.linear else DIRECTIONS if many else STARTS
     best = most_promising(likelihood, known, names, tries, wanted, s.score.signature, _signs if many else None)
     off = _without(w, base, names)
-    without, most = outlook(likelihood, known, names, off).misfit, np.inf
+    without, most = outlook(likelihood, known, names, off).deviance, np.inf
     if s.linear:
-        return [o.theta for o in best if o.misfit <= without - HALFWAY * least]
+        return [o.theta for o in best if o.deviance <= without - HALFWAY * least]
     if not (states or laws):  # with another law or more states runs may go another way altogether
         most = without - least
     if many and best:
-        most = min(most, without - HALFWAY * (without - best[0].misfit))
-    found = [o.theta for o in best if o.misfit <= most]
-    negligible = s.negligible and any(o.misfit < without - HALFWAY * s.score.drop for o in best)
+        most = min(most, without - HALFWAY * (without - best[0].deviance))
+    found = [o.theta for o in best if o.deviance <= most]
+    negligible = s.negligible and any(o.deviance < without - HALFWAY * s.score.likelihood_ratio for o in best)
     if states and s.nonlinear_candidate:  # the error may fall only close to the truth
         return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
     return [] if negligible else found

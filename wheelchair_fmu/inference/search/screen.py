@@ -47,12 +47,12 @@ class Screened:
     def negligible(self) -> bool:
         """Does it gain little, being surely a small part of its smallest interesting size?"""
         far = np.abs(self.score.estimate) + 3 * self.score.se
-        return self.score.drop < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
+        return self.score.likelihood_ratio < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
 
     @property
     def nonlinear_candidate(self) -> bool:
         """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
-        return not self.linear and self.score.drop > HINT and float(np.mean(self.evidence.r**2)) > ROOM
+        return not self.linear and self.score.likelihood_ratio > HINT and float(np.mean(self.evidence.r**2)) > ROOM
 
 
 def screen(models: Models, base: Model, among: Iterable[str] | None = None) -> list[Screened]:
@@ -66,11 +66,11 @@ def screen_groups(models: Models, base: Model) -> tuple[list[Screened], list[Scr
     promise more than one of them does alone."""
     w = models.factory
     screened, here = _screened(models, base)
-    alone = {s.score.effect: s.score.drop for s in screened}
+    alone = {s.score.effect: s.score.likelihood_ratio for s in screened}
     groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
     joined = _by_secants(models, models.rerun((*base.effects, *groups)), base.fit, here, groups) if groups else []
-    more = (s for s in joined if s.score.drop > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
-    return screened, sorted(more, key=lambda s: -s.score.drop)
+    more = (s for s in joined if s.score.likelihood_ratio > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
+    return screened, sorted(more, key=lambda s: -s.score.likelihood_ratio)
 
 
 def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
@@ -108,7 +108,7 @@ def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -
         found += _by_slopes(models, models.rival_of(effect, base), [effect])[0]
     for more in dear:
         found += _by_secants(models, models.rerun((*base.effects, *more)), base.fit, here, more)
-    return sorted(found, key=lambda s: -s.score.drop), here
+    return sorted(found, key=lambda s: -s.score.likelihood_ratio), here
 
 
 def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[Screened], Evidence]:
@@ -116,13 +116,13 @@ def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[
     w, fit = models.factory, base.fit
     likelihood, names = models.wide(base.effects), [n for e in light for n in w.parameters(e)]
     here = likelihood.evidence(w.campaign.fit, fit.values, [*fit.names, *names])
-    off, unbent = projector(likelihood, fit, here), _slopes_at_prior_mean(likelihood, fit, names)
+    off, at_mean = projector(likelihood, fit, here), _slopes_at_prior_mean(likelihood, fit, names)
 
     def screened(effect: str) -> Screened:
         own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
         tangent = _score(w, here, off, effect, here.S[:, own])
         bent = [] if w.linear(effect) else _secants(w, likelihood, here, fit.values, effect)
-        secants = [_score(w, here, off, effect, S) for S in (*bent, *(S[:, columns] for S in unbent))]
+        secants = [_score(w, here, off, effect, S) for S in (*bent, *(S[:, columns] for S in at_mean))]
         return _most_promising(w, [tangent, *secants], here, likelihood)
 
     return parallel_map(screened, light), here
@@ -146,23 +146,23 @@ def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidenc
         if not scores:
             return None
         best = _most_promising(w, scores, here, likelihood)
-        return replace(best, straight=all(best.score.drop > score.drop for score in by[0]))
+        return replace(best, straight=all(best.score.likelihood_ratio > score.likelihood_ratio for score in by[0]))
 
     return [s for s in parallel_map(screened, effects) if s]
 
 
 def _most_promising(w: ModelFactory, scores: Sequence[Score], here: Evidence, likelihood: Likelihood) -> Screened:
     """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
-    best = max(scores, key=lambda s: s.drop)
+    best = max(scores, key=lambda s: s.likelihood_ratio)
     return Screened(replace(best, p=scores[0].p), here, likelihood, w.deltas(best.names), w.linear(best.effect))
 
 
 def _slopes_at_prior_mean(likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
     """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent them:
     what it bent to imitate an effect may be what the effect works through."""
-    unbent = at_prior_mean(likelihood, base, BENT) if names else []
+    at_mean = at_prior_mean(likelihood, base, BENT) if names else []
     try:
-        return [likelihood.evidence(likelihood.campaign.fit, values, names).S for values in unbent]
+        return [likelihood.evidence(likelihood.campaign.fit, values, names).S for values in at_mean]
     except SimulationError:
         return []
 
@@ -212,9 +212,9 @@ def _one_by_one(
 
 
 def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
-    """The best by expected drop, some more of those whose slopes say little, and whatever looks like the leader; not what is
+    """The best by expected fall, some more of those whose slopes say little, and whatever looks like the leader; not what is
     surely far too small to matter."""
-    promising = [s for s in screened if s.score.drop > PROMISING and (s.nonlinear_candidate or not s.negligible)]
+    promising = [s for s in screened if s.score.likelihood_ratio > PROMISING and (s.nonlinear_candidate or not s.negligible)]
     curved = [s for s in promising[most:] if s.nonlinear_candidate][:CURVED]
     first = [*promising[:most], *curved]
     taken = {s.score.effect for s in first}

@@ -36,7 +36,7 @@ def searched(
 ) -> Round:
     """Screen, refit the shortlist, and rank. What lowers −2 log likelihood by less than `least`, as far as slopes tell, is not
     refitted; what looks like the leader, by a cosine above `twin`, is, however many there are; and groups of effects, where the
-    whole catalogue is asked. `rival` is the misfit of another model to be compared with; for `odds` and `explained` see
+    whole catalogue is asked. `rival` is the deviance of another model to be compared with; for `odds` and `explained` see
     `Round`."""
     screened, joined = screen_groups(models, base) if among is None else (screen(models, base, among), [])
     candidates: list[Candidate] = []
@@ -47,9 +47,9 @@ def searched(
         if c is None:
             continue
         candidates.append(c)
-        if c.fit.misfit < leader:
-            leader = c.fit.misfit
-            hope = max(least, _hope(base.fit.misfit - leader, s.score.drop))
+        if c.fit.deviance < leader:
+            leader = c.fit.deviance
+            hope = max(least, _hope(base.fit.deviance - leader, s.score.likelihood_ratio))
     best = ranked(candidates)
     alone, groups = (tuple(c for c in best if (len(c.members) > 1) == several) for several in (False, True))
     scores = tuple(s.score for s in screened)

@@ -36,9 +36,9 @@ class Selection:
     the `rounds` of search, and for an effect that was found the one that judges it `beside` all others.
 
     `already` are the effects that the chair came with; of others `helping` are in though they may be too small to be named, and
-    `parts` as members of a group. `calibrated` is the misfit without any effect; so many rounds, `noisier`, were searched with
-    other noise than is known now. `stepped` is told the staircase whenever it has changed. A search that has `ended` finds no
-    more.
+    `parts` as members of a group. `calibrated` is the deviance without any effect; so many rounds, `noisier`, were searched
+    with other noise than is known now. `stepped` is told the staircase whenever it has changed. A search that has `ended` finds
+    no more.
     """
 
     models: Models
@@ -148,7 +148,7 @@ class Selection:
         """What a round of search finds: one effect, or a group; failing that, several of one law; failing that, one that only
         helps."""
         self.models.say(f"screening {'what is left' if self.effects else 'the catalogue'}")
-        r = searched(self.models, self.top, explained=self.calibrated - self.top.fit.misfit)
+        r = searched(self.models, self.top, explained=self.calibrated - self.top.fit.deviance)
         now, best = replace(self, rounds=(*self.rounds, r)), r.winner
         if best is not None and len(best.members) > 1:
             now, best = now._parted(r, best)
@@ -202,7 +202,7 @@ class Selection:
         """The model with these effects, fitted about so, and its staircase, from the first step."""
         begun = first_steps(self.models)
         models, base, ladder = begun.models, begun.calibrated.fit, begun.ladder
-        calibrated = base.misfit
+        calibrated = base.deviance
         for i in range(1, len(effects)):
             models, passed = models.with_given(effects[:i], replace(found, values={**found.values, **base.values}))
             base, ladder = passed.fit, (*ladder, _step_to(passed))
@@ -218,7 +218,7 @@ class Selection:
 
 def selection(beginning: Beginning, stepped: Callable[[Sequence[Step]], None]) -> Selection:
     """The foot of the staircase: calibrated, and with the effects that the chair came with estimated anew."""
-    now = Selection(beginning.models, beginning.calibrated, beginning.ladder, beginning.calibrated.fit.misfit, stepped)
+    now = Selection(beginning.models, beginning.calibrated, beginning.ladder, beginning.calibrated.fit.deviance, stepped)
     stepped(now.ladder)
     w = beginning.models.factory
     for effect in w.variant.effects:

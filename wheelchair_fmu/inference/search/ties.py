@@ -42,7 +42,7 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
         ahead = 0.0 if r.again else _ahead_on_heldout(c, leader)
         behind = _behind(c, leader)
         near = behind <= r.policy.tied or (behind - ahead / leader.scale <= r.policy.tied and c.matters)
-        same = not r.again and _unchecked(c, leader) and c.matters and c.drop >= NEARLY * leader.drop
+        same = not r.again and _unchecked(c, leader) and c.matters and c.likelihood_ratio >= NEARLY * leader.likelihood_ratio
         likelier = c.matters and r.beliefs[c.effect].there > r.beliefs[effect].there
         if near or same or likelier:
             group.append(c.effect)
@@ -56,7 +56,7 @@ def probable(r: Round, effect: str) -> bool:
 
 def beside(models: Models, effect: str, final: Model, before: Round | None, calibrated: float = 0.0) -> Round | None:
     """One effect of a `final` model searched for again, beside all the others. `before` is the round that found it, if that
-    knew the same noise, `calibrated` the misfit of the model without any effect. None where it stands without that, or where
+    knew the same noise, `calibrated` the deviance of the model without any effect. None where it stands without that, or where
     the model cannot run without it."""
     others = tuple(e for e in final.effects if e != effect)
     try:
@@ -67,7 +67,7 @@ def beside(models: Models, effect: str, final: Model, before: Round | None, cali
     base = replace(base, fit=replace(base.fit, evidence=started))
     without = models.rival_of(effect, base)
     as_known = replace(final, fit=models.compared(final.fit, effect, without.fit))
-    fall = without.fit.misfit - as_known.fit.misfit
+    fall = without.fit.deviance - as_known.fit.deviance
     if before and _stands(effect, final.effects, fall, before):
         return None
     screened = screen(models, base)
@@ -80,7 +80,7 @@ def beside(models: Models, effect: str, final: Model, before: Round | None, cali
         base.heldout.summary(),
         [s.score for s in screened],
     )
-    explained = calibrated - base.fit.misfit
+    explained = calibrated - base.fit.deviance
     return Round(others, bare, held, tuple(scores), candidates, again=True, explained=explained, policy=models.policy)
 
 
@@ -88,8 +88,8 @@ def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> 
     """Did no other come near an effect in the round that found it, and does it still do most of what it did then? If not, it
     may have done what others do that were found later, and one that does the rest may not have shown."""
     then = _of(before, effect)
-    near = {c.effect for c in before.candidates if c.lawful and c.drop >= HALF * then.drop}
-    most = fall >= HALF * (before.fit.misfit - then.fit.misfit)
+    near = {c.effect for c in before.candidates if c.lawful and c.likelihood_ratio >= HALF * then.likelihood_ratio}
+    most = fall >= HALF * (before.fit.deviance - then.fit.deviance)
     return most and then.matters and near.union(tied(before, effect)) <= set(effects)
 
 
