@@ -15,8 +15,9 @@ from wheelchair_fmu.inference.decision import leftover
 from wheelchair_fmu.inference.decision.leftover import prepare
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.inference.policy import USUAL
 from wheelchair_fmu.inference.search.beginning import begin
-from wheelchair_fmu.inference.search.refitting import BEYOND, candidate
+from wheelchair_fmu.inference.search.refitting import candidate
 from wheelchair_fmu.inference.search.screen import screen
 from wheelchair_fmu.model.caster import slipping
 from wheelchair_fmu.model.choice import Choice, OwnLaw
@@ -88,7 +89,7 @@ def test_no_model_is_compiled_with_derivatives_for_an_effect_that_promises_too_l
 
     monkeypatch.setattr(cache, "library", watched)
     refit = partial(candidate, begun.models, begun.calibrated, scored, 40)
-    assert refit(least=2 * BEYOND * scored.score.likelihood_ratio) is None and not asked
+    assert refit(least=2 * USUAL.beyond * scored.score.likelihood_ratio) is None and not asked
     assert refit() is not None and asked
 
 

@@ -190,7 +190,7 @@ def test_effects_of_one_law_are_tried_with_its_constants_as_records_have_them(sa
     w = ModelFactory(sample, Variant())
     rate = "effect.caster_friction.rate"
     (casters,) = joint.kin(w)
-    tried = joint.tries(w, casters)
+    tried = joint.tries(w, casters, 125)
     assert {one[rate] for one in tried} == {w.records[rate].default}
     assert {one["effect.caster_friction.M"] for one in tried} >= {0.0, w.records["effect.caster_friction.M"].delta}
 

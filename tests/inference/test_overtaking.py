@@ -11,7 +11,7 @@ import pytest
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.hypothesis import Model
-from wheelchair_fmu.inference.policy import DEFAULT
+from wheelchair_fmu.inference.policy import DEFAULT, USUAL
 from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import selection as selecting
 from wheelchair_fmu.inference.search import ties
@@ -58,7 +58,7 @@ class Known:
     """Models of which it is known what every one does; it is noted what refits are `asked` for."""
 
     def __init__(self, deviances):
-        self.deviances, self.asked, self.policy = deviances, [], DEFAULT
+        self.deviances, self.asked, self.policy, self.effort = deviances, [], DEFAULT, USUAL
         self.factory = Some(parameters=lambda effect: [f"effect.{effect}.size"])
 
     def likelihood(self, effects):
@@ -105,7 +105,7 @@ def believed(*there):
 def models(monkeypatch):
     for part in (screen, judge, candidate):
         monkeypatch.setattr(ties, part.__name__, part)
-    monkeypatch.setattr(ties, "shortlist", lambda screened, most, alike: screened)
+    monkeypatch.setattr(ties, "shortlist", lambda screened, effort: screened)
     monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.likelihood_ratio))
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 
@@ -184,8 +184,8 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
     def top(*effects, rms):
         return Model(effects, replace(fit(0.0), evidence=Some(rms=rms)), Evidence((), ()))
 
-    moved = Some()
-    models = Some(settled=lambda effects, found: (moved, top(*effects, rms=rms)))
+    moved = Some(effort=USUAL, policy=DEFAULT)
+    models = Some(effort=USUAL, policy=DEFAULT, settled=lambda effects, found: (moved, top(*effects, rms=rms)))
     *ladder, part, toe = (Step(name, rms, rms) for name in ("nominal", "calibrated", "+drag", "+part", "+toe"))
     foot = Selection(models, top("drag", rms=1.15), tuple(ladder), 0.0, print, rounds=(Some(effects=("drag",)),))
     helped = replace(foot, ladder=(*ladder, part), helping=frozenset({"toe"}))
@@ -222,7 +222,13 @@ def test_a_search_pauses_where_a_step_does_little_and_much_is_left(monkeypatch, 
         return replace(self, ended=ended, ladder=self.ladder if ended else (*self.ladder, steps[len(self.ladder) - 1]))
 
     monkeypatch.setattr(Selection, "_one_step", one_step)
-    foot = Selection(None, Model((), fit(0.0), Evidence((), ())), (Step("nominal", 9.0, 9.0), steps[0]), 0.0, print)
+    foot = Selection(
+        Some(effort=USUAL, policy=DEFAULT),
+        Model((), fit(0.0), Evidence((), ())),
+        (Step("nominal", 9.0, 9.0), steps[0]),
+        0.0,
+        print,
+    )
     now = foot.to_the_top(far)
     assert len(now.ladder) == 2 + reached and now.ended == (reached == 3)
     assert now.to_the_top().ladder == (foot.ladder[0], *steps) and now.to_the_top().ended

@@ -239,4 +239,4 @@ def test_an_error_that_comes_to_the_noise_has_not_risen(before, after, rises):
     one, other = (
         replace(NONE, evidence=evidence([np.full((50, 1), rms)], [np.zeros((50, 1, 0))], ())) for rms in (before, after)
     )
-    assert risen(one, other) == rises
+    assert risen(one, other, DEFAULT) == rises

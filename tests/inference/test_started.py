@@ -10,7 +10,8 @@ from wheelchair_fmu.inference.evidence.initial_state import TUNING
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
-from wheelchair_fmu.inference.search.screen import BENT, at_prior_mean
+from wheelchair_fmu.inference.policy import USUAL
+from wheelchair_fmu.inference.search.screen import at_prior_mean
 from wheelchair_fmu.inference.search.search import searched
 from wheelchair_fmu.model.variant import Variant
 
@@ -67,8 +68,8 @@ def test_what_lies_beside_its_bound_in_every_chair_is_not_put_onto_it(sample):
     """A refit starts with a bent stiffness as it was given, and with the speed over which drag sets in as it was found: at zero
     dry friction holds whatever stands, and no slope tells of anything."""
     bent = {"tyre.C_lambda": 9000.0, "resistance.onset": 0.006}
-    likelihood = Likelihood(sample, Variant())
+    models, likelihood = Models.of(ModelFactory(sample, Variant())), Likelihood(sample, Variant())
     base = fit(likelihood, list(bent), bent, most=0)
-    assert at_prior_mean(likelihood, base, BENT) == [{**bent, "tyre.C_lambda": 5038.0}]
+    assert at_prior_mean(models, likelihood, base, USUAL.bent) == [{**bent, "tyre.C_lambda": 5038.0}]
     alone = fit(likelihood, ["resistance.onset"], {"resistance.onset": 0.05}, most=0)
-    assert at_prior_mean(likelihood, alone, BENT) == []
+    assert at_prior_mean(models, likelihood, alone, USUAL.bent) == []

@@ -10,8 +10,7 @@ from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.interval import NORMAL, half_width, widened
 from wheelchair_fmu.inference.estimation.score import Projector, score
 from wheelchair_fmu.inference.estimation.unnamed import allowance
-from wheelchair_fmu.inference.policy import DEFAULT
-from wheelchair_fmu.inference.search import selection
+from wheelchair_fmu.inference.policy import DEFAULT, Effort
 from wheelchair_fmu.quantities import KG, Parameter
 
 CALIBRATED, EFFECTS = ("a", "b"), ("drag", "offset", "gain")
@@ -98,11 +97,10 @@ def test_an_interval_is_widened_by_squares_and_within_bounds():
 
 
 @pytest.mark.nightly
-def test_a_model_with_as_many_effects_as_are_put_in_is_allowed_for_as_well(sample, monkeypatch):
+def test_a_model_with_as_many_effects_as_are_put_in_is_allowed_for_as_well(sample):
     """Nothing was searched beside it."""
     usual = diagnose(sample)
-    monkeypatch.setattr(selection, "MOST_EFFECTS", 1)
-    found = diagnose(sample)
+    found = diagnose(sample, effort=Effort(most_effects=1))
     assert found.included == usual.included and not any(r.effects == found.included for r in found.rounds)
     assert found.allowance == pytest.approx(usual.allowance, rel=0.05)
     assert found.allowance["chair.m"] > 0.1

@@ -1,4 +1,5 @@
-"""What the search for missing effects is free to choose: every number by which it decides, with its reason.
+"""What the search for missing effects is free to choose: every number by which it decides, and every one by which it saves
+work, each with its reason.
 
 All else follows from likelihoods. `python -m benchmarks.policy` decides searches again with each number at both ends of its
 range, and counts the rounds, ties, terms and verdicts that change.
@@ -74,6 +75,11 @@ class SearchPolicy:
         return replace(self, slight=NOTHING)
 
     @property
+    def nothing_left(self) -> float:
+        """Whitened RMS error that leaves nothing to explain: a third of a little."""
+        return 1 + (self.a_little - 1) / 3
+
+    @property
     def tied(self) -> float:
         """Fall of −2 log likelihood that `tie_odds` are."""
         return 2 * log(self.tie_odds)
@@ -92,5 +98,56 @@ class SearchPolicy:
         return log(share / (1 - share))
 
 
+def _limit(value: float, thorough: float, reason: str) -> float:
+    """A field with what a search that spares no work has, and why it is what it is."""
+    return field(default=value, metadata={"thorough": thorough, "reason": reason})
+
+
+def _count(value: int, thorough: int, reason: str) -> int:
+    """The same of a number of things."""
+    return field(default=value, metadata={"thorough": thorough, "reason": reason})
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much a search tries. None of these numbers decides: they leave out what could not be found, or would be found as well
+    in another way. `python -m benchmarks.effort` searches campaigns again without sparing any work, and counts the answers that
+    change. Falls are of −2 log likelihood, expected by slopes and secants or found by a refit."""
+
+    shortlist: int = _count(5, 12, "effects that are refitted in a round, by what slopes and secants promise of them")
+    curved: int = _count(2, 6, "effects that slopes say little of, which are refitted beside these")
+    alike: float = _limit(0.9, 0.7, "cosine of signatures above which a rival of the leader is refitted whatever it promises")
+    promising: float = _limit(
+        6.0, 3.0, "expected fall below which no refit could pass: twice the log prior odds of one in thirty"
+    )
+    hopeless: float = _limit(0.2, 0.1, "share of the leader's fall that another must promise to be refitted")
+    halfway: float = _limit(0.5, 0.25, "share of a fall that is expected, promised or was found, which counts as near it")
+    beyond: float = _limit(10.0, 30.0, "times what slopes that say little promise of an effect, which it may do")
+    far: float = _limit(1.1, 1.05, "mean square innovation beside which no slope is trusted to say that all is seen")
+    hint: float = _limit(30.0, 15.0, "expected fall from which an effect that slopes say little of may do more at another size")
+    room: float = _limit(1.01, 1.005, "mean square innovation above which it may")
+    negligible: float = _limit(0.3, 0.1, "of δ, a size that surely does not matter")
+    little: float = _limit(100.0, 50.0, "expected fall above which an effect is refitted however small it seems from here")
+    bent: float = _limit(1.0, 0.5, "standard deviations of its prior by which a calibrated value counts as bent")
+    slightly: float = _limit(0.1, 0.05, "the same, where it costs little to look at both")
+    starts: int = _count(2, 4, "sizes of an effect, or combinations of a group's, from which refits go on to their end")
+    directions: int = _count(4, 8, "pairs of signs from which refits of an effect with several parameters start")
+    ended: int = _count(3, 6, "of these, how many go on to their end")
+    tries: int = _count(125, 250, "combinations of sizes of a group's effects that are looked at")
+    begun: int = _count(16, 32, "of these, refits that make one step")
+    several: float = _limit(1.2, 1.1, "whitened RMS error that is worth a search for several effects at once")
+    most_left: float = _limit(0.5, 0.25, "of the mean square above noise: where a step leaves more, forces are asked for first")
+    most_effects: int = _count(4, 6, "effects that are put in, beside what only helps: whoever lacks more needs another model")
+    most_steps: int = _count(8, 12, "steps that put one in, or one in the place of another")
+    plainly: float = _limit(100.0, 1000.0, "times what is decisive: an effect so far from zero, by standard errors, is needed")
+    terms: int = _count(3, 8, "generic terms that are refitted: one is proposed, and nobody asks which others would do as well")
+
+    @classmethod
+    def thorough(cls) -> Effort:
+        """That of a search which spares no work."""
+        return cls(**{f.name: f.metadata["thorough"] for f in fields(cls)})
+
+
 DEFAULT = SearchPolicy()
+USUAL = Effort()
 RANGES: dict[str, tuple[float, float]] = {f.name: f.metadata["range"] for f in fields(SearchPolicy) if "range" in f.metadata}

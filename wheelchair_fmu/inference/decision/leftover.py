@@ -18,13 +18,10 @@ from ..residual.staircase import Step
 from ..search.candidate import Candidate, ranked
 from ..search.judge import judge
 from ..search.pruning import pruned
-from ..search.refitting import HALFWAY
 from ..search.rounds import Round
-from ..search.screen import AT_THE_FLOOR, PROMISING, screen
-from ..search.search import HOPELESS, at_the_floor, searched
+from ..search.screen import screen
+from ..search.search import at_the_floor, searched
 from ..search.selection import Selection
-
-TERMS = 3  # that are refitted, at most: one is proposed, and nobody asks which others would do as well
 
 
 def prepare(models: Models, generic: Mapping[str, Effect]) -> None:
@@ -41,20 +38,20 @@ def leftover(found: Selection, generic: Mapping[str, Effect]) -> tuple[Round | N
     models, top, base, rounds = found.models, found.top, found.top.fit, found.rounds
     models.say("looking for what no effect explains")
     first, later = rounds[0], found.effects[len(rounds[0].effects) :]
-    if len(later) > 1 or (later and base.evidence.rms > AT_THE_FLOOR):  # does one term do alone what these were to do?
-        promised = max(
-            (s.likelihood_ratio for s in first.scores if s.effect in later), default=0.0
-        )  # by slopes, like the terms'
-        alone = _terms(terms, generic, first.model, HOPELESS * promised, base.deviance)
+    several = len(later) > 1 or (later and base.evidence.rms > models.policy.nothing_left)
+    if several:  # does one term do alone what these were to do?
+        by_slopes = {s.effect: s.likelihood_ratio for s in first.scores}  # as the terms' falls are
+        promised = max((by_slopes.get(e, 0.0) for e in later), default=0.0)
+        alone = _terms(terms, generic, first.model, models.effort.hopeless * promised, base.deviance)
         names = [n for e in later for n in models.factory.parameters(e)]
         joint = judge(models, first.model, top, TOGETHER.join(later), names, len(first.scores))
         if alone.winner is not None and _likelier(alone.winner, joint, models.policy, len(first.scores)):
             return alone, alone.winner
-    if later and at_the_floor(base.evidence, top.heldout):
+    if later and at_the_floor(base.evidence, top.heldout, models.policy):
         scores = (s.score for s in screen(terms, top, list(generic)))
         return Round(top.effects, base, top.heldout, tuple(scores), ()), None  # too little is left to call what was found wrong
     known = [c for r in rounds if r.effects == top.effects for c in r.every if c.possible]
-    left = _terms(terms, generic, top, HALFWAY * max((c.likelihood_ratio for c in known), default=0.0))
+    left = _terms(terms, generic, top, models.effort.halfway * max((c.likelihood_ratio for c in known), default=0.0))
     best = left.winner
     if best is not None and not all(_likelier(best, c, models.policy, len(first.scores)) for c in known):
         best = None  # an effect of the catalogue does so, be it too small to be named
@@ -69,8 +66,8 @@ def _terms_of(models: Models, generic: Mapping[str, Effect]) -> Models | None:
 
 def _terms(terms: Models, generic: Mapping[str, Effect], base: Model, least: float, rival: float = np.inf) -> Round:
     """A round of the generic terms beside a model's effects."""
-    odds, least = terms.policy.generic_odds, max(PROMISING, least)
-    return searched(terms, base, list(generic), most=TERMS, twin=1.0, least=least, rival=rival, odds=odds)
+    few = replace(terms, effort=replace(terms.effort, shortlist=terms.effort.terms, alike=1.0))
+    return searched(few, base, list(generic), least=least, rival=rival, odds=terms.policy.generic_odds)
 
 
 def _likelier(term: Candidate, other: Candidate, policy: SearchPolicy, effects: int) -> bool:

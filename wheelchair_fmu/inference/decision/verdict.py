@@ -28,7 +28,7 @@ from ..evidence.limits import beyond
 from ..models.factory import CALIBRATED, MEASURED, ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models, quiet
-from ..policy import DEFAULT, SearchPolicy
+from ..policy import DEFAULT, USUAL, Effort, SearchPolicy
 from ..preflight.slipping import slipped
 from ..preflight.timing import Late, clocks, unlike_the_others
 from ..residual.lead import lead
@@ -138,6 +138,7 @@ def diagnose(
     fixed: Iterable[str] = (),
     stepped: Callable[[Sequence[Step]], None] = lambda ladder: None,
     policy: SearchPolicy = DEFAULT,
+    effort: Effort = USUAL,
 ) -> Diagnosis:
     """Find which effects of the catalogue are missing from `variant`, and whether anything else is left.
 
@@ -155,7 +156,7 @@ def diagnose(
     def among(now: Selection | Diagnosis, heard: tuple[str, ...]) -> _Among:
         return _among_forces(now, lambda led: concluded(_begun(led, {}, stepped), {}, heard), progress)
 
-    models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress)
+    models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress, effort)
     search = _begun(models, generic or {}, stepped)
     search = search._replace(found=search.found.to_the_top(policy.unexplained))
     # Whoever searches on here looks for the rest in a model that lacks what is mainly missing: forces are asked for first.

@@ -21,7 +21,7 @@ from ..evidence.evidence import Evidence
 from ..evidence.initial_state import CASTERS, TUNING
 from ..evidence.likelihood import Likelihood, offsets_of
 from ..evidence.noise import QUIETER, by_run, noise_model_of, shown
-from ..policy import DEFAULT, SearchPolicy
+from ..policy import DEFAULT, USUAL, Effort, SearchPolicy
 from .doubles import doubles
 from .factory import BEARING, ONSET, ModelFactory
 from .hypothesis import Hypothesis, Model
@@ -39,8 +39,9 @@ def quiet(words: str) -> None:
 
 @dataclass(frozen=True)
 class Models:
-    """A factory's models in one setting, and by which policy they are judged. `say` is told what is being done; `doubles` are
-    by effect the nuisances of the campaign that stand for the very same, without which the effect is fitted.
+    """A factory's models in one setting, by which policy they are judged, and with which effort they are sought. `say` is told
+    what is being done; `doubles` are by effect the nuisances of the campaign that stand for the very same, without which the
+    effect is fitted.
 
     Each hypothesis is fitted once in a setting. In another one, and where a fit was not followed to its end, it begins where
     it was left, which `_left` holds for the models of all settings.
@@ -49,6 +50,7 @@ class Models:
     factory: ModelFactory
     setting: Setting
     policy: SearchPolicy = DEFAULT
+    effort: Effort = USUAL
     say: Callable[[str], None] = quiet
     doubles: Mapping[str, frozenset[str]] = field(default_factory=dict)
     _left: dict[Hypothesis, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
@@ -56,9 +58,11 @@ class Models:
     _heldout: dict[Hypothesis, Evidence] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @classmethod
-    def of(cls, factory: ModelFactory, policy: SearchPolicy = DEFAULT, say: Callable[[str], None] = quiet) -> Models:
+    def of(
+        cls, factory: ModelFactory, policy: SearchPolicy = DEFAULT, say: Callable[[str], None] = quiet, effort: Effort = USUAL
+    ) -> Models:
         """A factory's, where nothing is known but what the campaign says."""
-        return cls(factory, factory.setting, policy, say)
+        return cls(factory, factory.setting, policy, effort, say)
 
     @property
     def campaign(self) -> Campaign:

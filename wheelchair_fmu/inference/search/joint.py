@@ -23,13 +23,9 @@ from ..parallel import parallel_map
 from .candidate import Candidate
 from .judge import judge
 from .pruning import pruned
-from .refitting import HALFWAY
 from .rounds import Round
 
 SIZES = (0.0, 0.5, 1.0, 2.0, 4.0)  # of δ
-TRIES = 125  # combinations of them, at most
-BEGUN = 16  # of these, refits that make one step
-ENDED = 2  # of these, refits that go on to their end
 
 
 def together(models: Models, now: Round) -> Candidate | None:
@@ -56,7 +52,7 @@ def parted(models: Models, now: Round, group: Candidate) -> list[Round]:
     whole = models.fitted((*known, *group.members), group.fit.values)
     order = sorted(group.members, key=lambda e: models.weight(whole, e))
     every, found = pruned(models, (*known, *order), whole, known)
-    near = (c for c in now.candidates if c.lawful and c.likelihood_ratio >= HALFWAY * group.likelihood_ratio)
+    near = (c for c in now.candidates if c.lawful and c.likelihood_ratio >= models.effort.halfway * group.likelihood_ratio)
     contested = bool({c.effect for c in near}.difference(every))
     lacking = {e: _without(models, now, every, e, found) for e in every[len(known) :]}
     needed = sorted(lacking, key=lambda e: -lacking[e].deviance)
@@ -92,12 +88,12 @@ def kin(w: ModelFactory) -> list[tuple[str, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
-def tries(w: ModelFactory, group: Sequence[str]) -> list[dict[str, float]]:
+def tries(w: ModelFactory, group: Sequence[str], most: int) -> list[dict[str, float]]:
     """Several sizes of each effect of a group, combined, with the constants of their laws as records have them."""
     names = [n for e in group for n in w.parameters(e)]
     sizes = list(product(*([f * w.records[n].delta for f in SIZES] for n in names)))
-    if len(sizes) > TRIES:
-        sizes = [sizes[i] for i in np.random.default_rng(0).choice(len(sizes), TRIES, replace=False)]
+    if len(sizes) > most:
+        sizes = [sizes[i] for i in np.random.default_rng(0).choice(len(sizes), most, replace=False)]
     constants = {n: w.records[n].default for e in group for n in w.constants(e)}
     return [{**constants, **dict(zip(names, one, strict=True))} for one in sizes]
 
@@ -106,7 +102,7 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
     """The most likely model with all of a group that starts from several sizes of each lead to."""
     every, known = (*base.effects, *new), base.fit.evidence
     likelihood, names = models.likelihood(every), models.names(every)
-    starts = ({**base.fit.values, **sizes} for sizes in tries(models.factory, group))
+    starts = ({**base.fit.values, **sizes} for sizes in tries(models.factory, group, models.effort.tries))
     thetas = [[start[n] for n in names] for start in starts]
 
     def one_step(start: Outlook) -> Fit | None:
@@ -115,9 +111,9 @@ def _fitted(models: Models, base: Model, new: tuple[str, ...], group: Sequence[s
         except SimulationError:
             return None
 
-    promising = most_promising(likelihood, known, names, thetas, BEGUN, known.r)
+    promising = most_promising(likelihood, known, names, thetas, models.effort.begun, known.r)
     begun = sorted((fit for fit in parallel_map(one_step, promising) if fit), key=_deviance)
-    ended = parallel_map(lambda fit: models.refit(every, fit.values, fit.evidence), begun[:ENDED])
+    ended = parallel_map(lambda fit: models.refit(every, fit.values, fit.evidence), begun[: models.effort.starts])
     best = min(ended, key=_deviance, default=None)
     return best and models.started(every, best)
 

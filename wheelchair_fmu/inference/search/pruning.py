@@ -8,15 +8,13 @@ from ..estimation.fit import Fit
 from ..estimation.statistics import margin
 from ..models.models import Models
 
-PLAINLY = 100.0  # times what would be decisive
-
 
 def pruned(models: Models, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
     """Leave out every effect but the last, and those to `keep`, that the others have made needless."""
     leads = models.factory.leads
     for effect in effects[:-1]:
         weight = models.weight(found, effect)
-        plain = models.policy.tied * (1.0 if leads else PLAINLY)
+        plain = models.policy.tied * (1.0 if leads else models.effort.plainly)
         if effect in keep or weight > plain:
             continue  # by its standard errors it is so far from zero that nobody needs to try without
         fewer = tuple(e for e in effects if e != effect)

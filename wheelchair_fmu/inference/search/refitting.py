@@ -17,19 +17,13 @@ from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..parallel import parallel_map
+from ..policy import SearchPolicy
 from .candidate import Candidate
 from .judge import judge
-from .screen import AT_THE_FLOOR, BENT, SLIGHTLY, Screened, at_prior_mean
+from .screen import Screened, at_prior_mean
 
-BEYOND = 10.0  # times what slopes that say little promise of an effect, which it may do
 SIZES = (1.0, 2.0, 4.0, 8.0, -1.0, -2.0, -4.0, -8.0)  # of δ, from which a refit may start
-STARTS = 2  # of these, for an effect whose slope at zero says little; if it has several parameters, one of
-DIRECTIONS = 4  # pairs of signs, and of these
-ENDED = 3  # refits go on to their end
-HALFWAY = 0.5  # of the fall that is expected, or that the best direction promises, or that is asked for of a linear effect:
-# where less is promised no refit starts, and if no size at all promises so much, refits start from
-GRID = (1.0, 2.0, 4.0)  # of δ as well
-RISEN = 1.1  # times the whitened RMS error, which an effect may cost on fitted runs
+GRID = (1.0, 2.0, 4.0)  # of δ as well, where no size at all promises enough
 
 Start = tuple[dict[str, float], Evidence | None]  # values, and what is known there
 
@@ -58,7 +52,7 @@ def candidate(
         models.remember(effects, found, ended=found.deviance < rival)  # who falls behind a rival may not have been followed
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-    if risen(base.fit, found):
+    if risen(base.fit, found, models.policy):
         return None  # no fit: the model without the effect is one with it
     try:
         held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
@@ -68,12 +62,12 @@ def candidate(
     return replace(judged, afresh=afresh)
 
 
-def risen(before: Fit, after: Fit) -> bool:
+def risen(before: Fit, after: Fit, policy: SearchPolicy) -> bool:
     """Does one more effect cost fitted runs an error above the noise? A model whose casters swing may leave less than that, as
     errors of the pushes are found with them. Where nothing was left to explain, one that leaves more than noise explains
     nothing: it is likelier only as its filter, with casters that stick, expects less noise than there is."""
-    nothing_left = before.evidence.rms < AT_THE_FLOOR < after.evidence.rms
-    return nothing_left or after.evidence.rms > RISEN * max(1.0, before.evidence.rms)
+    nothing_left = before.evidence.rms < policy.nothing_left < after.evidence.rms
+    return nothing_left or after.evidence.rms > policy.structured * max(1.0, before.evidence.rms)
 
 
 def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:
@@ -89,7 +83,7 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
 
     begun = [f for f in parallel_map(one_step, starts) if f]
     own, ended = models.factory.parameters(effects[-1]), list[Fit]()
-    for ahead in sorted(begun, key=lambda f: f.deviance)[: ENDED if len(own) > 1 else 1]:
+    for ahead in sorted(begun, key=lambda f: f.deviance)[: models.effort.ended if len(own) > 1 else 1]:
         signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
         if signs not in others:
             ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival))
@@ -108,9 +102,8 @@ def _afresh(models: Models, base: Model, s: Screened, least: float, rival: float
     w, effects = models.factory, (*base.effects, s.score.effect)
     fresh = models.afresh()
     likelihood = fresh.likelihood(effects)
-    at_mean = (
-        at_prior_mean(likelihood, base.fit, BENT) if likelihood.may_flip and s.score.likelihood_ratio >= least / BEYOND else []
-    )
+    hopeful = likelihood.may_flip and s.score.likelihood_ratio >= least / models.effort.beyond
+    at_mean = at_prior_mean(models, likelihood, base.fit, models.effort.bent) if hopeful else []
     if not at_mean or s.score.effect in w.groups:
         return None
     own = w.parameters(s.score.effect)
@@ -136,7 +129,7 @@ def _starts(models: Models, base: Fit, s: Screened, least: float) -> list[Start]
     w, likelihood = models.factory, s.likelihood
     group = s.score.effect in w.groups
     if s.score.likelihood_ratio < (
-        least if s.linear or group else least / BEYOND
+        least if s.linear or group else least / models.effort.beyond
     ):  # secants of a group are taken where it acts
         return []
     names = [*base.names, *w.parameters(s.score.effect)]
@@ -144,7 +137,7 @@ def _starts(models: Models, base: Fit, s: Screened, least: float) -> list[Start]
         of_interest = dict(zip(s.score.names, map(float, s.delta), strict=True))
         sizes = [_expected(models, s), *([of_interest] if group else [])]  # but where a member seems to be nothing
         return [({**base.values, **size}, None) for size in sizes]
-    at_mean = at_prior_mean(likelihood, base, SLIGHTLY if s.straight else BENT)
+    at_mean = at_prior_mean(models, likelihood, base, models.effort.slightly if s.straight else models.effort.bent)
     calibrations = [[values[n] for n in base.names] for values in (base.values, *at_mean)]
     if s.linear and len(calibrations) == 1:
         off = _without(w, base, names)
@@ -165,25 +158,25 @@ def _sizes(
     models: Models, base: Fit, names: Sequence[str], calibrations: Sequence[Sequence[float]], s: Screened, least: float
 ) -> list[tuple[float, ...]]:
     """The most promising calibrations and sizes of an effect together, by `names`."""
-    w, likelihood = models.factory, s.likelihood
+    w, effort, likelihood = models.factory, models.effort, s.likelihood
     records = [w.records[n] for n in w.parameters(s.score.effect)]
     known, calibrated = s.evidence.only(base.names), len(base.names)
     members = [w.catalogue[member] for member in w.members(s.score.effect)]
     states, laws = (any(getattr(record, what) for record in members) for what in ("rows", "needs"))
     tries = [(*c, *size) for c in calibrations for size in sizes_to_try(s, records, w.unfitted([r.name for r in records]))]
     many = len(records) > 1 and not s.linear
-    wanted = 1 if s.linear else DIRECTIONS if many else STARTS
+    wanted = 1 if s.linear else effort.directions if many else effort.starts
     best = most_promising(likelihood, known, names, tries, wanted, s.score.signature, _signs if many else None)
     off = _without(w, base, names)
     without, most = outlook(likelihood, known, names, off).deviance, np.inf
     if s.linear:
-        return [o.theta for o in best if o.deviance <= without - HALFWAY * least]
+        return [o.theta for o in best if o.deviance <= without - effort.halfway * least]
     if not (states or laws):  # with another law or more states runs may go another way altogether
         most = without - least
     if many and best:
-        most = min(most, without - HALFWAY * (without - best[0].deviance))
+        most = min(most, without - effort.halfway * (without - best[0].deviance))
     found = [o.theta for o in best if o.deviance <= most]
-    negligible = s.negligible and any(o.deviance < without - HALFWAY * s.score.likelihood_ratio for o in best)
+    negligible = s.negligible and any(o.deviance < without - effort.halfway * s.score.likelihood_ratio for o in best)
     if states and s.nonlinear_candidate:  # the error may fall only close to the truth
         return [*(() if negligible else found), *((*off[:calibrated], *(f * s.delta)) for f in GRID)]
     return [] if negligible else found

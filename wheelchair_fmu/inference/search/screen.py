@@ -18,16 +18,7 @@ from ..models.factory import ModelFactory
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..parallel import parallel_map
-
-CURVED = 2  # effects that slopes say little of, beside the best
-HINT = 30.0  # expected fall, above which these are not judged by their expected size, where the mean square innovation is above
-ROOM = 1.01
-NEGLIGIBLE = 0.3  # of δ
-LITTLE = 100.0  # expected fall, above which an effect is refitted however small it seems from here
-BENT = 1.0  # standard deviations of its prior by which a calibrated value counts as bent
-SLIGHTLY = 0.1  # the same, where it costs little to look at both
-AT_THE_FLOOR = 1.02  # whitened RMS error that leaves nothing to explain
-PROMISING = 6.0  # hoped-for fall below which no refit could pass the corrected test
+from ..policy import Effort
 
 
 @dataclass(frozen=True)
@@ -41,18 +32,20 @@ class Screened:
     likelihood: Likelihood
     delta: np.ndarray
     linear: bool
+    effort: Effort
     straight: bool = False
 
     @property
     def negligible(self) -> bool:
         """Does it gain little, being surely a small part of its smallest interesting size?"""
         far = np.abs(self.score.estimate) + 3 * self.score.se
-        return self.score.likelihood_ratio < LITTLE and bool(np.all(far < NEGLIGIBLE * self.delta))
+        return self.score.likelihood_ratio < self.effort.little and bool(np.all(far < self.effort.negligible * self.delta))
 
     @property
     def nonlinear_candidate(self) -> bool:
         """Is enough left, and hoped for, that an effect of another size may do what no slope tells?"""
-        return not self.linear and self.score.likelihood_ratio > HINT and float(np.mean(self.evidence.r**2)) > ROOM
+        hinted = self.score.likelihood_ratio > self.effort.hint
+        return not self.linear and hinted and float(np.mean(self.evidence.r**2)) > self.effort.room
 
 
 def screen(models: Models, base: Model, among: Iterable[str] | None = None) -> list[Screened]:
@@ -69,7 +62,11 @@ def screen_groups(models: Models, base: Model) -> tuple[list[Screened], list[Scr
     alone = {s.score.effect: s.score.likelihood_ratio for s in screened}
     groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
     joined = _by_secants(models, models.rerun((*base.effects, *groups)), base.fit, here, groups) if groups else []
-    more = (s for s in joined if s.score.likelihood_ratio > PROMISING + max(alone[e] for e in w.members(s.score.effect)))
+    more = (
+        s
+        for s in joined
+        if s.score.likelihood_ratio > models.effort.promising + max(alone[e] for e in w.members(s.score.effect))
+    )
     return screened, sorted(more, key=lambda s: -s.score.likelihood_ratio)
 
 
@@ -80,12 +77,12 @@ def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
     return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
 
 
-def at_prior_mean(likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
+def at_prior_mean(models: Models, likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
     """Calibrated values as the campaign has them, if a fit that leaves something has bent them by `least` standard
     deviations. None where forces lead the runs, which make up for what values would be bent for. What is known to be as small
     as can be, as the speed over which drag sets in, stays as it was found: it lies beside that bound in every chair, and at the
     bound itself, where dry friction holds whatever stands, no slope tells of anything."""
-    if likelihood.leads or base.evidence.rms < AT_THE_FLOOR:
+    if likelihood.leads or base.evidence.rms < models.policy.nothing_left:
         return []
     prior, values = prior_of(likelihood, base.names), np.array([base.values[n] for n in base.names])
     known = np.isfinite(prior.sd) & (prior.sd > 0) & (prior.mean > [likelihood.records[n].lower for n in base.names])
@@ -116,14 +113,14 @@ def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[
     w, fit = models.factory, base.fit
     likelihood, names = models.wide(base.effects), [n for e in light for n in w.parameters(e)]
     here = likelihood.evidence(w.campaign.fit, fit.values, [*fit.names, *names])
-    off, at_mean = projector(likelihood, fit, here), _slopes_at_prior_mean(likelihood, fit, names)
+    off, at_mean = projector(likelihood, fit, here), _slopes_at_prior_mean(models, likelihood, fit, names)
 
     def screened(effect: str) -> Screened:
         own, columns = ([by.index(n) for n in w.parameters(effect)] for by in (here.by, names))
         tangent = _score(w, here, off, effect, here.S[:, own])
         bent = [] if w.linear(effect) else _secants(w, likelihood, here, fit.values, effect)
         secants = [_score(w, here, off, effect, S) for S in (*bent, *(S[:, columns] for S in at_mean))]
-        return _most_promising(w, [tangent, *secants], here, likelihood)
+        return _most_promising(models, [tangent, *secants], here, likelihood)
 
     return parallel_map(screened, light), here
 
@@ -132,7 +129,7 @@ def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidenc
     """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size, and
     the filters of the model without them serve: at zero they change nothing."""
     w, at = models.factory, list[tuple[Mapping[str, float], Evidence]]()
-    for values in (base.values, *at_prior_mean(likelihood, base, SLIGHTLY)):
+    for values in (base.values, *at_prior_mean(models, likelihood, base, models.effort.slightly)):
         try:
             at.append((values, likelihood.resimulated(here, values)))
         except SimulationError:
@@ -145,22 +142,23 @@ def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidenc
         scores = [score for group in by for score in group]
         if not scores:
             return None
-        best = _most_promising(w, scores, here, likelihood)
+        best = _most_promising(models, scores, here, likelihood)
         return replace(best, straight=all(best.score.likelihood_ratio > score.likelihood_ratio for score in by[0]))
 
     return [s for s in parallel_map(screened, effects) if s]
 
 
-def _most_promising(w: ModelFactory, scores: Sequence[Score], here: Evidence, likelihood: Likelihood) -> Screened:
+def _most_promising(models: Models, scores: Sequence[Score], here: Evidence, likelihood: Likelihood) -> Screened:
     """The most promising of several scores of an effect, with the first one's p: that nobody picked."""
-    best = max(scores, key=lambda s: s.likelihood_ratio)
-    return Screened(replace(best, p=scores[0].p), here, likelihood, w.deltas(best.names), w.linear(best.effect))
+    w, best = models.factory, max(scores, key=lambda s: s.likelihood_ratio)
+    told = replace(best, p=scores[0].p)
+    return Screened(told, here, likelihood, w.deltas(best.names), w.linear(best.effect), models.effort)
 
 
-def _slopes_at_prior_mean(likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
+def _slopes_at_prior_mean(models: Models, likelihood: Likelihood, base: Fit, names: Sequence[str]) -> list[np.ndarray]:
     """Slopes (N, k) by `names` with calibrated values as the campaign has them, where a fit without the effect has bent them:
     what it bent to imitate an effect may be what the effect works through."""
-    at_mean = at_prior_mean(likelihood, base, BENT) if names else []
+    at_mean = at_prior_mean(models, likelihood, base, models.effort.bent) if names else []
     try:
         return [likelihood.evidence(likelihood.campaign.fit, values, names).S for values in at_mean]
     except SimulationError:
@@ -211,13 +209,14 @@ def _one_by_one(
     return columns
 
 
-def shortlist(screened: Sequence[Screened], most: int, twin: float) -> list[Screened]:
+def shortlist(screened: Sequence[Screened], effort: Effort) -> list[Screened]:
     """The best by expected fall, some more of those whose slopes say little, and whatever looks like the leader; not what is
     surely far too small to matter."""
-    promising = [s for s in screened if s.score.likelihood_ratio > PROMISING and (s.nonlinear_candidate or not s.negligible)]
-    curved = [s for s in promising[most:] if s.nonlinear_candidate][:CURVED]
-    first = [*promising[:most], *curved]
+    hopeful = (s for s in screened if s.score.likelihood_ratio > effort.promising)
+    promising = [s for s in hopeful if s.nonlinear_candidate or not s.negligible]
+    curved = [s for s in promising[effort.shortlist :] if s.nonlinear_candidate][: effort.curved]
+    first = [*promising[: effort.shortlist], *curved]
     taken = {s.score.effect for s in first}
     rest = [s for s in promising if s.score.effect not in taken]
     near = cosines([s.score for s in first[:1]], [s.score for s in rest])[0] if rest else ()
-    return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > twin)]
+    return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > effort.alike)]

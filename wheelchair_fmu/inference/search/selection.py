@@ -20,14 +20,8 @@ from .judge import surely_large
 from .pruning import pruned
 from .refitting import risen
 from .rounds import Round
-from .screen import AT_THE_FLOOR
 from .search import searched
 from .ties import beside, overtaker
-
-MOST_EFFECTS = 4  # that are put in, beside what only helps: whoever lacks more needs another model
-MOST_STEPS = 8  # that put one in, or one in the place of another
-MOST = 0.5  # of the mean square above the noise: whoever leaves more of it does little
-MUCH = 1.2  # whitened RMS error, fitted and held out, that is worth a search for several effects at once
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class Selection:
         """Search, put in what was found, leave out what that makes needless, and let others take the place of what they
         overtake, as long as anything is found; or until a step does little where an error of `far` and more is left."""
         now = self
-        for _ in range(MOST_STEPS):
+        for _ in range(self.models.effort.most_steps):
             if now.ended:
                 return now
             below, now = now, now._one_step()
@@ -80,11 +74,11 @@ class Selection:
     def _did_little(self, below: Selection) -> bool:
         """Is most left of what there was a step `below`? What explains less is not what is mainly missing."""
         before = self.ladder[min(len(below.ladder), len(self.ladder) - 1) - 1]  # by the noise that is known now
-        return not self.ended and self.ladder[-1].left ** 2 - 1 > MOST * (before.left**2 - 1)
+        return not self.ended and self.ladder[-1].left ** 2 - 1 > self.models.effort.most_left * (before.left**2 - 1)
 
     def _one_step(self) -> Selection:
         """The same until the model at the top is another one; or `ended`, where nothing is found."""
-        now, best = self._found() if len({*self.added} - self.helping) < MOST_EFFECTS else (self, None)
+        now, best = self._found() if len({*self.added} - self.helping) < self.models.effort.most_effects else (self, None)
         higher = now._with(best) if best else None
         if higher is not None:
             return higher
@@ -107,7 +101,7 @@ class Selection:
             models, top = known.settled((*self.rounds[-1].effects, best.effect), best.fit)
         except SimulationError:
             return None
-        if risen(self.top.fit, top.fit):
+        if risen(self.top.fit, top.fit, self.models.policy):
             return None
         return self.up_to(models, top)._pruned()
 
@@ -153,7 +147,7 @@ class Selection:
         if best is not None and len(best.members) > 1:
             now, best = now._parted(r, best)
             best = best or replace(r, groups=()).winner
-        if best is None and now.ladder[-1].left > MUCH and not now.tried_together:
+        if best is None and now.ladder[-1].left > self.models.effort.several and not now.tried_together:
             self.models.say("trying effects of one law together")
             now, joined = replace(now, tried_together=True), together(self.models, r)
             now, best = now._parted(r, joined) if joined else (now, None)
@@ -165,7 +159,7 @@ class Selection:
     def _unsettled(self) -> bool:
         """Is a model off the noise floor, or on it only with forces that nobody recorded, or with given values bent as far as
         they may be?"""
-        if self.models.factory.leads or self.ladder[-1].fit > AT_THE_FLOOR:
+        if self.models.factory.leads or self.ladder[-1].fit > self.models.policy.nothing_left:
             return True
         return any(v.beyond for v in calibration(self.models.likelihood(self.effects), self.top.fit))
 

@@ -17,9 +17,7 @@ from .judge import judge
 from .refitting import candidate
 from .rounds import Round
 from .screen import screen, shortlist
-from .search import ALIKE, SHORTLIST
 
-HALF = 0.5  # of a fall: who does so much alone, or promises it, may do all of it beside what is found later
 NEARLY = 0.95  # of a fall: who reaches it may be tied by what is held out, and no generic term replaces it
 CHANCE = 4.0  # sum of squares D by which readings of two models differ: above, the mean of −2 log odds between them, D, is
 # larger than their standard deviation, 2 √D
@@ -68,12 +66,12 @@ def beside(models: Models, effect: str, final: Model, before: Round | None, cali
     without = models.rival_of(effect, base)
     as_known = replace(final, fit=models.compared(final.fit, effect, without.fit))
     fall = without.fit.deviance - as_known.fit.deviance
-    if before and _stands(effect, final.effects, fall, before):
+    if before and _stands(effect, final.effects, fall, before, models.effort.halfway):
         return None
     screened = screen(models, base)
     own = judge(models, without, as_known, effect, models.factory.parameters(effect), len(screened))
-    promising = shortlist([s for s in screened if s.score.effect != effect], SHORTLIST, ALIKE)
-    tried = (candidate(models, base, s, len(screened), least=HALF * fall) for s in promising)
+    promising = shortlist([s for s in screened if s.score.effect != effect], models.effort)
+    tried = (candidate(models, base, s, len(screened), least=models.effort.halfway * fall) for s in promising)
     candidates = tuple(ranked([own, *(c for c in tried if c)]))
     bare, held, scores = (
         replace(base.fit, evidence=base.fit.evidence.summary()),
@@ -84,12 +82,12 @@ def beside(models: Models, effect: str, final: Model, before: Round | None, cali
     return Round(others, bare, held, tuple(scores), candidates, again=True, explained=explained, policy=models.policy)
 
 
-def _stands(effect: str, effects: Sequence[str], fall: float, before: Round) -> bool:
+def _stands(effect: str, effects: Sequence[str], fall: float, before: Round, halfway: float) -> bool:
     """Did no other come near an effect in the round that found it, and does it still do most of what it did then? If not, it
     may have done what others do that were found later, and one that does the rest may not have shown."""
     then = _of(before, effect)
-    near = {c.effect for c in before.candidates if c.lawful and c.likelihood_ratio >= HALF * then.likelihood_ratio}
-    most = fall >= HALF * (before.fit.deviance - then.fit.deviance)
+    near = {c.effect for c in before.candidates if c.lawful and c.likelihood_ratio >= halfway * then.likelihood_ratio}
+    most = fall >= halfway * (before.fit.deviance - then.fit.deviance)
     return most and then.matters and near.union(tied(before, effect)) <= set(effects)
 
 
