@@ -10,6 +10,8 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
+from ..independent.hidden import of_every_chair
+
 Trial = dict[str, Any]
 SHOWS = 1.01  # ratio of the whitened RMS on fitted runs, calibrated, to that where nothing is hidden
 FLOOR = 0.995  # whitened RMS where nothing is hidden in white noise; coloured noise has one for each draw
@@ -111,14 +113,14 @@ def covered_by(t: Trial, kind: str) -> list[bool]:
 
 
 def probabilities(trials: Sequence[Trial]) -> list[tuple[float, bool]]:
-    """Every probability that an effect is larger than δ, and whether it is. Effects that are hidden at δ itself are neither
-    larger nor smaller, and what every chair has in such runs is nobody's to hide."""
+    """Every probability that an effect is larger than δ, and whether it was hidden so. What was hidden at δ itself is neither
+    larger nor smaller, and what every chair has is there whatever was hidden: neither counts."""
     of_a_size = (t for t in trials if t["kind"] in OF_THE_CATALOGUE and t["times"] != 1)
     return [
         (p, e in t["effects"] and t["times"] > 1)
         for t in of_a_size
         for e, p in t.get("probabilities", {}).items()
-        if p is not None and (e in t["effects"] or e not in t["own"])
+        if p is not None and e not in of_every_chair()
     ]
 
 

@@ -301,13 +301,14 @@ def usual(effect: str, times: float = 1.0) -> dict[str, float]:
     return {name: times * p.pattern * p.delta for name, p in EFFECTS[effect].parameters.items()}
 
 
+def of_every_chair() -> tuple[str, ...]:
+    """Effects that are of interest in every chair as it is: casters have a trail."""
+    return tuple(name for name, e in EFFECTS.items() if any(p.whole(0.0) >= p.delta for p in e.parameters.values()))
+
+
 def own(manoeuvres: str) -> tuple[str, ...]:
-    """Effects that are of interest in every chair as it is, where these manoeuvres show them: casters have a trail."""
-    return tuple(
-        name
-        for name, e in EFFECTS.items()
-        if e.sees == manoeuvres and any(p.whole(0.0) >= p.delta for p in e.parameters.values())
-    )
+    """Those of them that these manoeuvres show."""
+    return tuple(name for name in of_every_chair() if EFFECTS[name].sees == manoeuvres)
 
 
 def hide(truth: Truth, hidden: Mapping[str, Mapping[str, float]]) -> Truth:

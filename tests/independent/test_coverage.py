@@ -61,8 +61,8 @@ def test_trials_are_told_by_size_and_noise_each_once():
 
 
 def test_probabilities_are_tallied_against_what_was_hidden():
-    """Not of an effect of δ itself, which is neither larger nor smaller, nor of what every chair has, nor of no catalogue."""
-    hidden = {"kind": "effect", "effects": ["gyro_bias"], "times": 3.0, "own": ("caster_trail",)}
+    """Every chair's casters have a trail, whatever was hidden. At δ itself an effect is neither larger nor smaller."""
+    hidden = {"kind": "effect", "effects": ["gyro_bias"], "times": 3.0}
     said = {"gyro_bias": 0.96, "gyro_scale": 0.04, "caster_trail": 0.99, "turn_slip": None}
     quarter = {**hidden, "times": 0.25, "probabilities": {"gyro_bias": 0.02}}
     others = [{**hidden, "times": 1.0, "probabilities": said}, {**hidden, "kind": "left-out", "probabilities": said}]
