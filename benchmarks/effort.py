@@ -7,23 +7,19 @@ Campaigns of the independent simulator are searched twice, with the usual effort
 from __future__ import annotations
 
 import argparse
-import tempfile
 import time
-from pathlib import Path
 
 from rich.console import Console
 from rich.progress import track
 
-from wheelchair_fmu.campaign import Campaign, read
+from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.policy import USUAL, Effort
-from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
 from wheelchair_fmu.model.variant import Variant
-from wheelchair_fmu.model.wheelchair import Choice
 
 from .diagnosis.cases import Case, Plan
-from .independent.campaigns import make
+from .diagnosis.trial import asked
 
 
 def said(campaign: Campaign, chair: Variant, effort: Effort) -> tuple[str, float]:
@@ -37,11 +33,7 @@ def said(campaign: Campaign, chair: Variant, effort: Effort) -> tuple[str, float
 
 def compared(case: Case) -> tuple[str, str, float]:
     """What is said of a case with the usual effort and with a thorough one, and how many times as long the second took."""
-    catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
-    with tempfile.TemporaryDirectory() as place:
-        told = {"noise": case.noise, "manoeuvres": case.manoeuvres, "channels": case.channels, "seed": case.seed}
-        campaign = read(make(Path(place) / "campaign", case.hidden, **told))
-        chair = Variant(Choice(caster=case.casters), catalogue=catalogue)
+    with asked(case) as (campaign, chair):
         (usual, short), (thorough, long) = (said(campaign, chair, effort) for effort in (USUAL, Effort.thorough()))
     return usual, thorough, long / short
 

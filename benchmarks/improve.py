@@ -21,7 +21,7 @@ from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.inference.policy import DEFAULT
 
 from .diagnosis.cases import Case
-from .independent.campaigns import make
+from .diagnosis.trial import written
 from .independent.hidden import OUTSIDE
 
 
@@ -29,14 +29,7 @@ def improved(case: Case) -> tuple[str, list[dict[str, float | str]]]:
     """The last verdict, and the staircase up to there."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        make(
-            folder / "campaign",
-            case.hidden,
-            noise=case.noise,
-            manoeuvres=case.manoeuvres,
-            channels=case.channels,
-            seed=case.seed,
-        )
+        written(case, folder / "campaign")
         words = ("improve", folder / "campaign", "-o", folder / "better.toml", "--json", folder / "told.json")
         done = CliRunner().invoke(app, [str(word) for word in words])
         if done.exit_code:

@@ -8,36 +8,28 @@ have fitted otherwise, had it gone another way from there, is not asked.
 from __future__ import annotations
 
 import argparse
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.decide import decide
 from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
 from wheelchair_fmu.inference.policy import DEFAULT, RANGES, SearchPolicy
 from wheelchair_fmu.inference.search.rounds import Round
 from wheelchair_fmu.inference.search.ties import tied
-from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
-from wheelchair_fmu.model.variant import Variant
 
 from .diagnosis.cases import Case, Plan
-from .independent.campaigns import make
+from .diagnosis.trial import asked
 
 
 def searched(case: Case) -> Diagnosis:
     """What a search of what was hidden came to."""
-    catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
-    with tempfile.TemporaryDirectory() as place:
-        told = {"noise": case.noise, "manoeuvres": case.manoeuvres, "channels": case.channels, "seed": case.seed}
-        campaign = read(make(Path(place) / "campaign", case.hidden, **told))
-        return diagnose(campaign, Variant(catalogue=catalogue), library())
+    with asked(case) as (campaign, chair):
+        return diagnose(campaign, chair, library())
 
 
 def found(r: Round, policy: SearchPolicy) -> str | None:

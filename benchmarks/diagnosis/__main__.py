@@ -21,14 +21,14 @@ from .trial import trial
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.diagnosis", description=__doc__)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="of noise, pushes and true chairs")
-    parser.add_argument("--only", default="", help="cases with this in their name")
+    parser.add_argument("--only", nargs="+", default=[""], help="cases with one of these in their name")
     parser.add_argument("--every", type=int, default=1, help="of these cases, every so many")
     parser.add_argument("--baselines", action="store_true", help="also run what people do without the loop")
     parser.add_argument("--out", type=Path, default=Path("out/diagnosis"), help="finished trials are kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
     console = Console()
-    cases = [c for c in Plan(chosen.seeds).cases if chosen.only in c.name][:: chosen.every]
+    cases = [c for c in Plan(chosen.seeds).cases if any(part in c.name for part in chosen.only)][:: chosen.every]
     done = []
     for case in track(cases, "trials", console=Console(stderr=True)):
         file = chosen.out / f"{case.name}.json"

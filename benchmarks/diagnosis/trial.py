@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from wheelchair_fmu.campaign import read
+from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.inference.decision.bootstrap import bootstrap
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.explain.ranking import as_json
@@ -33,14 +35,23 @@ def _chair(case: Case) -> dict[str, float]:
     return chair
 
 
+def written(case: Case, folder: Path) -> Path:
+    """A campaign with what a case hides, in this folder."""
+    how = dict(noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
+    return make(folder, case.hidden, chair=_chair(case), **how)
+
+
+@contextmanager
+def asked(case: Case) -> Iterator[tuple[Campaign, Variant]]:
+    """The campaign of a case, and the chair that it is compared with."""
+    catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
+    with tempfile.TemporaryDirectory() as place:
+        yield read(written(case, Path(place) / "campaign")), Variant(Choice(caster=case.casters), catalogue=catalogue)
+
+
 def trial(case: Case, with_baselines: bool) -> dict[str, Any]:
     """What was hidden, and what the loop and its baselines said."""
-    catalogue = {name: effect for name, effect in bundled().items() if name not in case.left_out}
-    chair = Variant(Choice(caster=case.casters), catalogue=catalogue)
-    with tempfile.TemporaryDirectory() as place:
-        folder = Path(place) / "campaign"
-        how = dict(noise=case.noise, manoeuvres=case.manoeuvres, channels=case.channels, seed=case.seed)
-        campaign = read(make(folder, case.hidden, chair=_chair(case), **how))
+    with asked(case) as (campaign, chair):
         began = time.process_time()
         found = diagnose(campaign, chair, library())
         said = as_json(found)
