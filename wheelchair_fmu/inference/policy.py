@@ -118,7 +118,10 @@ class Effort:
     curved: int = _count(2, 6, "effects that slopes say little of, which are refitted beside these")
     alike: float = _limit(0.9, 0.7, "cosine of signatures above which a rival of the leader is refitted whatever it promises")
     promising: float = _limit(
-        6.0, 3.0, "expected fall below which no refit could pass: twice the log prior odds of one in thirty"
+        3.0,
+        1.5,
+        "expected fall below which nothing is refitted, the log prior odds of one in thirty: twice that passes, and slopes may "
+        "see half of it",
     )
     hopeless: float = _limit(0.2, 0.1, "share of the leader's fall that another must promise to be refitted")
     halfway: float = _limit(0.5, 0.25, "share of a fall that is expected, promised or was found, which counts as near it")
