@@ -86,6 +86,7 @@ def test_a_run_in_which_nothing_else_was_measured_is_left_out(sample):
     alone = replace(first, channels={"yaw_rate": first.channels["yaw_rate"]})
     begun = begin(Models.of(ModelFactory(replace(sample, runs=(alone, *others)), Variant())))
     assert begun.notes[0].startswith("yaw_rate has the other sign")
+    assert begun.notes[1:] == (f"{first.name}: nothing else was measured in it, so that it says nothing",)
     assert [r.name for r in begun.models.campaign.runs] == [r.name for r in others]
 
 

@@ -50,9 +50,13 @@ def begin(models: Models) -> Beginning:
 def _begun(models: Models) -> Beginning:
     found = dict(by_signals(models.campaign))
     models = replace(models, factory=models.factory.retimed(found))
-    columns = wiring(models.likelihood(), models.factory.given)
+    columns, recorded = wiring(models.likelihood(), models.factory.given), models.campaign.runs
     if columns.wrong:
         models = replace(models, factory=models.factory.without(columns.wrong))
+    told = {run.name for run in models.campaign.runs}
+    empty = (
+        f"{run.name}: nothing else was measured in it, so that it says nothing" for run in recorded if run.name not in told
+    )
     begun = first_steps(models)
     if columns.trusted:
         models, (base, held) = begun.models, (begun.calibrated.fit, begun.calibrated.heldout)
@@ -62,7 +66,7 @@ def _begun(models: Models) -> Beginning:
             found |= more
             begun = first_steps(replace(models, factory=models.factory.retimed(more)))
     again = begun.models.with_noise_of(begun.calibrated.fit)
-    return replace(first_steps(again) if again else begun, notes=columns.notes, retimed=found)
+    return replace(first_steps(again) if again else begun, notes=(*columns.notes, *empty), retimed=found)
 
 
 def _begun_led(models: Models) -> Beginning:
