@@ -210,13 +210,20 @@ def _one_by_one(
 
 
 def shortlist(screened: Sequence[Screened], effort: Effort) -> list[Screened]:
-    """The best by expected fall, some more of those whose slopes say little, and whatever looks like the leader; not what is
-    surely far too small to matter."""
+    """The best by expected fall, some more of those whose slopes say little, and whatever may do nearly as much as the leader
+    or looks like it; not what is surely far too small to matter."""
     hopeful = (s for s in screened if s.score.likelihood_ratio > effort.promising)
     promising = [s for s in hopeful if s.nonlinear_candidate or not s.negligible]
-    curved = [s for s in promising[effort.shortlist :] if s.nonlinear_candidate][: effort.curved]
-    first = [*promising[: effort.shortlist], *curved]
-    taken = {s.score.effect for s in first}
-    rest = [s for s in promising if s.score.effect not in taken]
-    near = cosines([s.score for s in first[:1]], [s.score for s in rest])[0] if rest else ()
-    return [*first, *(s for s, cosine in zip(rest, near, strict=True) if cosine > effort.alike)]
+    first, others = promising[: effort.shortlist], promising[effort.shortlist :]
+    if not others:
+        return first
+    curved = [s.score.effect for s in others if s.nonlinear_candidate][: effort.curved]
+    leader = first[0].score
+    (alike,) = cosines([leader], [s.score for s in others])
+
+    def wanted(s: Screened, cosine: float) -> bool:
+        near = effort.halfway if s.linear else 1 / effort.beyond  # of a fall, as far as slopes tell
+        may = s.score.likelihood_ratio > near * leader.likelihood_ratio
+        return s.score.effect in curved or may or cosine > effort.alike
+
+    return [*first, *(s for s, cosine in zip(others, alike, strict=True) if wanted(s, cosine))]
